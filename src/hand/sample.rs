@@ -99,6 +99,14 @@ impl Group {
     }
 }
 
+impl FromIterator<Group> for Groups {
+    fn from_iter<I: IntoIterator<Item = Group>>(groups: I) -> Self {
+        let mut all = Self::NONE;
+        groups.into_iter().for_each(|group| all.insert(group));
+        all
+    }
+}
+
 impl Groups {
     /// No group.
     pub const NONE: Self = Self(0);
@@ -178,10 +186,8 @@ impl HandSample {
     pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
         let taken = self.take_set(reply).into_iter();
         let taken = taken.chain(self.take_actual(reply));
-        let mut fresh = Groups::NONE;
-        for (group, _) in taken.filter(|(_, there)| *there) {
-            fresh.insert(group);
-        }
+        let there = taken.filter(|(_, there)| *there);
+        let mut fresh: Groups = there.map(|(group, _)| group).collect();
         for finger in Finger::ALL {
             let block = part(reply, touch_span(finger)).and_then(TactileBlock::decode);
             if let Some(value) = block {

@@ -164,16 +164,13 @@ fn history_is_bounded_in_rows_and_memory() {
     let mut history = History::new();
     let block = TactileBlock::decode(&[0; 58]).expect("58 bytes");
     let mut sample = HandSample::default();
-    let mut fresh = Groups::NONE;
-    for group in [
+    let mut fresh = Groups::from_iter([
         Group::Angle,
         Group::Force,
         Group::Current,
         Group::Temperature,
         Group::AngleSet,
-    ] {
-        fresh.insert(group);
-    }
+    ]);
     for finger in Finger::ALL {
         fresh.insert(Group::Tactile(finger));
     }

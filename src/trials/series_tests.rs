@@ -132,15 +132,12 @@ struct Ran {
 /// Runs for at most two minutes. `meanwhile` spoils the hand; it is told how far the index finger is.
 fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
     let mut hand = Hand::new();
-    let mut fresh = Groups::NONE;
-    for group in [
+    let fresh = Groups::from_iter([
         Group::Angle,
         Group::Force,
         Group::Status,
         Group::Temperature,
-    ] {
-        fresh.insert(group);
-    }
+    ]);
     let mut series = TrialSeries::start(plan, EPOCH, hand.now).unwrap();
     let mut sent = Vec::new();
     for _ in 0..12_000 {

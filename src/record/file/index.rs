@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 const COMPRESSION: &str = "lz4";
 /// Bytes of a chunk's record before what was compressed: code, length, two times, two sizes, a sum, and the compression's name.
 const CHUNK_HEAD: u64 = 9 + 8 + 8 + 8 + 4 + 4 + COMPRESSION.len() as u64 + 8;
+
 /// What was written so far.
 #[derive(Debug, Default)]
 pub(crate) struct FileIndex {

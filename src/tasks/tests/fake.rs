@@ -160,16 +160,13 @@ impl FakeHand {
     /// It says this of itself now, on all joints.
     pub(crate) fn says(&self, said: Said) -> HandSample {
         let sample = said.sample(self.clock.now());
-        let mut fresh = Groups::NONE;
-        for group in [
+        let fresh = Groups::from_iter([
             Group::Angle,
             Group::Force,
             Group::Status,
             Group::Faults,
             Group::Temperature,
-        ] {
-            fresh.insert(group);
-        }
+        ]);
         let record = Record::Reading {
             sample: Arc::new(sample),
             fresh,

@@ -57,17 +57,14 @@ fn reading(at: Moment, is_faulty: bool) -> Entry {
         faults: timed(PerDof::from_fn(|dof| Faults::from_raw(fault(dof))), at),
         ..HandSample::default()
     };
-    let mut fresh = Groups::NONE;
-    for group in [
+    let fresh = Groups::from_iter([
         Group::Angle,
         Group::Force,
         Group::Current,
         Group::Temperature,
         Group::Status,
         Group::Faults,
-    ] {
-        fresh.insert(group);
-    }
+    ]);
     Entry::Heard(Record::Reading {
         sample: Arc::new(sample),
         fresh,

@@ -104,15 +104,12 @@ pub(crate) fn live() -> State {
 }
 
 fn fill(history: &mut History) {
-    let mut fresh = Groups::NONE;
-    for group in [
+    let fresh = Groups::from_iter([
         Group::Angle,
         Group::Force,
         Group::Current,
         Group::Temperature,
-    ] {
-        fresh.insert(group);
-    }
+    ]);
     for tick in 0..3000u32 {
         let t = 30.0 + f64::from(tick) * 0.01;
         if (54.2..55.1).contains(&t) {

@@ -7,6 +7,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 
 /// No message of ours is longer. Small parts of a long one could take many times its room.
 const MESSAGE_MAX: usize = 1024 * 1024;
+
 /// Gives each message of a chunk's record (topic, times, bytes); false if the chunk is damaged, and then it gives none of it.
 pub(crate) fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> bool {
     let options = LinearReaderOptions::default()
