@@ -16,11 +16,12 @@
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
-//! | 4 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play |
-//! | 5 | [`app`] | everything the program knows, without drawing |
-//! | 6 | [`ui`] | the window: reads state, returns actions |
-//! | 7 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
-//! | 8 | [`cli`] | the command line |
+//! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
+//! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, exhibit |
+//! | 6 | [`app`] | everything the program knows, without drawing |
+//! | 7 | [`ui`] | the window: reads state, returns actions |
+//! | 8 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
+//! | 9 | [`cli`] | the command line |
 //!
 //! # Threads
 //!
@@ -41,10 +42,13 @@
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * No request outlives a lost link.
 //! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded, and in the session.
+//! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN; a stop, a lost link or
+//!   a fault that needs a person ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;
 pub mod cli;
 pub mod codec;
+pub mod exhibit;
 pub mod hand;
 pub mod history;
 pub mod link;

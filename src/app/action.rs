@@ -1,5 +1,6 @@
 //! Everything a person can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
 use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
@@ -60,6 +61,8 @@ pub enum Action {
     DryRun(Option<SequenceId>),
     /// What is asked about recorded sessions.
     Session(SessionAction),
+    /// What a person does at an exhibition, or to begin one.
+    Exhibit(ExhibitAction),
     /// What is asked about grasp trials.
     Trial(TrialAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
@@ -162,6 +165,12 @@ impl Action {
             ),
             _ => false,
         }
+    }
+
+    /// True for what is carried out during an exhibition: nothing on its page asks for more.
+    #[must_use]
+    pub const fn passes_in_exhibit(&self) -> bool {
+        matches!(self, Self::Stop | Self::Exhibit(_) | Self::Language(_))
     }
 
     /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All

@@ -3,6 +3,7 @@
 pub mod action;
 pub mod connect;
 pub mod env;
+pub mod exhibit;
 pub mod files;
 pub mod hand;
 pub mod layout;

@@ -2,6 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
+use crate::app::exhibit::{ExhibitAction, ExhibitStart, ExhibitState};
+use crate::app::files::exhibit_file;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
 use crate::app::files::pose_file;
@@ -20,6 +22,7 @@ use crate::app::settings::Settings;
 use crate::app::state::{LeaveQuestion, State};
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
+use crate::exhibit::run::Wish;
 use crate::hand::{Dof, Moment};
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
@@ -55,6 +58,7 @@ pub struct App {
     finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
     exporting: Option<BackgroundJob<NoticeKind>>,
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
+    opening_exhibit: Option<BackgroundJob<Result<ExhibitStart, NoticeKind>>>,
     sessions: Option<BackgroundJob<FilesEnd>>,
     keeping: Option<BackgroundJob<FilesEnd>>,
     recorded: SessionWork,
@@ -102,6 +106,7 @@ impl App {
             finding_ports: None,
             exporting: None,
             importing: None,
+            opening_exhibit: None,
             sessions: None,
             keeping: None,
             recorded: SessionWork::default(),
@@ -187,6 +192,7 @@ impl App {
             self.quirk_notes.tick(hand, env, notices, now);
         }
         scan.drain();
+        self.tick_exhibit(now);
         self.take_jobs(now);
         self.recorded.tick(&mut self.state, &self.env);
         self.save_changes(now);
@@ -214,6 +220,11 @@ impl App {
         {
             let session = self.state.trials.session(id);
             self.keeping = session.and_then(|session| files::keep(session, &self.env));
+        }
+        match BackgroundJob::take_from(&mut self.opening_exhibit) {
+            None => {}
+            Some(Ok(start)) => self.enter_exhibit(start, now),
+            Some(Err(refused)) => self.tell(refused, now),
         }
         match BackgroundJob::take_from(&mut self.importing) {
             None => {}
@@ -249,6 +260,9 @@ impl App {
             None => action,
         };
         self.state.now = now;
+        if self.state.exhibit.is_some() && !action.passes_in_exhibit() {
+            return;
+        }
         let hand = self.state.hand_mut();
         hand.now = now;
         if hand.runs_series() && action.disturbs_series() {
@@ -271,6 +285,7 @@ impl App {
                 self.records |= on.contains(&action);
                 self.recorded.act(action, &mut self.state, &self.env);
             }
+            Action::Exhibit(action) => self.exhibit_action(action, now),
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
@@ -297,11 +312,17 @@ impl App {
             hands,
             notices,
             settings,
+            exhibit,
             ..
         } = &mut self.state;
         let (hand, env) = (hands.shown_mut(), &self.env);
         match action {
-            Action::Stop => hand.stop(notices),
+            Action::Stop => {
+                hand.stop(notices);
+                if let Some(exhibit) = exhibit {
+                    exhibit.wish(Wish::Stop);
+                }
+            }
             Action::Arm => hand.arm(notices),
             Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
@@ -528,8 +549,79 @@ impl App {
         hand.look_at_params(&self.env);
     }
 
+    /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
+    pub fn enter_exhibit(&mut self, start: ExhibitStart, now: Moment) {
+        self.recorded.player = None;
+        let State { hands, notices, .. } = &mut self.state;
+        let hand = hands.shown_mut();
+        hand.now = now;
+        if hand.runs_series() || hand.procedure.is_some() {
+            self.tell(NoticeKind::SeriesRuns, now);
+            return;
+        }
+        if hand.may_move() {
+            hand.stop(notices);
+        }
+        hand.take_over();
+        let language = self.state.settings.language;
+        self.state.exhibit = ExhibitState::begin(start, self.state.hand(), language, &self.env);
+    }
+
+    fn exhibit_action(&mut self, action: ExhibitAction, now: Moment) {
+        let Some(exhibit) = &mut self.state.exhibit else {
+            match action {
+                ExhibitAction::Enter => {
+                    if let Some(start) = exhibit_file::built_in() {
+                        self.enter_exhibit(start, now);
+                    }
+                }
+                ExhibitAction::EnterFile if self.opening_exhibit.is_none() => {
+                    self.opening_exhibit = Some(exhibit_file::open(&self.env));
+                }
+                _ => {}
+            }
+            return;
+        };
+        if exhibit.act(action, now) {
+            self.leaves = exhibit.ends_program;
+            self.leave_exhibit(now);
+        }
+    }
+
+    fn leave_exhibit(&mut self, now: Moment) {
+        let Some(exhibit) = self.state.exhibit.take() else {
+            return;
+        };
+        self.state.settings.language = exhibit.language;
+        let State { hands, notices, .. } = &mut self.state;
+        let hand = hands.shown_mut();
+        hand.now = now;
+        if hand.may_move() {
+            hand.stop(notices);
+        }
+    }
+
+    fn tick_exhibit(&mut self, now: Moment) {
+        let State {
+            hands,
+            exhibit,
+            settings,
+            ..
+        } = &mut self.state;
+        if let Some(exhibit) = exhibit
+            && exhibit.tick(hands.shown_mut(), now)
+        {
+            settings.language = exhibit.language;
+        }
+    }
+
     /// A person wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
     pub fn asks_before_closing(&mut self) -> bool {
+        // The way out of an exhibition is the PIN.
+        if let Some(exhibit) = &mut self.state.exhibit {
+            exhibit.ask(self.state.now);
+            return true;
+        }
         let series = self.state.hands.iter().any(HandState::runs_series);
         let staged = |hand: &HandState| hand.params.all_staged().iter().count();
         let edits = self.state.hands.iter().map(staged).sum();

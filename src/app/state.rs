@@ -1,5 +1,6 @@
 //! Everything the window shows, as plain values. Changed only by [`crate::app::program::App`]; draws nothing, opens nothing.
 
+use crate::app::exhibit::ExhibitState;
 use crate::app::hand::HandState;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
@@ -40,6 +41,8 @@ pub struct State {
     pub sessions: SessionsState,
     /// What would be lost if the window closed now, once a person tried to.
     pub leave: Option<LeaveQuestion>,
+    /// The exhibition that is shown in place of the window.
+    pub exhibit: Option<ExhibitState>,
     /// The time line of the session that is replayed; `None` while hands are live.
     pub timeline: Option<Timeline>,
     /// A second session, drawn over the replayed one.

@@ -1,7 +1,9 @@
 //! A hand as tasks see it, how one is reached, and the waits that tasks share.
 
 use crate::hand::{HandCommand, Setpoints, Setting, Span};
-use crate::link::{LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::link::{
+    ArmRequest, LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError,
+};
 use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Written};
 use crate::transport::Endpoint;
 use std::time::Duration;
@@ -41,6 +43,10 @@ pub trait Hand: Clone + Send + Sync + 'static {
     fn stop(&self);
     /// Lets no setpoint pass any more.
     fn disarm(&self);
+    /// Asks to arm, within these limits. A person must have asked for it.
+    fn arm(&self, request: ArmRequest);
+    /// Takes the turn at moving the hand.
+    fn take_turn(&self) -> MotionTurn;
     /// Sets targets and limits; false if the turn is over.
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool;
     /// Reads at other rates.
@@ -77,6 +83,12 @@ impl Hand for LinkHandle {
     }
     fn disarm(&self) {
         Self::disarm(self);
+    }
+    fn arm(&self, request: ArmRequest) {
+        Self::arm(self, request);
+    }
+    fn take_turn(&self) -> MotionTurn {
+        Self::take_turn(self)
     }
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
         Self::set(self, turn, setpoints)

@@ -3,6 +3,7 @@
 
 pub mod apply;
 pub mod calibrate;
+pub mod exhibit;
 pub mod hand;
 pub mod place;
 pub mod play;

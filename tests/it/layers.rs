@@ -6,11 +6,12 @@ use std::fs;
 use std::path::Path;
 
 /// The modules of each floor, from the lowest up.
-const FLOORS: [&[&str]; 10] = [
+const FLOORS: [&[&str]; 11] = [
     &["hand", "manual"],
     &["codec", "transport", "record", "store"],
     &["history"],
     &["link", "sim", "params", "poses", "trials"],
+    &["exhibit"],
     &["tasks"],
     &["app"],
     &["ui"],

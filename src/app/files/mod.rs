@@ -2,6 +2,7 @@
 
 pub mod choose;
 pub mod day_folder;
+pub mod exhibit_file;
 pub mod export;
 pub(crate) mod open;
 pub mod pose_file;

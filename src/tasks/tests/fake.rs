@@ -4,7 +4,7 @@ use crate::hand::{
     AngleReading, ArmEpoch, Faults, ForceReading, Group, Groups, HandCommand, HandSample, Moment,
     PerDof, RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
 };
-use crate::link::{Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::link::{ArmRequest, Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
 use crate::params::changes::plan_writes;
 use crate::params::place;
 use crate::params::rows::{ParamId, Value};
@@ -33,6 +33,7 @@ pub(crate) enum Asked {
     Calibrate,
     Stop,
     Disarm,
+    Arm(ArmRequest),
     Move(Setpoints),
     ReadAt(PollRates),
 }
@@ -191,12 +192,6 @@ impl FakeHand {
         let fate = script(&asked);
         self.facts().script = script;
         fate
-    }
-
-    pub(crate) fn take_turn(&self) -> MotionTurn {
-        let mut facts = self.facts();
-        facts.turn += 1;
-        MotionTurn(facts.turn)
     }
 
     fn note(&self, asked: Asked) {
@@ -364,6 +359,16 @@ impl Hand for FakeHand {
         if facts.status.state == LinkState::Armed {
             facts.status.state = LinkState::Monitoring;
         }
+    }
+
+    fn arm(&self, request: ArmRequest) {
+        self.note(Asked::Arm(request));
+    }
+
+    fn take_turn(&self) -> MotionTurn {
+        let mut facts = self.facts();
+        facts.turn += 1;
+        MotionTurn(facts.turn)
     }
 
     fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {

@@ -1,0 +1,278 @@
+//! The file of an exhibition as TOML, version 1 (assets/manual/exhibit.md). It is taken whole or not at all.
+
+use crate::exhibit::pin::Pin;
+use crate::exhibit::plan::{
+    AttractLoop, BothWords, ExhibitPlan, MotionLimits, Piece, TILES, open_plan,
+};
+use crate::hand::{Force, Speed};
+use crate::poses::library::{PoseId, PoseLibrary};
+use crate::poses::starter::starter;
+use crate::store::{FileCause, FileError, FileText};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use toml::Spanned;
+
+/// The format that such a file names.
+pub const FORMAT: &str = "handscope-exhibit";
+/// Characters of the line above the hand.
+const TITLE_CHARS_MAX: usize = 60;
+/// Pieces of the attract loop.
+const ATTRACT_MAX: usize = 40;
+/// What is shown without a file.
+const BUILT_IN: &str = include_str!("../../assets/exhibit.toml");
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRow {
+    #[serde(rename = "format")]
+    _format: String,
+    #[serde(rename = "version")]
+    _version: i64,
+    #[serde(default)]
+    title: Option<Spanned<String>>,
+    #[serde(default)]
+    title_zh: Option<Spanned<String>>,
+    #[serde(default)]
+    logo: Option<Spanned<PathBuf>>,
+    #[serde(default)]
+    poses: Option<PathBuf>,
+    #[serde(default)]
+    pin: Option<Pin>,
+    tiles: Spanned<Vec<Spanned<String>>>,
+    #[serde(default)]
+    speed: Option<Spanned<Speed>>,
+    #[serde(default)]
+    force: Option<Spanned<Force>>,
+    #[serde(default)]
+    visit_s: Option<Spanned<u64>>,
+    #[serde(default)]
+    visitor_restart: bool,
+    #[serde(default)]
+    attract: Option<AttractRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AttractRow {
+    pieces: Spanned<Vec<Spanned<String>>>,
+    #[serde(default)]
+    after_s: Option<Spanned<u64>>,
+    #[serde(default)]
+    play_s: Option<Spanned<u64>>,
+    #[serde(default)]
+    rest_s: Option<Spanned<u64>>,
+}
+
+/// What is shown without a file.
+#[must_use]
+pub fn built_in() -> Option<ExhibitPlan> {
+    let plan = read(BUILT_IN, Path::new(""), &PoseLibrary::default());
+    debug_assert!(plan.is_ok(), "{plan:?}");
+    plan.ok()
+}
+
+/// The file of poses that a text names, beside it in this folder.
+///
+/// # Errors
+/// [`FileError`] with line and field.
+pub fn poses_of(text: &str, folder: &Path) -> Result<Option<PathBuf>, FileError> {
+    let row: FileRow = FileText::of(text, FORMAT)?.parse()?;
+    Ok(row.poses.map(|poses| folder.join(poses)))
+}
+
+/// The exhibition that a text in this folder holds. Its tiles are named after entries of `own`, or after what is shipped.
+///
+/// # Errors
+/// [`FileError`] with line and field; nothing is taken of such a text.
+pub fn read(text: &str, folder: &Path, own: &PoseLibrary) -> Result<ExhibitPlan, FileError> {
+    let source = FileText::of(text, FORMAT)?;
+    ExhibitReader { source, own }.plan(source.parse()?, folder)
+}
+
+/// Makes an exhibition of what a text holds.
+#[derive(Clone, Copy)]
+struct ExhibitReader<'a> {
+    source: FileText<'a>,
+    own: &'a PoseLibrary,
+}
+
+impl ExhibitReader<'_> {
+    fn plan(self, row: FileRow, folder: &Path) -> Result<ExhibitPlan, FileError> {
+        let limits = MotionLimits {
+            speed: self.moving("speed", row.speed.as_ref(), Speed::nearest(300), Speed::MIN)?,
+            force: self.moving("force", row.force.as_ref(), Force::nearest(800), Force::MIN)?,
+        };
+        let count = row.tiles.get_ref().len();
+        if !TILES.contains(&count) {
+            let cause = FileCause::Value {
+                got: format!("{count}"),
+                allowed: format!(
+                    "a number of tiles from {} to {}",
+                    TILES.start(),
+                    TILES.end()
+                ),
+            };
+            return Err(self.source.blame(row.tiles.span(), "tiles", cause));
+        }
+        let title = BothWords {
+            en: self.line("title", row.title.as_ref())?,
+            zh: self.line("title_zh", row.title_zh.as_ref())?,
+        };
+        let attract = row.attract.as_ref();
+        Ok(ExhibitPlan {
+            title,
+            logo: self.logo(row.logo.as_ref(), folder)?,
+            pin: row.pin,
+            limits,
+            tiles: self.pieces("tiles", row.tiles.get_ref(), limits)?,
+            open: open_plan(
+                limits,
+                starter().pose_named("Open").map_or(PoseId(0), |own| own.id),
+            ),
+            visit: self.seconds("visit_s", row.visit_s.as_ref(), 120)?,
+            attract: attract.map(|row| self.attract(row, limits)).transpose()?,
+            visitor_restart: row.visitor_restart,
+        })
+    }
+
+    fn attract(self, row: &AttractRow, limits: MotionLimits) -> Result<AttractLoop, FileError> {
+        let count = row.pieces.get_ref().len();
+        if !(1..=ATTRACT_MAX).contains(&count) {
+            let cause = FileCause::Value {
+                got: format!("{count}"),
+                allowed: format!("a number of pieces from 1 to {ATTRACT_MAX}"),
+            };
+            return Err(self.source.blame(row.pieces.span(), "pieces", cause));
+        }
+        Ok(AttractLoop {
+            pieces: self.pieces("pieces", row.pieces.get_ref(), limits)?,
+            after: self.seconds("after_s", row.after_s.as_ref(), 60)?,
+            play: self.seconds("play_s", row.play_s.as_ref(), 60)?,
+            rest: self.seconds("rest_s", row.rest_s.as_ref(), 120)?,
+        })
+    }
+
+    fn pieces(
+        self,
+        field: &str,
+        names: &[Spanned<String>],
+        limits: MotionLimits,
+    ) -> Result<Vec<Piece>, FileError> {
+        let mut pieces: Vec<Piece> = Vec::with_capacity(names.len());
+        for name in names {
+            let Some(piece) = self.piece(name.get_ref(), limits) else {
+                let start: String = name.get_ref().chars().take(40).collect();
+                let cause = FileCause::Value {
+                    got: format!("\"{start}\""),
+                    allowed: "the name of a pose, sequence or reaction".into(),
+                };
+                return Err(self.source.blame(name.span(), field, cause));
+            };
+            if field == "tiles" && pieces.iter().any(|other| other.name == piece.name) {
+                let cause = FileCause::Twice {
+                    name: name.get_ref().clone(),
+                };
+                return Err(self.source.blame(name.span(), field, cause));
+            }
+            pieces.push(piece);
+        }
+        Ok(pieces)
+    }
+
+    /// The pose, else the sequence, else the reaction of this name, the file's own first.
+    fn piece(self, name: &str, limits: MotionLimits) -> Option<Piece> {
+        [self.own, starter()].into_iter().find_map(|library| {
+            let mut entries = library.entries();
+            let is_it = |entry: &_| library.named(*entry).is_some_and(|own| own.text == name);
+            let entry = entries.find(is_it)?;
+            let (names, mut plan) = (library.named(entry)?, library.plan(entry)?);
+            let again = std::mem::take(&mut plan.looped);
+            let zh = match names.zh.is_empty() {
+                true => names.text,
+                false => names.zh,
+            };
+            (!plan.cues.is_empty()).then(|| Piece {
+                name: BothWords {
+                    en: names.text.into(),
+                    zh: zh.into(),
+                },
+                plan: limits.keep(&plan),
+                again,
+            })
+        })
+    }
+
+    /// A limit that lets something move.
+    fn moving<T: Copy + PartialEq>(
+        self,
+        field: &str,
+        got: Option<&Spanned<T>>,
+        usual: T,
+        none: T,
+    ) -> Result<T, FileError> {
+        let Some(got) = got else { return Ok(usual) };
+        if *got.get_ref() == none {
+            let cause = FileCause::Value {
+                got: "0".into(),
+                allowed: "allowed here: nothing could move".into(),
+            };
+            return Err(self.source.blame(got.span(), field, cause));
+        }
+        Ok(*got.get_ref())
+    }
+
+    fn seconds(
+        self,
+        field: &str,
+        got: Option<&Spanned<u64>>,
+        usual: u64,
+    ) -> Result<Duration, FileError> {
+        let Some(got) = got else {
+            return Ok(Duration::from_secs(usual));
+        };
+        if !(5..=3600).contains(got.get_ref()) {
+            let cause = FileCause::Value {
+                got: format!("{}", got.get_ref()),
+                allowed: "a time from 5 to 3600 s".into(),
+            };
+            return Err(self.source.blame(got.span(), field, cause));
+        }
+        Ok(Duration::from_secs(*got.get_ref()))
+    }
+
+    fn line(self, field: &str, got: Option<&Spanned<String>>) -> Result<String, FileError> {
+        let Some(got) = got else {
+            return Ok(String::new());
+        };
+        let text = got.get_ref();
+        if text.chars().count() > TITLE_CHARS_MAX || text.chars().any(char::is_control) {
+            let cause = FileCause::Value {
+                got: format!(
+                    "\"{}…\"",
+                    text.chars().take(20).collect::<String>().escape_debug()
+                ),
+                allowed: format!("one line of at most {TITLE_CHARS_MAX} characters"),
+            };
+            return Err(self.source.blame(got.span(), field, cause));
+        }
+        Ok(text.clone())
+    }
+
+    fn logo(
+        self,
+        got: Option<&Spanned<PathBuf>>,
+        folder: &Path,
+    ) -> Result<Option<PathBuf>, FileError> {
+        let Some(got) = got else { return Ok(None) };
+        let is_png = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("png");
+        if !got.get_ref().extension().is_some_and(is_png) {
+            let cause = FileCause::Value {
+                got: format!("\"{}\"", got.get_ref().display()),
+                allowed: "a file that ends in .png".into(),
+            };
+            return Err(self.source.blame(got.span(), "logo", cause));
+        }
+        Ok(Some(folder.join(got.get_ref())))
+    }
+}

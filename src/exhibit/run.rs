@@ -1,0 +1,642 @@
+//! What happens at an exhibition, and when: touches, the link and heat in, orders out. Sends nothing and reads no clock.
+
+use crate::exhibit::heat::{HeatGovernor, HeatLevel};
+use crate::exhibit::plan::{ExhibitPlan, Piece};
+use crate::hand::{ArmEpoch, Fault, HandSample, Moment};
+use crate::link::{ArmRequest, LinkStatus};
+use crate::poses::player::PlayPlan;
+use crate::record::{Disarmed, LinkState};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A tile that is held this long arms again, where visitors may.
+pub const HELD_FOR: Duration = Duration::from_secs(2);
+/// Faults that may be cleared by themselves …
+const CLEARED_MAX: usize = 3;
+/// … within this time.
+const CLEARED_WITHIN: Duration = Duration::from_secs(600);
+/// A fault that is there so long after clearing was not cleared.
+const CLEARS_WITHIN: Duration = Duration::from_secs(3);
+/// Arming takes a few readings.
+const ARMS_WITHIN: Duration = Duration::from_secs(3);
+/// A visitor who presses nothing for this long has gone.
+const GONE_AFTER: Duration = Duration::from_secs(25);
+/// Between two visitors.
+const NEXT_AFTER: Duration = Duration::from_secs(5);
+/// Between two pieces of the attract loop.
+const PAUSE: Duration = Duration::from_millis(1200);
+/// The least rest of a hand that grew warm.
+const COOLS_FOR: Duration = Duration::from_secs(120);
+
+/// Why the hand stands still until staff come, or a visitor holds a tile where that is allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Calm {
+    /// Nobody armed it since the program started.
+    #[default]
+    NotArmed,
+    /// No hand answers.
+    NoHand,
+    /// It answers again, after it did not.
+    LinkLost,
+    /// Somebody pressed STOP.
+    Stopped,
+    /// A fault that only a person can end, or too many.
+    Fault,
+    /// Another controller talks to the hand.
+    OtherController,
+    /// This computer slept.
+    Slept,
+}
+
+/// What goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Nothing moves, and nothing may.
+    Calm(Calm),
+    /// Nobody is there; the hand is open, or opens.
+    Idle,
+    /// Nobody is there, and the hand shows what it can do.
+    Attract,
+    /// Somebody plays, until then at most.
+    Visit {
+        /// When the next one may.
+        until: Moment,
+    },
+    /// A visitor's time is over; the next one may play then.
+    NextVisitor {
+        /// When.
+        at: Moment,
+    },
+    /// The hand rests open because it grew warm, about until then.
+    Cooling {
+        /// About when.
+        until: Moment,
+    },
+    /// A temperature is unknown, so nothing is played.
+    HeatUnknown,
+    /// A fault is being cleared.
+    Clearing,
+}
+
+/// What the page shows of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExhibitView {
+    /// What goes on.
+    pub stage: Stage,
+    /// The tile that is played.
+    pub tile: Option<usize>,
+    /// The tile that is held, and since when.
+    pub held: Option<(usize, Moment)>,
+    /// The hand goes slowly because it is warm.
+    pub is_slow: bool,
+}
+
+impl Default for ExhibitView {
+    fn default() -> Self {
+        Self {
+            stage: Stage::Calm(Calm::NoHand),
+            tile: None,
+            held: None,
+            is_slow: false,
+        }
+    }
+}
+
+/// What a person does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wish {
+    /// Touches the page, anywhere.
+    Touch,
+    /// Presses a tile.
+    Press(usize),
+    /// Lets go.
+    Release,
+    /// Stops the hand.
+    Stop,
+    /// Staff, with the PIN: arms for the exhibition.
+    Arm,
+    /// Staff, with the PIN: arms no more.
+    Disarm,
+}
+
+/// What is to be done at the hand.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Order {
+    /// Let setpoints pass, with these limits.
+    Arm(ArmRequest),
+    /// Let none pass any more; the hand is open and rests.
+    Disarm,
+    /// Stop the hand, which disarms it.
+    Stop,
+    /// Play this, in place of what is played.
+    Play(PlayPlan),
+    /// End what is played, and hold.
+    Hold,
+    /// Clear what can be cleared.
+    Clear,
+}
+
+/// What the day's report counts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ExhibitEvent {
+    /// Somebody began to play.
+    Visit,
+    /// A visitor started a piece of this name.
+    Piece(String),
+    /// A drive reported this.
+    Fault(Fault),
+    /// The hand had to rest for its heat.
+    Rest,
+    /// Somebody pressed STOP.
+    Stop,
+    /// The link was lost.
+    LinkLost,
+}
+
+/// What is known of the hand now.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen<'a> {
+    /// Where its link stands.
+    pub status: &'a LinkStatus,
+    /// What was read.
+    pub sample: &'a HandSample,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Calm(Calm),
+    Idle,
+    Attract { until: Moment },
+    Visit { until: Moment, tile: Option<usize> },
+    Cooling { until: Moment },
+    Clearing { since: Moment },
+}
+
+/// The motion that is wanted, on its way to the hand.
+#[derive(Debug, Clone, PartialEq)]
+enum Motion {
+    /// Nothing.
+    None,
+    /// This, once the hand is armed; asked for then.
+    Waits {
+        plan: PlayPlan,
+        asked: Option<Moment>,
+    },
+    /// It plays.
+    Plays,
+    /// It was played, then.
+    Done { at: Moment },
+}
+
+/// A running exhibition.
+#[derive(Debug)]
+pub struct ExhibitRun {
+    plan: Arc<ExhibitPlan>,
+    /// A person armed for the exhibition, and nothing ended that since.
+    permitted: bool,
+    phase: Phase,
+    motion: Motion,
+    /// What is played is to be held; and it was told to, and has not ended yet.
+    holds: bool,
+    is_holding: bool,
+    /// The link's arming that was asked for here.
+    epoch: Option<ArmEpoch>,
+    /// The hand is to be stopped.
+    stops: bool,
+    /// Faults are to be cleared.
+    clears: bool,
+    heat: HeatGovernor,
+    level: HeatLevel,
+    /// The last touch or end of something.
+    quiet_since: Moment,
+    /// No attract loop before.
+    attract_from: Moment,
+    /// The next visitor may play then.
+    next_from: Moment,
+    held: Option<(usize, Moment)>,
+    cleared: VecDeque<Moment>,
+    /// Whether the hand answers, and whether it ever did.
+    is_live: bool,
+    was_live: bool,
+    is_faulty: bool,
+    /// The piece of the attract loop that comes next.
+    next_piece: usize,
+    /// How warm the hand was when what plays began.
+    played_at: HeatLevel,
+    events: Vec<ExhibitEvent>,
+}
+
+impl ExhibitRun {
+    /// Begins without a permission to move.
+    #[must_use]
+    pub fn new(plan: Arc<ExhibitPlan>, now: Moment) -> Self {
+        Self {
+            plan,
+            permitted: false,
+            phase: Phase::Calm(Calm::NotArmed),
+            motion: Motion::None,
+            holds: false,
+            is_holding: false,
+            epoch: None,
+            stops: false,
+            clears: false,
+            heat: HeatGovernor::default(),
+            level: HeatLevel::Unknown,
+            quiet_since: now,
+            attract_from: now,
+            next_from: now,
+            held: None,
+            cleared: VecDeque::with_capacity(CLEARED_MAX),
+            is_live: false,
+            was_live: false,
+            is_faulty: false,
+            next_piece: 0,
+            played_at: HeatLevel::Cool,
+            events: Vec::new(),
+        }
+    }
+
+    /// What the page shows.
+    #[must_use]
+    pub fn view(&self, now: Moment) -> ExhibitView {
+        let (stage, tile) = match self.phase {
+            Phase::Calm(why) => (Stage::Calm(why), None),
+            Phase::Cooling { until } => (Stage::Cooling { until }, None),
+            Phase::Clearing { .. } => (Stage::Clearing, None),
+            Phase::Visit { until, tile } => (Stage::Visit { until }, tile),
+            _ if self.level == HeatLevel::Unknown => (Stage::HeatUnknown, None),
+            Phase::Attract { .. } => (Stage::Attract, None),
+            Phase::Idle if now < self.next_from => {
+                let at = self.next_from;
+                (Stage::NextVisitor { at }, None)
+            }
+            Phase::Idle => (Stage::Idle, None),
+        };
+        ExhibitView {
+            stage,
+            tile,
+            held: self.held,
+            is_slow: self.permitted && self.level == HeatLevel::Warm,
+        }
+    }
+
+    /// What happened since the last call.
+    pub fn take_events(&mut self) -> Vec<ExhibitEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Takes in what a person did.
+    pub fn wish(&mut self, wish: Wish, now: Moment) {
+        match wish {
+            Wish::Stop => {
+                self.events.push(ExhibitEvent::Stop);
+                self.calm(Calm::Stopped);
+            }
+            Wish::Disarm => self.calm(Calm::NotArmed),
+            Wish::Arm => self.permit(now),
+            Wish::Touch => self.touch(now),
+            Wish::Release => self.held = None,
+            Wish::Press(tile) => {
+                self.touch(now);
+                if tile < self.plan.tiles.len() {
+                    self.held = Some((tile, now));
+                    self.press(tile, now);
+                }
+            }
+        }
+    }
+
+    /// A person arms for the exhibition; the hand opens.
+    fn permit(&mut self, now: Moment) {
+        if self.is_live {
+            self.permitted = true;
+            self.cleared.clear();
+            self.phase = Phase::Idle;
+            self.rest(now);
+        }
+    }
+
+    /// Nothing moves any more before a person arms again.
+    fn calm(&mut self, why: Calm) {
+        if self.permitted || !matches!(self.phase, Phase::Calm(_)) {
+            self.phase = Phase::Calm(why);
+        }
+        self.permitted = false;
+        // A tile that was held before does not count as held from now on.
+        self.held = None;
+        self.holds = false;
+        self.is_holding = false;
+        self.stops |= self.epoch.take().is_some() || self.motion != Motion::None;
+        self.motion = Motion::None;
+    }
+
+    fn touch(&mut self, now: Moment) {
+        self.quiet_since = now;
+        if matches!(self.phase, Phase::Attract { .. }) {
+            self.begin_visit(now);
+            self.holds = self.motion == Motion::Plays;
+            self.motion = Motion::Done { at: now };
+        }
+    }
+
+    fn begin_visit(&mut self, now: Moment) {
+        self.events.push(ExhibitEvent::Visit);
+        self.phase = Phase::Visit {
+            until: now.plus(self.plan.visit),
+            tile: None,
+        };
+    }
+
+    fn press(&mut self, tile: usize, now: Moment) {
+        if !self.permitted || self.level >= HeatLevel::Hot || now < self.next_from {
+            return;
+        }
+        if self.phase == Phase::Idle {
+            self.begin_visit(now);
+        }
+        let (Phase::Visit { until, .. }, Some(piece)) = (self.phase, self.plan.tiles.get(tile))
+        else {
+            return;
+        };
+        let name = piece.name.en.clone();
+        self.events.push(ExhibitEvent::Piece(name));
+        let tile = Some(tile);
+        self.phase = Phase::Visit { until, tile };
+        self.play_tile(tile);
+    }
+
+    fn play_tile(&mut self, tile: Option<usize>) {
+        let plan = Arc::clone(&self.plan);
+        if let Some(piece) = tile.and_then(|tile| plan.tiles.get(tile)) {
+            self.play(piece);
+        }
+    }
+
+    fn play(&mut self, piece: &Piece) {
+        let plan = match self.level {
+            HeatLevel::Cool => piece.plan.clone(),
+            _ => self.plan.limits.slower().keep(&piece.plan),
+        };
+        self.played_at = self.level;
+        self.motion = Motion::Waits { plan, asked: None };
+    }
+
+    /// The hand opens, and is disarmed then.
+    fn rest(&mut self, now: Moment) {
+        self.quiet_since = now;
+        let plan = self.plan.open.clone();
+        self.motion = Motion::Waits { plan, asked: None };
+    }
+
+    /// What was played is over.
+    pub fn ended(&mut self, now: Moment) {
+        if std::mem::replace(&mut self.is_holding, false) {
+            return;
+        }
+        if self.motion == Motion::Plays {
+            self.motion = Motion::Done { at: now };
+            self.quiet_since = now;
+        }
+    }
+
+    /// Time goes on. What is to be done at the hand, one after the other until nothing is.
+    pub fn tick(&mut self, seen: Seen<'_>, now: Moment) -> Option<Order> {
+        self.heat.take(seen.sample);
+        self.level = self.heat.level(now);
+        self.watch_link(seen.status);
+        self.watch_faults(seen, now);
+        self.watch_held(seen.status, now);
+        if std::mem::take(&mut self.stops) && self.is_live {
+            self.holds = false;
+            self.is_holding = false;
+            return Some(Order::Stop);
+        }
+        if std::mem::take(&mut self.holds) {
+            self.is_holding = true;
+            return Some(Order::Hold);
+        }
+        if std::mem::take(&mut self.clears) {
+            return Some(Order::Clear);
+        }
+        if self.is_holding {
+            return None;
+        }
+        if self.permitted {
+            self.go_on(now);
+        }
+        self.moves(seen.status, now)
+    }
+
+    /// A link that is lost, a stop, or another who talks to the hand ends the permission to move.
+    fn watch_link(&mut self, status: &LinkStatus) {
+        if !status.state.is_live() {
+            if std::mem::replace(&mut self.is_live, false) {
+                self.events.push(ExhibitEvent::LinkLost);
+            }
+            self.calm(Calm::NoHand);
+            self.phase = Phase::Calm(Calm::NoHand);
+            return;
+        }
+        if !std::mem::replace(&mut self.is_live, true) {
+            self.phase = Phase::Calm(match std::mem::replace(&mut self.was_live, true) {
+                true => Calm::LinkLost,
+                false => Calm::NotArmed,
+            });
+            self.held = None;
+        }
+        let is_ours = self.epoch.is_none() || status.armed == self.epoch;
+        let why = match status.disarmed {
+            _ if status.other_controller => Some(Calm::OtherController),
+            _ if status.state == LinkState::Holding => Some(Calm::Stopped),
+            // What can be cleared is looked at next.
+            _ if is_ours || status.state == LinkState::Fault => None,
+            Some(Disarmed::Stop) => Some(Calm::Stopped),
+            Some(Disarmed::Fault) => Some(Calm::Fault),
+            Some(Disarmed::Resume) => Some(Calm::Slept),
+            Some(Disarmed::OtherController) => Some(Calm::OtherController),
+            Some(Disarmed::LinkLost | Disarmed::Stale) => Some(Calm::LinkLost),
+            Some(Disarmed::Person) | None => Some(Calm::NotArmed),
+        };
+        if let Some(why) = why.filter(|_| self.permitted) {
+            self.calm(why);
+        }
+    }
+
+    /// Faults are cleared by themselves where that may be, and need a person where not.
+    fn watch_faults(&mut self, seen: Seen<'_>, now: Moment) {
+        if seen.status.state != LinkState::Fault {
+            self.is_faulty = false;
+            if matches!(self.phase, Phase::Clearing { .. }) {
+                self.phase = Phase::Idle;
+                self.rest(now);
+            }
+            return;
+        }
+        let all = seen.sample.faults.map(|faults| faults.value);
+        let all = all.iter().flat_map(|faults| faults.iter());
+        let faults: Vec<Fault> = all.flat_map(|(_, faults)| faults.iter()).collect();
+        if !std::mem::replace(&mut self.is_faulty, true) {
+            let told = faults.iter().copied().map(ExhibitEvent::Fault);
+            self.events.extend(told);
+        }
+        if !self.permitted {
+            if matches!(self.phase, Phase::Calm(_)) {
+                self.phase = Phase::Calm(Calm::Fault);
+            }
+            return;
+        }
+        if let Phase::Clearing { since } = self.phase
+            && now.since(since) < CLEARS_WITHIN
+        {
+            return;
+        }
+        self.cleared.retain(|at| now.since(*at) < CLEARED_WITHIN);
+        let clearable = faults.iter().all(|fault| fault.clearable() == Some(true));
+        if !clearable || faults.is_empty() || self.cleared.len() >= CLEARED_MAX {
+            self.calm(Calm::Fault);
+            return;
+        }
+        self.cleared.push_back(now);
+        self.phase = Phase::Clearing { since: now };
+        self.clears = true;
+        self.motion = Motion::None;
+        self.epoch = None;
+    }
+
+    /// A tile that is held arms again, where visitors may.
+    fn watch_held(&mut self, status: &LinkStatus, now: Moment) {
+        let is_calm = matches!(self.phase, Phase::Calm(_)) && status.state == LinkState::Monitoring;
+        if let Some((tile, since)) = self.held
+            && self.plan.visitor_restart
+            && is_calm
+            && now.since(since) >= HELD_FOR
+        {
+            self.permit(now);
+            self.press(tile, now);
+        }
+    }
+
+    /// What time and heat change.
+    fn go_on(&mut self, now: Moment) {
+        match self.phase {
+            Phase::Cooling { until } if now < until => {}
+            Phase::Cooling { .. } if self.heat.is_rested(now) => {
+                self.phase = Phase::Idle;
+                self.quiet_since = now;
+            }
+            Phase::Cooling { .. } => {
+                let until = now.plus(COOLS_FOR / 2);
+                self.phase = Phase::Cooling { until };
+            }
+            _ if self.level == HeatLevel::Hot => {
+                self.events.push(ExhibitEvent::Rest);
+                let until = now.plus(COOLS_FOR);
+                self.phase = Phase::Cooling { until };
+                self.rest(now);
+            }
+            Phase::Visit { .. } | Phase::Attract { .. } if self.level == HeatLevel::Unknown => {
+                self.go_idle(now);
+            }
+            Phase::Visit { until, .. } if now >= until => {
+                self.next_from = now.plus(NEXT_AFTER);
+                self.go_idle(now);
+            }
+            Phase::Visit { tile, .. } => self.go_on_visiting(tile, now),
+            Phase::Attract { until } => self.go_on_attracting(until, now),
+            Phase::Idle => self.attract(now),
+            Phase::Calm(_) | Phase::Clearing { .. } => {}
+        }
+    }
+
+    fn go_idle(&mut self, now: Moment) {
+        self.phase = Phase::Idle;
+        self.rest(now);
+    }
+
+    fn go_on_visiting(&mut self, tile: Option<usize>, now: Moment) {
+        let piece = tile.and_then(|tile| self.plan.tiles.get(tile));
+        let again = piece.is_some_and(|piece| piece.again);
+        let reacts = piece.is_some_and(|piece| piece.plan.reaction.is_some());
+        match self.motion {
+            Motion::Done { .. } if again => self.play_tile(tile),
+            Motion::Done { .. } if now.since(self.quiet_since) >= GONE_AFTER => self.go_idle(now),
+            // It has no end of its own at which it would be played more slowly.
+            Motion::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
+            // The hand was not armed in time.
+            Motion::None => self.go_idle(now),
+            _ => {}
+        }
+    }
+
+    fn go_on_attracting(&mut self, until: Moment, now: Moment) {
+        if now >= until || self.motion == Motion::None {
+            let rest = self.plan.attract.as_ref().map(|attract| attract.rest);
+            self.attract_from = now.plus(rest.unwrap_or_default());
+            self.go_idle(now);
+            return;
+        }
+        if let Motion::Done { at } = self.motion
+            && now.since(at) >= PAUSE
+        {
+            self.play_next();
+        }
+    }
+
+    fn attract(&mut self, now: Moment) {
+        let Some(attract) = &self.plan.attract else {
+            return;
+        };
+        let is_quiet = now.since(self.quiet_since) >= attract.after && now >= self.attract_from;
+        if is_quiet && self.motion == Motion::None && self.level < HeatLevel::Hot {
+            let until = now.plus(attract.play);
+            self.phase = Phase::Attract { until };
+            self.play_next();
+        }
+    }
+
+    fn play_next(&mut self) {
+        let plan = Arc::clone(&self.plan);
+        let pieces = plan.attract.iter().flat_map(|attract| &attract.pieces);
+        let count = pieces.clone().count().max(1);
+        let piece = pieces.clone().nth(self.next_piece % count);
+        self.next_piece = (self.next_piece + 1) % count;
+        if let Some(piece) = piece {
+            self.play(piece);
+        }
+    }
+
+    /// Brings the motion that is wanted to the hand.
+    fn moves(&mut self, status: &LinkStatus, now: Moment) -> Option<Order> {
+        let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
+        match &mut self.motion {
+            Motion::Done { .. } if is_resting => {
+                self.motion = Motion::None;
+                self.epoch = None;
+                Some(Order::Disarm)
+            }
+            Motion::None | Motion::Plays | Motion::Done { .. } => None,
+            Motion::Waits { plan, asked } => {
+                if asked.is_some() && status.state == LinkState::Armed {
+                    self.epoch = status.armed;
+                }
+                if self.epoch.is_some() && self.epoch == status.armed {
+                    let plan = plan.clone();
+                    self.motion = Motion::Plays;
+                    return Some(Order::Play(plan));
+                }
+                match *asked {
+                    None if status.state == LinkState::Monitoring && status.armed.is_none() => {
+                        *asked = Some(now);
+                        Some(Order::Arm(self.plan.limits.request()))
+                    }
+                    Some(at) if now.since(at) >= ARMS_WITHIN => {
+                        self.motion = Motion::None;
+                        None
+                    }
+                    _ => None,
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! An exhibition at a hand: the only one that moves it while it lasts. What happens when is decided in `exhibit`; here it is done.
+
+use crate::exhibit::plan::ExhibitPlan;
+use crate::exhibit::run::{ExhibitEvent, ExhibitRun, ExhibitView, Order, Seen, Wish};
+use crate::hand::{HandCommand, HandSample, PerDof, Setpoints};
+use crate::link::Clock;
+use crate::poses::player::{PlayMode, PlayPlan};
+use crate::record::Record;
+use crate::tasks::hand::Hand;
+use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
+use tokio::time::timeout;
+
+/// How often time is looked at where nothing is read.
+const TICK: Duration = Duration::from_millis(50);
+
+/// What an exhibition begins with.
+#[derive(Debug, Clone)]
+pub struct ExhibitStart {
+    /// What may be played.
+    pub plan: Arc<ExhibitPlan>,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ExhibitStep {
+    /// Something else goes on now.
+    View(ExhibitView),
+    /// The hand was told this.
+    Sent(Setpoints),
+    /// Something to be counted.
+    Event(ExhibitEvent),
+}
+
+/// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before a person arms.
+pub async fn exhibit<H: Hand>(
+    hand: &H,
+    start: ExhibitStart,
+    mut wishes: mpsc::Receiver<Wish>,
+    mut tell: impl FnMut(ExhibitStep),
+) {
+    let clock = start.clock;
+    let mut records = hand.records();
+    let (told, mut sent) = mpsc::unbounded_channel();
+    let mut at = AtHand {
+        hand,
+        run: ExhibitRun::new(start.plan, clock.now()),
+        sample: start.seen,
+        playing: None,
+        told,
+        clock,
+    };
+    let mut shown = None;
+    loop {
+        at.obey_all();
+        at.run
+            .take_events()
+            .into_iter()
+            .for_each(|event| tell(ExhibitStep::Event(event)));
+        let view = at.run.view(clock.now());
+        if shown.replace(view) != Some(view) {
+            tell(ExhibitStep::View(view));
+        }
+        tokio::select! {
+            biased;
+            wish = wishes.recv() => match wish {
+                Some(wish) => at.run.wish(wish, clock.now()),
+                None => break,
+            },
+            Some(setpoints) = sent.recv() => tell(ExhibitStep::Sent(setpoints)),
+            () = ended(&mut at.playing) => at.run.ended(clock.now()),
+            record = timeout(TICK, records.next()) => {
+                if let Ok(Some(Record::Reading { sample, .. })) = record {
+                    at.sample = *sample;
+                }
+            }
+        }
+    }
+    if at.playing.is_some() || hand.status().armed.is_some() {
+        hand.stop();
+    }
+}
+
+/// A piece that plays.
+struct PlayingPiece {
+    commands: mpsc::Sender<PlayCommand>,
+    task: JoinHandle<()>,
+}
+
+/// Waits for the end of a piece, for ever if there is none.
+async fn ended(playing: &mut Option<PlayingPiece>) {
+    match playing {
+        Some(piece) => {
+            // However it ended: why is seen at the link.
+            let _end = (&mut piece.task).await;
+            *playing = None;
+        }
+        None => std::future::pending().await,
+    }
+}
+
+struct AtHand<'a, H> {
+    hand: &'a H,
+    run: ExhibitRun,
+    sample: HandSample,
+    playing: Option<PlayingPiece>,
+    told: mpsc::UnboundedSender<Setpoints>,
+    clock: Clock,
+}
+
+impl<H: Hand> AtHand<'_, H> {
+    fn obey_all(&mut self) {
+        loop {
+            let status = self.hand.status();
+            let seen = Seen {
+                status: &status,
+                sample: &self.sample,
+            };
+            match self.run.tick(seen, self.clock.now()) {
+                Some(order) => self.obey(order),
+                None => return,
+            }
+        }
+    }
+
+    fn obey(&mut self, order: Order) {
+        match order {
+            Order::Arm(request) => self.hand.arm(request),
+            Order::Disarm => self.hand.disarm(),
+            Order::Stop => {
+                self.playing = None;
+                self.hand.stop();
+            }
+            Order::Hold => match &self.playing {
+                // It holds where the hand is, and ends; one that has ended already says so anyway.
+                Some(piece) => drop(piece.commands.try_send(PlayCommand::End)),
+                None => self.run.ended(self.clock.now()),
+            },
+            Order::Play(plan) => self.play(plan),
+            Order::Clear => {
+                self.playing = None;
+                let hand = self.hand.clone();
+                // Whether it helped is seen at the link.
+                tokio::spawn(async move { hand.write(HandCommand::ClearErrors).await });
+            }
+        }
+    }
+
+    fn play(&mut self, plan: PlayPlan) {
+        let Some(epoch) = self.hand.status().armed else {
+            return;
+        };
+        let start = PlayStart {
+            plan,
+            pace: PlayMode::Through,
+            epoch,
+            turn: self.hand.take_turn(),
+            locked: PerDof::splat(false),
+            seen: self.sample,
+            clock: self.clock,
+        };
+        let (commands, wanted) = mpsc::channel(1);
+        let (hand, told) = (self.hand.clone(), self.told.clone());
+        let task = tokio::spawn(async move {
+            let tell = |step| {
+                if let PlayStep::Sent(setpoints) = step {
+                    // A receiver that is gone means that nobody wants to know.
+                    let _told = told.send(setpoints);
+                }
+            };
+            let _end = play(&hand, start, wanted, tell).await;
+        });
+        self.playing = Some(PlayingPiece { commands, task });
+    }
+}
