@@ -1,6 +1,7 @@
 //! The window: reads [`crate::app::state::State`], draws it with egui, returns actions. No clock, file, thread or wire.
 
 mod connection;
+mod exhibit;
 mod faults;
 pub(crate) mod hand;
 mod joints;

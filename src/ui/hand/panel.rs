@@ -15,7 +15,7 @@ use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
-use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Id, Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
 /// The drawn hand, turned as a person wants it.
 #[derive(Debug, Clone, Default)]
@@ -51,6 +51,27 @@ impl HandPanel {
             |finger| said(pane, finger),
         ));
         clicked
+    }
+}
+
+/// The drawn hand that nobody turns, over a place of its own.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StillHand(HandView);
+
+impl StillHand {
+    /// Draws it.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &Ui,
+        place: Rect,
+        pane: &Pane<'_>,
+        tips: &PerFinger<Option<Tip>>,
+    ) {
+        let look = pane.look;
+        let response = ui.interact(place, Id::unique("still hand"), Sense::hover());
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
+        self.0.paint(ui, place, look.palette, &picture(pane, tips));
     }
 }
 

@@ -79,21 +79,26 @@ impl HandView {
             lit: joint.or(picture.lit),
             ..*picture
         };
+        self.paint(ui, rect, palette, &picture);
+        (response, joint)
+    }
+
+    /// Draws the hand as it was turned last.
+    pub(crate) fn paint(&mut self, ui: &Ui, rect: Rect, palette: &Palette, picture: &HandPicture) {
         let setting = DrawSettings {
             turn: self.turn(picture.side),
             rect,
             theme: palette.theme,
             feather: 1.0 / ui.pixels_per_point(),
         };
-        if rect.is_positive() && self.drawn != Some((picture, setting)) {
+        if rect.is_positive() && self.drawn != Some((*picture, setting)) {
             let mesh = Arc::make_mut(&mut self.mesh);
-            draw(&mut self.sketch, &picture, &setting, mesh);
-            self.drawn = Some((picture, setting));
+            draw(&mut self.sketch, picture, &setting, mesh);
+            self.drawn = Some((*picture, setting));
         }
         ui.painter()
             .with_clip_rect(rect)
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
-        (response, joint)
     }
 
     pub(crate) fn turn(&self, side: Side) -> Turn {

@@ -7,8 +7,8 @@ use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
-    PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2,
-    WidgetInfo, vec2,
+    PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TouchPhase, Ui,
+    Vec2, WidgetInfo, vec2,
 };
 
 /// Seconds for which a press on what cannot be pressed is answered.
@@ -580,6 +580,12 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
             pos,
             button: PointerButton::Primary,
             pressed: true,
+            ..
+        } => response.rect.contains(*pos),
+        // A second finger on the screen is no pointer.
+        Event::Touch {
+            phase: TouchPhase::Start,
+            pos,
             ..
         } => response.rect.contains(*pos),
         _ => false,

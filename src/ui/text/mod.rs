@@ -3,8 +3,8 @@
 pub(crate) mod cards;
 pub(crate) mod device;
 pub(crate) mod errors;
+pub(crate) mod exhibit;
 pub(crate) mod faults;
-pub(crate) mod keys;
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;

@@ -82,15 +82,15 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, faults, keys, main, panels, poses, scan, sessions, traffic, tune, window,
+        cards, device, exhibit, faults, main, panels, poses, scan, sessions, traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
         let lists = [
             cards::ALL,
             device::ALL,
+            exhibit::ALL,
             faults::ALL,
-            keys::ALL,
             main::ALL,
             panels::ALL,
             poses::ALL,

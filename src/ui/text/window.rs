@@ -1,4 +1,4 @@
-//! Sentences of the window's frame: status line, menu, rooms, and what became of files.
+//! Sentences of the window's frame: status line, menu, rooms, the list of keys, and what became of files.
 
 use crate::ui::text::phrase::texts;
 
@@ -32,4 +32,27 @@ texts! {
     PATH_HINT: "or type the path of the file here", "或在此输入文件路径";
     PATH_NONE: "No path was typed.", "尚未输入路径。";
     PATH_OPEN: "Open path", "打开路径", "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
+
+    KEYS: "Keys", "快捷键", "Shows what each key does.", "显示各个按键的作用。";
+    KEYS_CLOSE: "Close the list of keys", "关闭快捷键列表";
+    KEY_ENTRY: "Fist; so each tile by its letter or digit", "握拳；其他图块按其字母或数字";
+    KEY_STOP: "STOP, from everywhere", "停止（任何时候）";
+    KEY_ARM: "Arm or disarm", "使能或取消使能";
+    KEY_LINK: "Link the fingers", "四指联动";
+    KEY_UNIT: "Unit of angles", "角度单位";
+    KEY_UNDO_TARE: "Take taring back", "撤销去皮";
+    KEY_NOTE: "Write a note", "写备注";
+    KEY_LANGUAGE: "English or Chinese", "中文或英文";
+    KEY_THEME: "Dark or light", "深色或浅色";
+    KEY_LIST: "This list", "本列表";
+    KEY_MOTION: "Motion", "运动";
+    KEY_JOINTS: "Joint that the arrows move", "方向键控制的关节";
+    KEY_MEASURING: "Measuring", "测量";
+    KEY_WINDOW: "Window", "窗口";
+    KEY_ZOOM_IN: "Everything larger", "放大";
+    KEY_ZOOM_OUT: "Everything smaller", "缩小";
+    KEY_ZOOM_RESET: "Original size", "原始大小";
+    KEY_ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
+    KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
+    KEY_ESCAPE: "While the hand rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
 }

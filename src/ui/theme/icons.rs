@@ -42,9 +42,12 @@ pub(crate) const NO_STAR: Icon = icons::ICON_BOOKMARK.codepoint;
 /// More of the same.
 pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 
+/// Takes the last one back.
+pub(crate) const BACKSPACE: Icon = icons::ICON_BACKSPACE.codepoint;
+
 /// All of them.
 #[cfg(test)]
-pub(crate) const ALL: [Icon; 18] = [
+pub(crate) const ALL: [Icon; 19] = [
     TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, DARK,
-    LIGHT, CLOSE, PAUSE, PLAY, STAR, NO_STAR, MORE,
+    LIGHT, CLOSE, PAUSE, PLAY, STAR, NO_STAR, MORE, BACKSPACE,
 ];

@@ -7,7 +7,7 @@ use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
-use crate::ui::text::{Text, faults, keys, main, sessions, words};
+use crate::ui::text::{Text, faults, main, sessions, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
@@ -281,8 +281,8 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View) {
             .icon(icon)
             .weight(Weight::Quiet);
         button.sends(ui, pane, Action::Theme(theme.other()));
-        let list = Button::new("?", look.tip(keys::BUTTON))
-            .named(look.say(keys::BUTTON))
+        let list = Button::new("?", look.tip(window::KEYS))
+            .named(look.say(window::KEYS))
             .weight(Weight::Quiet);
         if list.ui(ui, look).clicked() {
             pane.open(Opens::Keys);

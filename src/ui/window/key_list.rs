@@ -1,7 +1,7 @@
 //! The list of all keys, over the window. It covers neither STOP nor the top bar, and stops nothing itself.
 
 use crate::ui::kit::{self, Button, Label, Look, Weight};
-use crate::ui::text::{Text, keys, main};
+use crate::ui::text::{Text, main, window};
 use crate::ui::theme;
 use crate::ui::window::keys::{ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(keys::BUTTON))
+        let window = Window::new(look.say(window::KEYS))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -61,9 +61,9 @@ impl KeyList {
 
 /// The groups of the list, column by column.
 const COLUMNS: [&[Text]; 3] = [
-    &[keys::MOTION, keys::MEASURING],
-    &[keys::JOINTS],
-    &[keys::WINDOW],
+    &[window::KEY_MOTION, window::KEY_MEASURING],
+    &[window::KEY_JOINTS],
+    &[window::KEY_WINDOW],
 ];
 
 /// The keys of a group, and what they do.
@@ -75,10 +75,10 @@ fn rows(group: Text) -> Vec<(String, Text)> {
         .into_iter()
         .map(|wish| (wish.keys(), wish.words()))
         .collect();
-    if group == keys::MOTION {
-        rows.push(("Shift+F".to_owned(), keys::ENTRY));
+    if group == window::KEY_MOTION {
+        rows.push(("Shift+F".to_owned(), window::KEY_ENTRY));
     }
-    if group == keys::WINDOW {
+    if group == window::KEY_WINDOW {
         rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
     }
     rows
@@ -87,9 +87,11 @@ fn rows(group: Text) -> Vec<(String, Text)> {
 /// True if it is to be hidden.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(keys::BUTTON), |ui| {
+    let shut = kit::head_ui(ui, look, look.say(window::KEYS), |ui| {
         let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
-        shut.named(look.say(keys::CLOSE)).ui(ui, look).clicked()
+        shut.named(look.say(window::KEYS_CLOSE))
+            .ui(ui, look)
+            .clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(COLUMNS) {
@@ -108,7 +110,11 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
             }
         }
     });
-    for text in [keys::ON_TRACKS, keys::IN_FIELDS, keys::ESCAPE] {
+    for text in [
+        window::KEY_ON_TRACKS,
+        window::KEY_IN_FIELDS,
+        window::KEY_ESCAPE,
+    ] {
         Label::note(look, text).ui(ui);
     }
     shut

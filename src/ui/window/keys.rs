@@ -4,7 +4,7 @@
 use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::Opens;
-use crate::ui::text::{Text, keys, main, panels, words};
+use crate::ui::text::{Text, main, panels, window, words};
 use crate::ui::view::View;
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
@@ -116,14 +116,14 @@ pub(crate) static ROWS: [KeyRow; 32] = [
 /// The keys with which egui itself makes everything larger and smaller.
 pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
     true => [
-        ("Cmd++", keys::ZOOM_IN),
-        ("Cmd+-", keys::ZOOM_OUT),
-        ("Cmd+0", keys::ZOOM_RESET),
+        ("Cmd++", window::KEY_ZOOM_IN),
+        ("Cmd+-", window::KEY_ZOOM_OUT),
+        ("Cmd+0", window::KEY_ZOOM_RESET),
     ],
     false => [
-        ("Ctrl++", keys::ZOOM_IN),
-        ("Ctrl+-", keys::ZOOM_OUT),
-        ("Ctrl+0", keys::ZOOM_RESET),
+        ("Ctrl++", window::KEY_ZOOM_IN),
+        ("Ctrl+-", window::KEY_ZOOM_OUT),
+        ("Ctrl+0", window::KEY_ZOOM_RESET),
     ],
 };
 
@@ -160,23 +160,23 @@ impl Wish {
     /// What it does, in words.
     pub(crate) const fn words(self) -> Text {
         match self {
-            Self::Stop => keys::STOP,
-            Self::ArmOrNot => keys::ARM,
+            Self::Stop => window::KEY_STOP,
+            Self::ArmOrNot => window::KEY_ARM,
             Self::Open => main::OPEN,
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
-            Self::Entry(_) => keys::ENTRY,
+            Self::Entry(_) => window::KEY_ENTRY,
             Self::Joint(dof) => words::dof(dof),
-            Self::LinkFingers => keys::LINK,
-            Self::AngleUnit => keys::UNIT,
+            Self::LinkFingers => window::KEY_LINK,
+            Self::AngleUnit => window::KEY_UNIT,
             Self::Tare => panels::TARE_ALL,
-            Self::UndoTare => keys::UNDO_TARE,
+            Self::UndoTare => window::KEY_UNDO_TARE,
             Self::Pause => panels::PAUSE_NAME,
-            Self::Language => keys::LANGUAGE,
-            Self::Theme => keys::THEME,
+            Self::Language => window::KEY_LANGUAGE,
+            Self::Theme => window::KEY_THEME,
             Self::Opens(Opens::View(view)) => view.title(),
-            Self::Opens(Opens::Note) => keys::NOTE,
-            Self::Opens(Opens::Keys) => keys::LIST,
+            Self::Opens(Opens::Note) => window::KEY_NOTE,
+            Self::Opens(Opens::Keys) => window::KEY_LIST,
             Self::Opens(Opens::Drive(dof)) => words::dof(dof),
             Self::Opens(Opens::Faults) => View::Faults.title(),
         }
@@ -190,10 +190,12 @@ impl Wish {
             | Self::Open
             | Self::Half
             | Self::Close
-            | Self::Entry(_) => keys::MOTION,
-            Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => keys::JOINTS,
-            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => keys::MEASURING,
-            Self::Opens(_) | Self::Language | Self::Theme => keys::WINDOW,
+            | Self::Entry(_) => window::KEY_MOTION,
+            Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => window::KEY_JOINTS,
+            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => {
+                window::KEY_MEASURING
+            }
+            Self::Opens(_) | Self::Language | Self::Theme => window::KEY_WINDOW,
         }
     }
 

@@ -34,6 +34,7 @@ use crate::app::trials::TrialAction;
 use crate::hand::Moment;
 
 use crate::ui::connection::ConnectionForm;
+use crate::ui::exhibit::{self, ExhibitPage};
 use crate::ui::faults::{self, FaultsView};
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
@@ -95,6 +96,8 @@ pub struct Window {
     tune: TuneView,
     compare: CompareView,
     sessions: SessionsView,
+    /// The page that is shown in place of all else.
+    exhibit: Option<ExhibitPage>,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -132,8 +135,19 @@ impl Window {
 
     /// Draws the window over all of `ui` and returns what the person asked for, stop first.
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
+        if let Some(exhibit) = &state.exhibit {
+            self.install_if_changed(ui, state);
+            let page = self.exhibit.get_or_insert_default();
+            return page.ui(ui, state, exhibit);
+        }
         // What is kept holds from the second frame on.
-        let zoomed = self.installed.and_then(|_| zoomed(ui, state));
+        let zoomed = match self.exhibit.take() {
+            Some(_) => {
+                exhibit::leave(ui.ctx(), state.settings.zoom);
+                None
+            }
+            None => self.installed.and_then(|_| zoomed(ui, state)),
+        };
         self.install_if_changed(ui, state);
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);

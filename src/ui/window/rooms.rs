@@ -2,9 +2,10 @@
 //! Where they stand is kept in the settings.
 
 use crate::app::action::Action;
+use crate::app::exhibit::ExhibitAction;
 use crate::app::layout::{Layout, RoomLayout, WindowRoom};
 use crate::ui::kit::{Button, Pane, Weight};
-use crate::ui::text::{Text, main, window};
+use crate::ui::text::{Text, exhibit, main, window};
 use crate::ui::theme;
 use egui::{Frame, Margin, Panel, Popup, Ui};
 
@@ -137,6 +138,16 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let reset = ui.button(look.say(window::RESET));
         if reset.on_hover_text(look.tip(window::RESET)).clicked() {
             after = before.reset();
+        }
+        ui.separator();
+        for (text, action) in [
+            (exhibit::ENTER, ExhibitAction::Enter),
+            (exhibit::ENTER_FILE, ExhibitAction::EnterFile),
+        ] {
+            let button = ui.button(look.say(text));
+            if button.on_hover_text(look.tip(text)).clicked() {
+                pane.actions.push(Action::Exhibit(action));
+            }
         }
         if after != before {
             pane.actions.push(Action::Layout(after));

@@ -1,0 +1,172 @@
+//! Texts and buttons that are read from two metres away: as large as the screen allows.
+
+use crate::ui::kit::{self, Label, Look, Weight};
+use crate::ui::theme::{self, Icon};
+use egui::{
+    Align2, Color32, FontId, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo,
+    vec2,
+};
+
+/// No text is smaller, points.
+const FONT_LEAST: f32 = 14.0;
+/// A text that does not fit is made smaller down to this part, and only then cut.
+const SHRINK_TO: f32 = 0.6;
+
+/// Colours, language and the scale of the page.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PageLook {
+    /// Colours and language.
+    pub(crate) look: Look,
+    /// Points of a unit.
+    pub(crate) unit: f32,
+}
+
+impl PageLook {
+    /// A font of this size in units.
+    pub(crate) fn font(self, size: f32) -> FontId {
+        FontId::proportional((size * self.unit).max(FONT_LEAST))
+    }
+
+    /// The largest font up to this size in which a text fits.
+    fn fit(self, ui: &Ui, text: &str, (size, width): (f32, f32)) -> FontId {
+        let font = self.font(size);
+        let wide = kit::text_width(ui, text, font.clone());
+        // A little less, for widths that are rounded.
+        let part = ((width - 1.0) / wide.max(1.0)).clamp(SHRINK_TO, 1.0);
+        FontId::proportional((font.size * part).max(FONT_LEAST))
+    }
+
+    /// Paints a text of this size in units on one line.
+    pub(crate) fn paint(self, ui: &Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
+        let font = self.fit(ui, text, (size, rect.width()));
+        let label = Label::new(text, color).font(font);
+        label.center().paint(ui, rect);
+    }
+
+    /// A text of this size in units on one line, from the left.
+    pub(crate) fn line(self, ui: &mut Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
+        let font = self.fit(ui, text, (size, rect.width()));
+        Label::new(text, color).font(font).put(ui, rect);
+    }
+
+    /// A text of this size in units over as many lines as it needs, from the top.
+    pub(crate) fn lines(self, ui: &mut Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
+        let builder = UiBuilder::new().max_rect(rect);
+        ui.scope_builder(builder, |ui| {
+            let label = Label::new(text, color).font(self.font(size));
+            label.wrap().ui(ui);
+        });
+    }
+
+    /// The ground of a part of the page.
+    pub(crate) fn card(self, ui: &Ui, rect: Rect) {
+        let palette = self.look.palette;
+        let edge = Stroke::new(1.0, palette.edge);
+        let round = 16.0 * self.unit;
+        ui.painter()
+            .rect(rect, round, palette.card, edge, StrokeKind::Inside);
+    }
+
+    /// Words on a coloured ground, as high as `rect` and no wider than it; `to_right` of it.
+    pub(crate) fn badge(
+        self,
+        ui: &mut Ui,
+        (rect, side): (Rect, Align2),
+        text: &str,
+        (fill, color): (Color32, Color32),
+    ) {
+        let font = self.font(24.0);
+        let wide = kit::text_width(ui, text, font.clone()) + 36.0 * self.unit;
+        let size = vec2(wide.min(rect.width()), rect.height());
+        let place = side.align_size_within_rect(size, rect);
+        ui.painter().rect_filled(place, place.height() / 2.0, fill);
+        Label::new(text, color).font(font).center().put(ui, place);
+    }
+}
+
+/// A large button.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LargeButton<'a> {
+    /// What it says.
+    pub(crate) words: &'a str,
+    /// What it says below in smaller letters.
+    pub(crate) note: &'a str,
+    /// A sign in place of the words, which stay its name.
+    pub(crate) icon: Option<Icon>,
+    /// Size of its words in units.
+    pub(crate) size: f32,
+    /// How it looks.
+    pub(crate) weight: Weight,
+    /// Why it cannot be pressed now.
+    pub(crate) disabled: Option<&'a str>,
+}
+
+impl<'a> LargeButton<'a> {
+    /// An ordinary one.
+    pub(crate) const fn new(words: &'a str) -> Self {
+        Self {
+            words,
+            note: "",
+            icon: None,
+            size: 32.0,
+            weight: Weight::Normal,
+            disabled: None,
+        }
+    }
+
+    /// Draws it; true in the frame in which it is pressed.
+    pub(crate) fn ui(self, ui: &Ui, page: PageLook, rect: Rect) -> bool {
+        let enabled = self.disabled.is_none() && ui.is_enabled();
+        let sense = match enabled {
+            true => Sense::click(),
+            false => Sense::hover(),
+        };
+        let response = ui.interact(rect, Id::unique(("large", self.words)), sense);
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, self.words));
+        if let Some(reason) = self.disabled {
+            ui.ctx()
+                .accesskit_node_builder(response.id, |node| node.set_description(reason));
+        }
+        let (fill, edge, color) = self.colors(page.look, response.is_pointer_button_down_on());
+        let round = 12.0 * page.unit;
+        let edge = Stroke::new((2.0 * page.unit).max(1.0), edge);
+        ui.painter()
+            .rect(rect, round, fill, edge, StrokeKind::Inside);
+        let inner = rect.shrink(8.0 * page.unit);
+        match (self.icon, self.note) {
+            (Some(icon), _) => {
+                let font = theme::icon_high(self.size * page.unit);
+                let center = Align2::CENTER_CENTER;
+                ui.painter().text(rect.center(), center, icon, font, color);
+            }
+            (None, "") => page.paint(ui, inner, (self.words, self.size), color),
+            (None, note) => {
+                let (upper, lower) = inner.split_top_bottom_at_fraction(0.62);
+                page.paint(ui, upper, (self.words, self.size), color);
+                page.paint(ui, lower, (note, 28.0), color);
+            }
+        }
+        self.disabled.is_none() && kit::pressed(ui, &response)
+    }
+
+    /// Ground, edge and words.
+    fn colors(self, look: Look, is_down: bool) -> (Color32, Color32, Color32) {
+        let palette = look.palette;
+        let ground = match is_down {
+            true => palette.control_hover,
+            false => palette.control,
+        };
+        if self.disabled.is_some() {
+            return (palette.card, palette.edge, palette.faint);
+        }
+        match self.weight {
+            Weight::Stop if is_down => (palette.stop_hover, palette.stop_edge, palette.on_strong),
+            Weight::Stop => (palette.stop, palette.stop_edge, palette.on_strong),
+            Weight::Strong => (palette.accent, palette.accent, palette.on_accent),
+            Weight::Armed => (palette.armed, palette.armed, palette.on_armed),
+            Weight::Quiet => (Color32::TRANSPARENT, Color32::TRANSPARENT, palette.muted),
+            Weight::Danger => (ground, palette.bad, palette.bad),
+            Weight::Normal | Weight::Chosen => (ground, palette.edge, palette.text),
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! What staff see over the page: the PIN, then arming, disarming, leaving, and the day's figures.
+
+use crate::app::action::Action;
+use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
+use crate::exhibit::pin::PinAnswer;
+use crate::exhibit::run::{Stage, Wish};
+use crate::ui::exhibit::keypad::Keypad;
+use crate::ui::exhibit::large::{LargeButton, PageLook};
+use crate::ui::exhibit::places::{PagePlaces, above};
+use crate::ui::kit::{Label, Look, Pane, Weight};
+use crate::ui::text::{Text, exhibit};
+use egui::{Key, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use std::mem::Discriminant;
+
+/// How much of the page is seen through the veil.
+const VEIL: f32 = 0.86;
+
+/// What was typed by staff.
+#[derive(Debug, Default)]
+pub(crate) struct StaffView {
+    keypad: Keypad,
+    shown: Option<Discriminant<StaffPanel>>,
+}
+
+/// What stands above the keys of the pad.
+struct PadWords {
+    title: Text,
+    note: String,
+    is_bad: bool,
+    locked: bool,
+    can_cancel: bool,
+}
+
+impl StaffView {
+    /// Draws what is open; `keys` are those of a real keyboard.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        exhibit: &ExhibitState,
+        (places, keys): (&PagePlaces, &[Key]),
+    ) {
+        let kind = std::mem::discriminant(&exhibit.staff);
+        if self.shown.replace(kind) != Some(kind) {
+            self.keypad.clear();
+        }
+        if exhibit.staff == StaffPanel::Closed {
+            return;
+        }
+        let veil = pane.look.palette.window.gamma_multiply(VEIL);
+        ui.painter().rect_filled(places.whole, 0.0, veil);
+        let page = PageLook {
+            look: pane.look,
+            unit: places.unit,
+        };
+        match pad_words(pane, exhibit) {
+            Some(words) => {
+                let room = card_rect(places, vec2(620.0, 860.0));
+                let typed = self.pad_ui(ui, page, (room, &words), pane);
+                let by_key = keys.iter().filter_map(|key| self.keypad.key(*key)).last();
+                let typed = typed.or(by_key);
+                let enter = |typed| Action::Exhibit(ExhibitAction::Pin(typed));
+                pane.actions.extend(typed.map(enter));
+            }
+            None => open_ui(
+                ui,
+                page,
+                pane,
+                (exhibit, card_rect(places, vec2(1100.0, 760.0))),
+            ),
+        }
+    }
+
+    fn pad_ui(
+        &mut self,
+        ui: &mut Ui,
+        page: PageLook,
+        (rect, words): (Rect, &PadWords),
+        pane: &mut Pane<'_>,
+    ) -> Option<String> {
+        let (look, unit) = (page.look, page.unit);
+        let inner = card_ui(ui, page, (rect, words.title));
+        let (title, rest) = above(inner, 56.0 * unit, 4.0 * unit);
+        page.line(ui, title, (look.say(words.title), 38.0), look.palette.text);
+        let (note, rest) = above(rest, 44.0 * unit, 0.0);
+        let color = match words.is_bad {
+            true => look.palette.bad,
+            false => look.palette.muted,
+        };
+        page.line(ui, note, (&words.note, 28.0), color);
+        let last = 84.0 * unit;
+        let keys = match words.can_cancel {
+            true => rest.with_max_y(rest.bottom() - last - 16.0 * unit),
+            false => rest,
+        };
+        let locked = words.locked.then_some(words.note.as_str());
+        let typed = self.keypad.ui(ui, page, keys, locked);
+        if words.can_cancel {
+            let cancel = LargeButton::new(look.say(exhibit::CANCEL));
+            let place = rest.with_min_y(rest.bottom() - last);
+            if cancel.ui(ui, page, place) {
+                pane.actions
+                    .push(Action::Exhibit(ExhibitAction::CloseStaff));
+            }
+        }
+        typed
+    }
+}
+
+/// A card of this size in units in the middle, as far as there is room.
+fn card_rect(places: &PagePlaces, size: egui::Vec2) -> Rect {
+    let room = places.staff();
+    Rect::from_center_size(room.center(), (size * places.unit).min(room.size()))
+}
+
+/// The ground of a card; the place in it.
+fn card_ui(ui: &mut Ui, page: PageLook, (rect, title): (Rect, Text)) -> Rect {
+    let response = ui.allocate_rect(rect, Sense::hover());
+    let name = page.look.say(title);
+    response.widget_info(|| WidgetInfo::labeled(Role::Dialog, true, name));
+    page.card(ui, rect);
+    rect.shrink(28.0 * page.unit)
+}
+
+/// What the pad says; nothing once the PIN was right.
+fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
+    let look = pane.look;
+    let plain = |title, note: Text| PadWords {
+        title,
+        note: look.say(note).to_owned(),
+        is_bad: false,
+        locked: false,
+        can_cancel: false,
+    };
+    let bad = |title, note| PadWords {
+        note,
+        is_bad: true,
+        ..plain(title, title)
+    };
+    Some(match &exhibit.staff {
+        StaffPanel::Closed | StaffPanel::Open { .. } => return None,
+        StaffPanel::Choose { first: Some(_), .. } => {
+            plain(exhibit::PIN_AGAIN, exhibit::PIN_CHOOSE_NOTE)
+        }
+        StaffPanel::Choose { refused: true, .. } => bad(
+            exhibit::PIN_CHOOSE,
+            look.say(exhibit::PIN_REFUSED).to_owned(),
+        ),
+        StaffPanel::Choose { .. } => plain(exhibit::PIN_CHOOSE, exhibit::PIN_CHOOSE_NOTE),
+        StaffPanel::Ask { answer, .. } => PadWords {
+            can_cancel: true,
+            ..match answer {
+                Some(PinAnswer::Wrong { left }) => {
+                    bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_WRONG, &[left]))
+                }
+                Some(PinAnswer::Locked { until }) if *until > pane.state.now => {
+                    let left = until.since(pane.state.now).as_millis().div_ceil(1000);
+                    PadWords {
+                        locked: true,
+                        ..bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_LOCKED, &[&left]))
+                    }
+                }
+                _ => plain(exhibit::PIN_ASK, exhibit::PIN_CHOOSE_NOTE),
+            }
+        },
+    })
+}
+
+/// What staff do once the PIN was right.
+fn open_ui(
+    ui: &mut Ui,
+    page: PageLook,
+    pane: &mut Pane<'_>,
+    (exhibit, rect): (&ExhibitState, Rect),
+) {
+    let (look, unit) = (page.look, page.unit);
+    let gap = 18.0 * unit;
+    let inner = card_ui(ui, page, (rect, exhibit::STAFF));
+    let (title, rest) = above(inner, 56.0 * unit, gap);
+    page.line(
+        ui,
+        title,
+        (look.say(exhibit::STAFF), 38.0),
+        look.palette.text,
+    );
+    let (left, right) = rest.split_left_right_at_fraction(0.54);
+    figures_ui(
+        ui,
+        page,
+        right.with_min_x(right.left() + 2.0 * gap),
+        exhibit,
+    );
+    let is_calm = matches!(exhibit.view.stage, Stage::Calm(_));
+    let no_hand = !pane.state.hand().link.state.is_live();
+    let arm = LargeButton {
+        note: look.say(exhibit::ARM_NOTE),
+        size: 48.0,
+        weight: Weight::Armed,
+        disabled: no_hand.then(|| look.say(exhibit::ARM_NO_HAND)),
+        ..LargeButton::new(look.say(exhibit::ARM))
+    };
+    let disarm = LargeButton {
+        disabled: is_calm.then(|| look.say(exhibit::DISARM_NOTHING)),
+        ..LargeButton::new(look.say(exhibit::DISARM))
+    };
+    let leave = LargeButton {
+        weight: Weight::Danger,
+        ..LargeButton::new(look.say(exhibit::LEAVE))
+    };
+    let close = LargeButton::new(look.say(exhibit::CLOSE));
+    let (large, small) = split(left, gap);
+    let all = [
+        (arm, large, ExhibitAction::Wish(Wish::Arm)),
+        (disarm, small[0], ExhibitAction::Wish(Wish::Disarm)),
+        (leave, small[1], ExhibitAction::Leave),
+        (close, small[2], ExhibitAction::CloseStaff),
+    ];
+    for (button, place, action) in all {
+        if button.ui(ui, page, place) {
+            pane.actions.push(Action::Exhibit(action));
+        }
+    }
+}
+
+/// A large place over three smaller ones.
+fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
+    let (large, rest) = above(rect, rect.height() * 0.34, gap);
+    let high = (rest.height() - 2.0 * gap) / 3.0;
+    let (first, rest) = above(rest, high, gap);
+    let (second, third) = above(rest, high, gap);
+    (large, [first, second, third])
+}
+
+/// What was counted today.
+fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
+    let (look, report) = (page.look, &exhibit.report);
+    let rows: [(Text, u64); 5] = [
+        (exhibit::VISITS, report.visits),
+        (exhibit::PIECES, report.pieces.values().sum()),
+        (exhibit::RESTS, report.rests),
+        (exhibit::FAULTS, report.faults.values().sum()),
+        (exhibit::STOPS, report.stops),
+    ];
+    let high = rect.height() / 6.0;
+    let (head, mut rest) = above(rect, high, 0.0);
+    page.line(
+        ui,
+        head,
+        (look.say(exhibit::TODAY), 30.0),
+        look.palette.muted,
+    );
+    for (text, count) in rows {
+        let (row, below) = above(rest, high, 0.0);
+        rest = below;
+        figure_ui(ui, page, row, (look, text, count));
+    }
+}
+
+fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (look, text, count): (Look, Text, u64)) {
+    let palette = look.palette;
+    let line = egui::Stroke::new(1.0, palette.edge);
+    ui.painter().hline(row.x_range(), row.top(), line);
+    let (name, figure) = row.split_left_right_at_fraction(0.72);
+    page.line(ui, name, (look.say(text), 30.0), palette.text);
+    let count = count.to_string();
+    let label = Label::new(&count, palette.text).font(page.font(34.0));
+    label.right().named(look.say(text)).put(ui, figure);
+}

@@ -1,0 +1,151 @@
+//! What goes on, in words: for visitors in large letters, for staff below them; and why a tile does nothing now.
+
+use crate::app::exhibit::ExhibitState;
+use crate::app::notices::NoticeKind;
+use crate::app::state::State;
+use crate::exhibit::run::{Calm, Stage};
+use crate::record::{Hold, LinkState};
+use crate::ui::exhibit::large::PageLook;
+use crate::ui::kit::{Look, Pane};
+use crate::ui::text::{Text, exhibit, main, window};
+use egui::{Color32, CornerRadius, ProgressBar, Rect, Ui, UiBuilder, WidgetInfo};
+use std::time::Duration;
+
+/// A minute, for what is told in minutes.
+const MINUTE: Duration = Duration::from_secs(60);
+
+/// What is said of a stage.
+struct StageWords {
+    title: String,
+    note: &'static str,
+    color: Color32,
+    /// How much of the time to play is left.
+    left: Option<f32>,
+}
+
+/// Whether a tile that is held arms again now.
+pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
+    matches!(exhibit.view.stage, Stage::Calm(_))
+        && exhibit.plan.visitor_restart
+        && state.hand().link.state == LinkState::Monitoring
+}
+
+/// Why pressing a tile does nothing now.
+pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) -> Option<String> {
+    let said = |text| Some(look.say(text).to_owned());
+    match exhibit.view.stage {
+        Stage::Calm(_) if restarts(state, exhibit) => None,
+        Stage::Calm(why) => said(exhibit::calm(why)),
+        Stage::Idle | Stage::Attract | Stage::Visit { .. } => None,
+        Stage::NextVisitor { .. } => said(exhibit::NEXT_NOTE),
+        Stage::Cooling { .. } => said(exhibit::COOLING_NOTE),
+        Stage::HeatUnknown => said(exhibit::HEAT_UNKNOWN),
+        Stage::Clearing => said(exhibit::CLEARING),
+    }
+}
+
+/// The words on their card.
+pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, exhibit: &ExhibitState, place: PageWords) {
+    let PageWords { page, rect } = place;
+    let (look, unit) = (page.look, page.unit);
+    let words = trouble(look, pane.state).unwrap_or_else(|| stage_words(look, pane.state, exhibit));
+    page.card(ui, rect);
+    let bar = rect.with_max_x(rect.left() + 12.0 * unit).shrink(1.0);
+    let round = CornerRadius {
+        nw: CornerRadius::from(16.0 * unit).nw,
+        sw: CornerRadius::from(16.0 * unit).sw,
+        ..CornerRadius::ZERO
+    };
+    ui.painter().rect_filled(bar, round, words.color);
+    let inner = rect.with_min_x(bar.right()).shrink(18.0 * unit);
+    let (title, note) = inner.split_top_bottom_at_y(inner.top() + 62.0 * unit);
+    let color = look.palette.text;
+    page.line(ui, title, (&words.title, 50.0), color);
+    let note = note.with_min_y(note.top() + 6.0 * unit);
+    page.lines(ui, note, (words.note, 30.0), look.palette.muted);
+    if let Some(left) = words.left {
+        let bar = note.with_min_y(note.bottom() - 12.0 * unit);
+        left_ui(ui, page, bar, left);
+    }
+}
+
+/// Where the words stand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PageWords {
+    /// The scale of the page.
+    pub(crate) page: PageLook,
+    /// The place.
+    pub(crate) rect: Rect,
+}
+
+/// The time to play that is left.
+fn left_ui(ui: &mut Ui, page: PageLook, rect: Rect, left: f32) {
+    let builder = UiBuilder::new().max_rect(rect);
+    ui.scope_builder(builder, |ui| {
+        let bar = ProgressBar::new(left).fill(page.look.palette.accent);
+        let response = ui.add(bar.desired_height(rect.height()));
+        response.widget_info(|| {
+            let name = page.look.say(exhibit::PLAY_TIME);
+            WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
+        });
+    });
+}
+
+/// A stop that did not reach the hand goes before all else.
+fn trouble(look: Look, state: &State) -> Option<StageWords> {
+    let told = |text: Text| StageWords {
+        title: look.say(text).to_owned(),
+        note: look.tip(text),
+        color: look.palette.bad,
+        left: None,
+    };
+    let mut notices = state.notices.iter();
+    if notices.any(|notice| notice.what == NoticeKind::StopNotSent) {
+        return Some(told(window::STOP_NOT_SENT));
+    }
+    matches!(state.hand().link.hold, Hold::Alarm { .. }).then(|| told(main::ALARM_TITLE))
+}
+
+fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords {
+    let palette = look.palette;
+    let (accent, warn) = (palette.accent, palette.warn);
+    let said = |(title, note): (Text, Text), color| StageWords {
+        title: look.say(title).to_owned(),
+        note: look.say(note),
+        color,
+        left: None,
+    };
+    match exhibit.view.stage {
+        Stage::Calm(why) => {
+            let title = match restarts(state, exhibit) {
+                true => exhibit::HOLD,
+                false => exhibit::MOMENT,
+            };
+            let color = match why {
+                Calm::NotArmed => accent,
+                _ => warn,
+            };
+            said((title, exhibit::calm(why)), color)
+        }
+        Stage::Idle => said((exhibit::IDLE, exhibit::IDLE_NOTE), accent),
+        Stage::Attract => said((exhibit::ATTRACT, exhibit::ATTRACT_NOTE), accent),
+        Stage::Visit { until } => {
+            let (left, all) = (until.since(state.now), exhibit.plan.visit);
+            StageWords {
+                left: Some(left.as_secs_f32() / all.as_secs_f32().max(1.0)),
+                ..said((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok)
+            }
+        }
+        Stage::NextVisitor { .. } => said((exhibit::NEXT, exhibit::NEXT_NOTE), accent),
+        Stage::Cooling { until } => {
+            let left = until.since(state.now).as_millis();
+            let minutes = left.div_ceil(MINUTE.as_millis()).max(1);
+            StageWords {
+                title: look.fill(exhibit::COOLING, &[&minutes]),
+                ..said((exhibit::COOLING, exhibit::COOLING_NOTE), warn)
+            }
+        }
+        Stage::HeatUnknown => said((exhibit::HEAT_UNKNOWN, exhibit::HEAT_UNKNOWN_NOTE), warn),
+        Stage::Clearing => said((exhibit::CLEARING, exhibit::CLEARING_NOTE), warn),
+    }
+}

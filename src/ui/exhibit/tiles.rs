@@ -1,0 +1,149 @@
+//! The tiles: what visitors may press. A press counts when the finger comes down.
+
+use crate::app::action::Action;
+use crate::app::exhibit::{ExhibitAction, ExhibitState};
+use crate::app::settings::Language;
+use crate::exhibit::plan::{BothWords, Piece};
+use crate::exhibit::run::{HELD_FOR, Wish};
+use crate::ui::exhibit::large::PageLook;
+use crate::ui::exhibit::places::{NAME, PagePlaces};
+use crate::ui::exhibit::stage;
+use crate::ui::hand::panel;
+use crate::ui::kit::{self, Pane};
+use egui::{Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+
+/// How much is left of the picture on a tile that does nothing.
+const PALE: f32 = 0.4;
+
+/// Words in the language of the page.
+pub(crate) fn words_of(words: &BothWords, language: Language) -> &str {
+    match language {
+        Language::En => &words.en,
+        Language::Zh => &words.zh,
+    }
+}
+
+/// A tile and what it shows.
+struct Tile<'a> {
+    index: usize,
+    piece: &'a Piece,
+    rect: Rect,
+    refusal: Option<&'a str>,
+    /// How long it was held, as a part of what is wanted, where that does something.
+    held: Option<f32>,
+    plays: bool,
+}
+
+/// All tiles. True if one was pressed.
+pub(crate) fn tiles_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    exhibit: &ExhibitState,
+    places: &PagePlaces,
+) -> bool {
+    let page = PageLook {
+        look: pane.look,
+        unit: places.unit,
+    };
+    let refusal = stage::tile_refusal(pane.look, pane.state, exhibit);
+    let restarts = stage::restarts(pane.state, exhibit);
+    let tiles = &exhibit.plan.tiles;
+    let mut pressed = None;
+    for ((index, piece), rect) in tiles.iter().enumerate().zip(places.tile_rects(tiles.len())) {
+        let held = exhibit
+            .view
+            .held
+            .filter(|(held, _)| *held == index && restarts);
+        let part = |since| pane.state.now.since(since).as_secs_f32() / HELD_FOR.as_secs_f32();
+        let tile = Tile {
+            index,
+            piece,
+            rect,
+            refusal: refusal.as_deref(),
+            held: held.map(|(_, since)| part(since).min(1.0)),
+            plays: exhibit.view.tile == Some(index),
+        };
+        if tile.ui(ui, page) {
+            pressed = Some(index);
+        }
+    }
+    pane.actions.extend(pressed.map(press));
+    pressed.is_some()
+}
+
+fn press(tile: usize) -> Action {
+    Action::Exhibit(ExhibitAction::Wish(Wish::Press(tile)))
+}
+
+impl Tile<'_> {
+    /// Draws it; true in the frame in which it is pressed.
+    fn ui(&self, ui: &mut Ui, page: PageLook) -> bool {
+        let Self { rect, .. } = *self;
+        let (palette, unit) = (page.look.palette, page.unit);
+        let name = words_of(&self.piece.name, page.look.language);
+        let enabled = self.refusal.is_none() && ui.is_enabled();
+        let sense = match enabled {
+            true => Sense::click(),
+            false => Sense::hover(),
+        };
+        let response = ui.interact(rect, Id::unique(("exhibit tile", self.index)), sense);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, self.plays, name));
+        if let Some(reason) = self.refusal {
+            ui.ctx()
+                .accesskit_node_builder(response.id, |node| node.set_description(reason));
+        }
+        let is_down = response.is_pointer_button_down_on();
+        let (fill, edge, color) = match (self.refusal, self.plays) {
+            (Some(_), _) => (palette.card, palette.edge, palette.faint),
+            (None, true) => (palette.control, palette.accent, palette.text),
+            (None, false) if is_down => (palette.control_hover, palette.faint, palette.text),
+            (None, false) => (palette.control, palette.edge, palette.text),
+        };
+        let wide = if self.plays { 5.0 } else { 2.0 };
+        let round = 16.0 * unit;
+        let edge = Stroke::new((wide * unit).max(1.0), edge);
+        ui.painter()
+            .rect(rect, round, fill, edge, StrokeKind::Inside);
+        if self.plays {
+            let wash = palette.wash(palette.accent);
+            ui.painter().rect_filled(rect, round, wash);
+        }
+        let inner = rect.shrink(8.0 * unit);
+        let (picture, words) = inner.split_top_bottom_at_y(rect.bottom() - NAME * unit);
+        self.picture_ui(ui, page, picture);
+        page.paint(ui, words, (name, 30.0), color);
+        if let Some(part) = self.held {
+            self.held_ui(ui, page, part);
+        }
+        self.refusal.is_none() && kit::pressed(ui, &response)
+    }
+
+    fn picture_ui(&self, ui: &mut Ui, page: PageLook, place: Rect) {
+        // What a pose leaves alone is drawn open.
+        let open = |to: Option<crate::hand::Angle>| to.map_or(1000, crate::hand::Angle::get);
+        let shares = self
+            .piece
+            .shown()
+            .map(|to| Some(f32::from(open(to)) / 1000.0));
+        ui.scope(|ui| {
+            if self.refusal.is_some() {
+                ui.set_opacity(PALE);
+            }
+            panel::pose_ui(ui, page.look, place, &shares);
+        });
+    }
+
+    /// How long it is held already: a bar that fills.
+    fn held_ui(&self, ui: &Ui, page: PageLook, part: f32) {
+        let (palette, unit) = (page.look.palette, page.unit);
+        let rail = self.rect.shrink(14.0 * unit);
+        let rail = rail.with_max_y(rail.top() + 16.0 * unit);
+        let round = 8.0 * unit;
+        ui.painter().rect_filled(rail, round, palette.sunken);
+        let bar = rail.with_max_x(rail.left() + rail.width() * part);
+        ui.painter().rect_filled(bar, round, palette.accent);
+        let edge = Stroke::new((4.0 * unit).max(2.0), palette.accent);
+        ui.painter()
+            .rect_stroke(self.rect, 16.0 * unit, edge, StrokeKind::Inside);
+    }
+}
