@@ -9,4 +9,6 @@ pub mod report;
 pub mod run;
 
 #[cfg(test)]
+mod file_tests;
+#[cfg(test)]
 mod run_tests;
