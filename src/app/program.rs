@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::exhibit::{ExhibitAction, ExhibitStart, ExhibitState};
+use crate::app::exhibit::{ExhibitAction, ExhibitStart, ExhibitState, KeptReport};
 use crate::app::files::exhibit_file;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
@@ -59,6 +59,8 @@ pub struct App {
     exporting: Option<BackgroundJob<NoticeKind>>,
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
     opening_exhibit: Option<BackgroundJob<Result<ExhibitStart, NoticeKind>>>,
+    /// Of an exhibition that was left; it is being written.
+    left_report: Option<KeptReport>,
     sessions: Option<BackgroundJob<FilesEnd>>,
     keeping: Option<BackgroundJob<FilesEnd>>,
     recorded: SessionWork,
@@ -107,6 +109,7 @@ impl App {
             exporting: None,
             importing: None,
             opening_exhibit: None,
+            left_report: None,
             sessions: None,
             keeping: None,
             recorded: SessionWork::default(),
@@ -552,6 +555,7 @@ impl App {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: ExhibitStart, now: Moment) {
         self.recorded.player = None;
+        self.leave_exhibit(now);
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();
         hand.now = now;
@@ -566,6 +570,11 @@ impl App {
         hand.take_over();
         let language = self.state.settings.language;
         self.state.exhibit = ExhibitState::begin(start, self.state.hand(), language, &self.env);
+        if let Some(exhibit) = &mut self.state.exhibit
+            && let Some(left) = self.left_report.take()
+        {
+            exhibit.report = left;
+        }
     }
 
     fn exhibit_action(&mut self, action: ExhibitAction, now: Moment) {
@@ -594,6 +603,7 @@ impl App {
             return;
         };
         self.state.settings.language = exhibit.language;
+        self.left_report = Some(exhibit.report);
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();
         hand.now = now;
@@ -613,6 +623,14 @@ impl App {
             && exhibit.tick(hands.shown_mut(), now)
         {
             settings.language = exhibit.language;
+        }
+        if let Some(mut report) = self.left_report.take() {
+            match report.flush(now) {
+                true => report
+                    .troubles()
+                    .for_each(|told| self.tell(told.clone(), now)),
+                false => self.left_report = Some(report),
+            }
         }
     }
 
@@ -661,6 +679,13 @@ impl App {
         let rests = !closing.held || self.state.hands.iter().all(is_held);
         let trials = &self.state.trials;
         let is_kept = trials.running.is_none() && trials.to_keep.is_empty();
+        let shown = self
+            .state
+            .exhibit
+            .as_mut()
+            .map(|exhibit| &mut exhibit.report);
+        let mut reports = shown.into_iter().chain(&mut self.left_report);
+        let is_kept = reports.all(|report| report.flush(now)) && is_kept;
         let is_kept = is_kept && self.keeping.is_none() && self.recorded.is_written();
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);

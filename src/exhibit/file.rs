@@ -1,6 +1,6 @@
 //! The file of an exhibition as TOML, version 1 (assets/manual/exhibit.md). It is taken whole or not at all.
 
-use crate::exhibit::pin::Pin;
+use crate::exhibit::pin::{BadPin, DIGITS, Pin};
 use crate::exhibit::plan::{
     AttractLoop, BothWords, ExhibitPlan, MotionLimits, Piece, TILES, open_plan,
 };
@@ -9,6 +9,7 @@ use crate::poses::library::{PoseId, PoseLibrary};
 use crate::poses::starter::starter;
 use crate::store::{FileCause, FileError, FileText};
 use serde::Deserialize;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
@@ -17,6 +18,10 @@ use toml::Spanned;
 pub const FORMAT: &str = "handscope-exhibit";
 /// Characters of the line above the hand.
 const TITLE_CHARS_MAX: usize = 60;
+/// Times of a visitor and of the attract loop.
+const SECONDS: RangeInclusive<u64> = 5..=3600;
+/// Characters of a wrong value that are repeated.
+const QUOTED_CHARS: usize = 40;
 /// Pieces of the attract loop.
 const ATTRACT_MAX: usize = 40;
 /// What is shown without a file.
@@ -36,16 +41,17 @@ struct FileRow {
     #[serde(default)]
     logo: Option<Spanned<PathBuf>>,
     #[serde(default)]
-    poses: Option<PathBuf>,
+    poses: Option<Spanned<PathBuf>>,
+    /// Any value: what the reader of the format says of a wrong one would repeat it.
     #[serde(default)]
-    pin: Option<Pin>,
+    pin: Option<Spanned<toml::Value>>,
     tiles: Spanned<Vec<Spanned<String>>>,
     #[serde(default)]
     speed: Option<Spanned<Speed>>,
     #[serde(default)]
     force: Option<Spanned<Force>>,
     #[serde(default)]
-    visit_s: Option<Spanned<u64>>,
+    visit_s: Option<Spanned<i64>>,
     #[serde(default)]
     visitor_restart: bool,
     #[serde(default)]
@@ -57,11 +63,11 @@ struct FileRow {
 struct AttractRow {
     pieces: Spanned<Vec<Spanned<String>>>,
     #[serde(default)]
-    after_s: Option<Spanned<u64>>,
+    after_s: Option<Spanned<i64>>,
     #[serde(default)]
-    play_s: Option<Spanned<u64>>,
+    play_s: Option<Spanned<i64>>,
     #[serde(default)]
-    rest_s: Option<Spanned<u64>>,
+    rest_s: Option<Spanned<i64>>,
 }
 
 /// What is shown without a file.
@@ -72,13 +78,72 @@ pub fn built_in() -> Option<ExhibitPlan> {
     plan.ok()
 }
 
-/// The file of poses that a text names, beside it in this folder.
+/// A file that the one of an exhibition names.
+#[derive(Debug, Clone)]
+pub struct NamedFile<'a> {
+    /// Where it lies.
+    pub path: PathBuf,
+    source: FileText<'a>,
+    at: Range<usize>,
+    field: &'static str,
+}
+
+impl NamedFile<'_> {
+    /// The error of the file that names it, because of this one.
+    #[must_use]
+    pub fn refused(&self, why: &dyn std::fmt::Display) -> FileError {
+        let what = format!("{}: {why}", self.path.display());
+        let cause = FileCause::Unreadable(what);
+        self.source.blame(self.at.clone(), self.field, cause)
+    }
+}
+
+/// The file of poses that a text names, in this folder.
 ///
 /// # Errors
 /// [`FileError`] with line and field.
-pub fn poses_of(text: &str, folder: &Path) -> Result<Option<PathBuf>, FileError> {
-    let row: FileRow = FileText::of(text, FORMAT)?.parse()?;
-    Ok(row.poses.map(|poses| folder.join(poses)))
+pub fn poses_of<'a>(text: &'a str, folder: &Path) -> Result<Option<NamedFile<'a>>, FileError> {
+    let source = FileText::of(text, FORMAT)?;
+    let row: FileRow = source.parse()?;
+    Ok(row.poses.map(|poses| NamedFile {
+        path: folder.join(poses.get_ref()),
+        source,
+        at: poses.span(),
+        field: "poses",
+    }))
+}
+
+/// The picture that a text names, in this folder.
+///
+/// # Errors
+/// [`FileError`] with line and field.
+pub fn logo_of<'a>(text: &'a str, folder: &Path) -> Result<Option<NamedFile<'a>>, FileError> {
+    let source = FileText::of(text, FORMAT)?;
+    let row: FileRow = source.parse()?;
+    logo(source, row.logo, folder)
+}
+
+fn logo<'a>(
+    source: FileText<'a>,
+    got: Option<Spanned<PathBuf>>,
+    folder: &Path,
+) -> Result<Option<NamedFile<'a>>, FileError> {
+    let Some(got) = got else { return Ok(None) };
+    let (path, at) = (got.get_ref(), got.span());
+    let is_png = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("png");
+    if !path.extension().is_some_and(is_png) {
+        let cause = FileCause::Value {
+            got: quoted(&path.display().to_string()),
+            allowed: "a file that ends in .png".into(),
+        };
+        return Err(source.blame(at, "logo", cause));
+    }
+    Ok(Some(NamedFile {
+        path: folder.join(path),
+        source,
+        at,
+        field: "logo",
+    }))
 }
 
 /// The exhibition that a text in this folder holds. Its tiles are named after entries of `own`, or after what is shipped.
@@ -122,8 +187,8 @@ impl ExhibitReader<'_> {
         let attract = row.attract.as_ref();
         Ok(ExhibitPlan {
             title,
-            logo: self.logo(row.logo.as_ref(), folder)?,
-            pin: row.pin,
+            logo: logo(self.source, row.logo, folder)?.map(|logo| logo.path),
+            pin: self.pin(row.pin)?,
             limits,
             tiles: self.pieces("tiles", row.tiles.get_ref(), limits)?,
             open: open_plan(
@@ -162,9 +227,8 @@ impl ExhibitReader<'_> {
         let mut pieces: Vec<Piece> = Vec::with_capacity(names.len());
         for name in names {
             let Some(piece) = self.piece(name.get_ref(), limits) else {
-                let start: String = name.get_ref().chars().take(40).collect();
                 let cause = FileCause::Value {
-                    got: format!("\"{start}\""),
+                    got: quoted(name.get_ref()),
                     allowed: "the name of a pose, sequence or reaction".into(),
                 };
                 return Err(self.source.blame(name.span(), field, cause));
@@ -225,20 +289,22 @@ impl ExhibitReader<'_> {
     fn seconds(
         self,
         field: &str,
-        got: Option<&Spanned<u64>>,
+        got: Option<&Spanned<i64>>,
         usual: u64,
     ) -> Result<Duration, FileError> {
         let Some(got) = got else {
             return Ok(Duration::from_secs(usual));
         };
-        if !(5..=3600).contains(got.get_ref()) {
-            let cause = FileCause::Value {
-                got: format!("{}", got.get_ref()),
-                allowed: "a time from 5 to 3600 s".into(),
-            };
-            return Err(self.source.blame(got.span(), field, cause));
+        match u64::try_from(*got.get_ref()) {
+            Ok(seconds) if SECONDS.contains(&seconds) => Ok(Duration::from_secs(seconds)),
+            _ => {
+                let cause = FileCause::Value {
+                    got: format!("{}", got.get_ref()),
+                    allowed: format!("a time from {} to {} s", SECONDS.start(), SECONDS.end()),
+                };
+                Err(self.source.blame(got.span(), field, cause))
+            }
         }
-        Ok(Duration::from_secs(*got.get_ref()))
     }
 
     fn line(self, field: &str, got: Option<&Spanned<String>>) -> Result<String, FileError> {
@@ -248,10 +314,7 @@ impl ExhibitReader<'_> {
         let text = got.get_ref();
         if text.chars().count() > TITLE_CHARS_MAX || text.chars().any(char::is_control) {
             let cause = FileCause::Value {
-                got: format!(
-                    "\"{}…\"",
-                    text.chars().take(20).collect::<String>().escape_debug()
-                ),
+                got: quoted(text),
                 allowed: format!("one line of at most {TITLE_CHARS_MAX} characters"),
             };
             return Err(self.source.blame(got.span(), field, cause));
@@ -259,20 +322,34 @@ impl ExhibitReader<'_> {
         Ok(text.clone())
     }
 
-    fn logo(
-        self,
-        got: Option<&Spanned<PathBuf>>,
-        folder: &Path,
-    ) -> Result<Option<PathBuf>, FileError> {
+    /// Never repeats what stands there.
+    fn pin(self, got: Option<Spanned<toml::Value>>) -> Result<Option<Pin>, FileError> {
         let Some(got) = got else { return Ok(None) };
-        let is_png = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("png");
-        if !got.get_ref().extension().is_some_and(is_png) {
+        let at = got.span();
+        let pin = match got.into_inner() {
+            toml::Value::String(text) => Pin::try_from(text),
+            _ => Err(BadPin),
+        };
+        pin.map(Some).map_err(|BadPin| {
             let cause = FileCause::Value {
-                got: format!("\"{}\"", got.get_ref().display()),
-                allowed: "a file that ends in .png".into(),
+                got: "this".into(),
+                allowed: format!(
+                    "a PIN: {} to {} digits in quotation marks",
+                    DIGITS.start(),
+                    DIGITS.end()
+                ),
             };
-            return Err(self.source.blame(got.span(), "logo", cause));
-        }
-        Ok(Some(folder.join(got.get_ref())))
+            self.source.blame(at, "pin", cause)
+        })
     }
+}
+
+/// The start of a text, on one line.
+fn quoted(text: &str) -> String {
+    let start: String = text.chars().take(QUOTED_CHARS).collect();
+    let more = match start.len() < text.len() {
+        true => "…",
+        false => "",
+    };
+    format!("\"{}{more}\"", start.escape_debug())
 }

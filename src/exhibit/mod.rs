@@ -7,3 +7,6 @@ pub mod pin;
 pub mod plan;
 pub mod report;
 pub mod run;
+
+#[cfg(test)]
+mod file_tests;

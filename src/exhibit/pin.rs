@@ -1,7 +1,6 @@
 //! The PIN of staff: five tries, then a minute of waiting.
 
 use crate::hand::Moment;
-use serde::Deserialize;
 use std::time::Duration;
 
 /// Wrong PINs before nothing is taken for a while.
@@ -12,8 +11,7 @@ pub const LOCKED_FOR: Duration = Duration::from_secs(60);
 pub const DIGITS: std::ops::RangeInclusive<usize> = 4..=8;
 
 /// Four to eight digits.
-#[derive(Clone, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, PartialEq, Eq)]
 pub struct Pin(String);
 
 /// A text that is no PIN. It does not repeat what was given.

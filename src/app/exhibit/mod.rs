@@ -1,6 +1,11 @@
 //! The exhibition that is shown in place of the window: what it shows, what a person may do in it.
 
+pub mod kept_report;
 pub mod state;
 mod work;
 
+#[cfg(test)]
+mod kept_report_tests;
+
+pub use crate::app::exhibit::kept_report::KeptReport;
 pub use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, Logo, StaffPanel};

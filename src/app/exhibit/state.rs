@@ -1,10 +1,10 @@
 //! What an exhibition shows, as plain values, and what a person may do in it.
 
+use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::report::DayReport;
 use crate::exhibit::run::{ExhibitView, Wish};
 use crate::hand::Moment;
 use crate::tasks::exhibit::ExhibitStep;
@@ -87,8 +87,8 @@ pub struct ExhibitState {
     pub view: ExhibitView,
     /// What staff see.
     pub staff: StaffPanel,
-    /// What was counted today.
-    pub report: DayReport,
+    /// What was counted today, and its file.
+    pub report: KeptReport,
     pub(crate) gate: Option<PinGate>,
     pub(crate) ends_program: bool,
     /// The language that it begins with for each visitor.

@@ -1,14 +1,15 @@
 //! Begins an exhibition, passes on what persons do, takes in what it tells, and ends it.
 
 use crate::app::env::Env;
+use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, StaffPanel};
 use crate::app::hand::HandState;
 use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
-use crate::exhibit::report::DayReport;
 use crate::exhibit::run::{ExhibitView, Stage, Wish};
 use crate::hand::Moment;
+use crate::store::calendar;
 use crate::tasks::exhibit::{self, ExhibitStep};
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -49,7 +50,7 @@ impl ExhibitState {
             plan: start.plan,
             logo: start.logo,
             view: ExhibitView::default(),
-            report: DayReport::default(),
+            report: KeptReport::new(env.documents.clone(), env.runtime.clone()),
             gate,
             ends_program: start.ends_program,
             language,
@@ -61,6 +62,7 @@ impl ExhibitState {
     /// Takes in what went on, and closes what staff left open. True if a visitor has gone and the next one finds the page as the
     /// first did.
     pub(crate) fn tick(&mut self, hand: &mut HandState, now: Moment) -> bool {
+        self.report.tick(hand, calendar::since_1970());
         let before = self.view.stage;
         let (steps, _end) = self.task.news();
         for (_, step) in steps {

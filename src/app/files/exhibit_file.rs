@@ -5,7 +5,7 @@ use crate::app::exhibit::{ExhibitStart, Logo};
 use crate::app::files::open;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
-use crate::exhibit::file;
+use crate::exhibit::file::{self, NamedFile};
 use crate::poses::library::PoseLibrary;
 use crate::store::{BackgroundJob, FileCause, FileError, toml_file};
 use std::fs::File;
@@ -42,41 +42,42 @@ pub(crate) fn open(env: &Env) -> BackgroundJob<Result<ExhibitStart, NoticeKind>>
 /// [`FileError`]: what cannot be read, and where.
 pub fn read(path: &Path) -> Result<ExhibitStart, FileError> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let plan = toml_file::load(path, FILE_LEN_MAX, |text| {
+    toml_file::load(path, FILE_LEN_MAX, |text| {
         let own = match file::poses_of(text, &folder)? {
             Some(poses) => {
-                pose_file::read(&poses).map_err(|error| of_other("poses", &poses, &error))?
+                pose_file::read(&poses.path).map_err(|error| poses.refused(&said(&error)))?
             }
             None => PoseLibrary::default(),
         };
-        file::read(text, &folder, &own)
-    })?;
-    let logo = plan.logo.as_deref().map(logo).transpose()?;
-    Ok(ExhibitStart {
-        plan: Arc::new(plan),
-        logo,
-        ends_program: false,
+        let plan = file::read(text, &folder, &own)?;
+        let picture = |named: NamedFile<'_>| {
+            let picture = pixels(&named.path);
+            picture.map_err(|why| named.refused(&why))
+        };
+        Ok(ExhibitStart {
+            plan: Arc::new(plan),
+            logo: file::logo_of(text, &folder)?.map(picture).transpose()?,
+            ends_program: false,
+        })
     })
 }
 
-/// The error of a file that another one names.
-fn of_other(field: &str, path: &Path, why: &dyn std::fmt::Display) -> FileError {
-    FileError {
-        line: None,
-        field: Some(field.into()),
-        cause: FileCause::Unreadable(format!("{}: {why}", path.display())),
+/// What is wrong with a file, where it is said already that it cannot be read.
+fn said(error: &FileError) -> String {
+    match &error.cause {
+        FileCause::Unreadable(why) => why.clone(),
+        _ => error.to_string(),
     }
-}
-
-fn logo(path: &Path) -> Result<Logo, FileError> {
-    pixels(path).map_err(|why| of_other("logo", path, &why))
 }
 
 fn pixels(path: &Path) -> Result<Logo, png::DecodingError> {
     let mut file = Vec::new();
-    File::open(path)?
-        .take(LOGO_LEN_MAX)
-        .read_to_end(&mut file)?;
+    let opened = File::open(path)?;
+    opened.take(LOGO_LEN_MAX + 1).read_to_end(&mut file)?;
+    if file.len() as u64 > LOGO_LEN_MAX {
+        let what = format!("it is too large: a logo has at most {LOGO_LEN_MAX} bytes");
+        return Err(std::io::Error::other(what).into());
+    }
     let mut decoder = png::Decoder::new(Cursor::new(file));
     decoder.set_transformations(png::Transformations::ALPHA | png::Transformations::STRIP_16);
     let mut reader = decoder.read_info()?;
@@ -103,4 +104,111 @@ fn pixels(path: &Path) -> Result<Logo, png::DecodingError> {
         size: [width as usize, height as usize],
         rgba: rgba.into(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use std::path::PathBuf;
+    use tempfile::TempDir;
+
+    /// A booth of six tiles with own poses and a logo; line 4 names the poses, line 5 the logo.
+    const FILE: &str = r#"format = "handscope-exhibit"
+version = 1
+tiles = ["Own", "Fist", "Point", "V", "OK", "Rock"]
+poses = "poses.toml"
+logo = "logo.png"
+"#;
+    const POSES: &str = r#"format = "handscope-poses"
+version = 1
+
+[[pose]]
+name = "Own"
+speed = 300
+force = 800
+angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 }
+"#;
+
+    /// A gray picture of this size.
+    fn png(width: u32, height: u32) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, width, height);
+        encoder.set_color(png::ColorType::Grayscale);
+        let mut writer = encoder.write_header().unwrap();
+        let pixels = vec![7; (width * height) as usize];
+        writer.write_image_data(&pixels).unwrap();
+        writer.finish().unwrap();
+        file
+    }
+
+    fn booth() -> (TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("booth.toml");
+        std::fs::write(&path, FILE).unwrap();
+        std::fs::write(folder.path().join("poses.toml"), POSES).unwrap();
+        std::fs::write(folder.path().join("logo.png"), png(3, 2)).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn a_file_is_read_with_the_poses_and_the_logo_beside_it() {
+        let (_folder, path) = booth();
+        let start = read(&path).unwrap();
+        assert_eq!(start.plan.tiles[0].name.en, "Own");
+        assert!(!start.ends_program);
+        let logo = start.logo.unwrap();
+        assert_eq!(logo.size, [3, 2]);
+        assert_eq!(*logo.rgba, [7, 7, 7, 255].repeat(6));
+    }
+
+    #[test]
+    fn what_cannot_be_used_of_the_files_that_are_named_is_told_with_the_line_that_names_them() {
+        let half = |file: Vec<u8>| file[..file.len() / 2].to_vec();
+        for (name, content, line, field, said) in [
+            ("poses.toml", None, 4, "poses", "there is no such file"),
+            ("poses.toml", Some(vec![0xFF]), 4, "poses", "UTF-8"),
+            (
+                "poses.toml",
+                Some(POSES.replace("version = 1", "version = 2").into()),
+                4,
+                "poses",
+                "line 2, `version`: version 2 cannot be read",
+            ),
+            ("poses.toml", Some(vec![b'#'; 2 << 20]), 4, "poses", "bytes"),
+            ("logo.png", None, 5, "logo", "No such file"),
+            ("logo.png", Some(b"GIF89a".to_vec()), 5, "logo", "signature"),
+            ("logo.png", Some(half(png(90, 90))), 5, "logo", "logo.png: "),
+            ("logo.png", Some(vec![0; 5 << 20]), 5, "logo", "too large"),
+            (
+                "logo.png",
+                Some(png(2049, 1)),
+                5,
+                "logo",
+                "2049x1 pixels are too many",
+            ),
+        ] {
+            let (folder, path) = booth();
+            let place = folder.path().join(name);
+            match content {
+                Some(content) => std::fs::write(&place, content).unwrap(),
+                None => std::fs::remove_file(&place).unwrap(),
+            }
+            let error = read(&path).unwrap_err();
+            let told = error.to_string();
+            let at = (error.line, error.field.as_deref());
+            assert_eq!(at, (Some(line), Some(field)), "{told}");
+            assert!(told.contains(said) && told.contains(name), "{told}");
+            assert_eq!(told.matches("cannot be read: ").count(), 1, "{told}");
+            assert_eq!(told.lines().count(), 1, "{told}");
+        }
+        let (folder, path) = booth();
+        std::fs::remove_file(&path).unwrap();
+        let told = read(&path).unwrap_err().to_string();
+        assert_eq!(told, "it cannot be read: there is no such file");
+        std::fs::write(&path, vec![b'#'; 70_000]).unwrap();
+        let told = read(&path).unwrap_err().to_string();
+        assert!(told.contains("70000 bytes"), "{told}");
+        drop(folder);
+    }
 }

@@ -15,6 +15,8 @@ use handscope::codec::slcan::{
 };
 use handscope::codec::usbcan::{self, PacketContent, PacketDecoder};
 use handscope::codec::{pdu, rs485};
+use handscope::exhibit;
+use handscope::exhibit::plan::TILES;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::BytePacking;
 use handscope::hand::{HandId, Moment, REGISTERS, Span, TactileBlock};
@@ -24,6 +26,7 @@ use handscope::link::traffic::decode::Heard;
 use handscope::link::traffic::{Decoder, values};
 use handscope::params;
 use handscope::poses;
+use handscope::poses::library::PoseLibrary;
 use handscope::record::file::reader::Stretch;
 use handscope::record::file::writer::SessionWriter;
 use handscope::record::file::{Opening, SessionFile};
@@ -32,6 +35,7 @@ use handscope::record::{Direction, Entry, Event, EventKind, LinkState, Piece, Pi
 use handscope::transport::Endpoint;
 use std::io::{Seek as _, Write as _};
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 use tempfile::NamedTempFile;
 
@@ -53,7 +57,7 @@ pub const WIRES: [(&str, Target); 10] = [
 ];
 
 /// Everything else that reads what it was not asked to trust.
-pub const OTHERS: [(&str, Target); 16] = [
+pub const OTHERS: [(&str, Target); 18] = [
     ("tap_rs485", |state, bytes| tap(state, 0, bytes)),
     ("tap_rtu", |state, bytes| tap(state, 1, bytes)),
     ("tap_tcp", |state, bytes| tap(state, 2, bytes)),
@@ -67,6 +71,8 @@ pub const OTHERS: [(&str, Target); 16] = [
     ("settings", settings),
     ("parameter_file", parameter_file),
     ("pose_file", pose_file),
+    ("exhibit_file", exhibit_file),
+    ("exhibit_day", exhibit_day),
     ("session_file", session_file),
     ("session_about", session_about),
     ("csv_values", csv_values),
@@ -465,6 +471,44 @@ fn pose_file(state: &mut State, bytes: &[u8]) {
     assert_eq!(poses::file::read(&written).unwrap(), library, "{text}");
 }
 
+/// Any file is one of an exhibition or says what is wrong; what is taken keeps within its limits and can be shown.
+fn exhibit_file(state: &mut State, bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let (folder, own) = (Path::new("booth"), PoseLibrary::default());
+    let plan = match exhibit::file::read(&text, folder, &own) {
+        Ok(plan) => plan,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    assert!(TILES.contains(&plan.tiles.len()), "{text}");
+    let attract = plan.attract.iter().flat_map(|attract| &attract.pieces);
+    for piece in plan.tiles.iter().chain(attract) {
+        assert!(!piece.plan.cues.is_empty() && !piece.plan.looped, "{text}");
+        for cue in &piece.plan.cues {
+            let limits = plan.limits;
+            assert!(cue.speed <= limits.speed && cue.force <= limits.force);
+        }
+    }
+    let named = exhibit::file::logo_of(&text, folder).unwrap();
+    assert_eq!(named.map(|named| named.path), plan.logo);
+    assert!(exhibit::file::poses_of(&text, folder).is_ok());
+}
+
+/// Any file is the report of a day or says what is wrong; what is taken is read back as it was, and has a page.
+fn exhibit_day(state: &mut State, bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let report = match exhibit::report::file::read(&text, "2026-11-23") {
+        Ok(report) => report,
+        Err(why) => return assert!(!why.to_string().is_empty()),
+    };
+    state.accepted += 1;
+    let written = exhibit::report::file::write(&report).unwrap();
+    let again = exhibit::report::file::read(&written, &report.day).unwrap();
+    assert_eq!(again, report, "{text}");
+    let page = exhibit::report::page::html(&report).unwrap();
+    assert!(page.ends_with("</body></html>") && !page.contains("<script"));
+}
+
 /// Any file is a session or says why not; what is read of it lies in the stretch that was asked for, and reading it again gives
 /// the same.
 fn session_file(state: &mut State, bytes: &[u8]) {
@@ -597,6 +641,12 @@ const POSES: &str = "format = \"handscope-poses\"\nversion = 1\nmood = \"calm\"\
     speed = 300\nforce = 800\nleave = [\"little\"]\n[pose.angles]\nlittle = 1000\nring = 1000\nmiddle = 1000\n\
     index = 420\nthumb_bend = 420\nthumb_rotate = 0\n";
 
+/// A file of an exhibition, and the report of its day.
+const EXHIBIT: &str = "format = \"handscope-exhibit\"\nversion = 1\ntitle = \"x\"\npin = \"4711\"\nlogo = \"a.png\"\nspeed = 300\n\
+    poses = \"own.toml\"\ntiles = [\"Fist\", \"V\", \"OK\", \"Rock\", \"Count\", \"Touch me\"]\n[attract]\npieces = [\"Wave\"]\n";
+const EXHIBIT_DAY: &str = "format = \"handscope-exhibit-day\"\nversion = 1\nday = \"2026-11-23\"\nhands = [\"sim:\"]\n\
+    visits = 1\nrests = 2\nstops = 3\nlink_losses = 4\n[pieces]\nFist = 5\n[faults]\nstall = 6\n[[hour]]\nhour = 9\nring = 41\n";
+
 /// Valid inputs of every target, for mutation.
 pub fn seeds(target: &str) -> Vec<Vec<u8>> {
     let block: Vec<u8> = (0..58).collect();
@@ -677,6 +727,8 @@ pub fn seeds(target: &str) -> Vec<Vec<u8>> {
             b"star = false\nnotes = []\n".to_vec(),
         ],
         "pose_file" => vec![POSES.as_bytes().to_vec()],
+        "exhibit_file" => vec![EXHIBIT.as_bytes().to_vec()],
+        "exhibit_day" => vec![EXHIBIT_DAY.as_bytes().to_vec()],
         _ => vec![vec![1, 2, 3, 4], (0..24).collect()],
     }
 }

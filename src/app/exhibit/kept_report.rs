@@ -1,0 +1,212 @@
+//! The report of the day, kept in a file and on a page beside it, off the window's thread. A restart counts on.
+
+use crate::app::files::day_folder;
+use crate::app::files::open::put_aside;
+use crate::app::hand::HandState;
+use crate::app::notices::NoticeKind;
+use crate::exhibit::report::{DayReport, file, page};
+use crate::exhibit::run::ExhibitEvent;
+use crate::hand::Moment;
+use crate::store::calendar;
+use crate::store::saver::NotSaved;
+use crate::store::{BackgroundJob, FileError, on_thread, read_text, replace};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::Handle;
+
+/// A report is written so often at most: what a crash loses is one minute.
+const WRITE_EVERY: Duration = Duration::from_secs(60);
+/// A day of a hundred pieces is a tenth of this; anything longer is no report.
+const FILE_LEN_MAX: u64 = 256 * 1024;
+
+/// What lies there of the day, and what a person should know about the file.
+type ReadReport = (Option<DayReport>, Option<NoticeKind>);
+
+/// The report of today, and what its file holds of it. Without documents nothing is kept.
+#[derive(Debug)]
+pub struct KeptReport {
+    today: DayReport,
+    documents: Option<PathBuf>,
+    runtime: Handle,
+    /// What the file holds, or will in a moment.
+    kept: DayReport,
+    reading: Option<BackgroundJob<ReadReport>>,
+    writing: Option<BackgroundJob<Result<(), NotSaved>>>,
+    begun: Option<Moment>,
+    /// The file of the day was read, or there was none, or it was set aside. Before that it stays as it is.
+    may_write: bool,
+    unreadable: Option<NoticeKind>,
+    not_saved: Option<NoticeKind>,
+}
+
+impl KeptReport {
+    /// Reads and counts nothing before the first [`KeptReport::tick`].
+    pub(crate) fn new(documents: Option<PathBuf>, runtime: Handle) -> Self {
+        Self {
+            today: DayReport::default(),
+            documents,
+            runtime,
+            kept: DayReport::default(),
+            reading: None,
+            writing: None,
+            begun: None,
+            may_write: false,
+            unreadable: None,
+            not_saved: None,
+        }
+    }
+
+    /// What was counted today.
+    #[must_use]
+    pub const fn today(&self) -> &DayReport {
+        &self.today
+    }
+
+    /// Why something is in no file, if that is so.
+    pub fn troubles(&self) -> impl Iterator<Item = &NoticeKind> {
+        self.unreadable.iter().chain(&self.not_saved)
+    }
+
+    /// Counts something, after the first [`KeptReport::tick`].
+    pub(crate) fn count(&mut self, event: &ExhibitEvent) {
+        self.today.count(event);
+    }
+
+    /// Looks at the hand at this time since 1970; reads and writes what is due.
+    pub(crate) fn tick(&mut self, hand: &HandState, since_1970: Duration) {
+        self.take_ended();
+        let day = calendar::day(since_1970);
+        let is_over = self.today.day != day;
+        if !is_over {
+            self.see(hand, since_1970);
+        }
+        if self.is_busy() {
+            return;
+        }
+        let is_due = |at| is_over || hand.now.since(at) >= WRITE_EVERY;
+        if self.today != self.kept {
+            if self.begun.is_none_or(is_due) {
+                self.write(hand.now);
+            }
+        } else if is_over {
+            self.begin_day(day);
+        }
+    }
+
+    /// Writes what is not written yet. True when all is in the file, or cannot be.
+    pub(crate) fn flush(&mut self, now: Moment) -> bool {
+        self.take_ended();
+        if !self.is_busy() && self.today != self.kept {
+            self.write(now);
+        }
+        !self.is_busy()
+    }
+
+    /// True while something is read or written.
+    pub(crate) const fn is_busy(&self) -> bool {
+        self.reading.is_some() || self.writing.is_some()
+    }
+
+    fn see(&mut self, hand: &HandState, since_1970: Duration) {
+        if let Some(endpoint) = &hand.endpoint
+            && hand.link.state.is_live()
+        {
+            self.today.hands.insert(endpoint.to_string());
+        }
+        if let Ok(hour) = u8::try_from(since_1970.as_secs() / 3600 % 24) {
+            self.today.warm(&hand.sample, hour, hand.now);
+        }
+    }
+
+    fn begin_day(&mut self, day: String) {
+        self.today = DayReport::of(&day);
+        self.kept = self.today.clone();
+        self.may_write = false;
+        if let Some(path) = self.path() {
+            let read = on_thread(move || Ok(load(&path, &day)));
+            let read = async move { read.await.ok() };
+            self.reading = Some(BackgroundJob::start_fallible(
+                &self.runtime,
+                &nobody(),
+                read,
+            ));
+        }
+    }
+
+    /// Where the report of the day lies; its page lies beside it.
+    fn path(&self) -> Option<PathBuf> {
+        let (documents, day) = (self.documents.as_deref()?, &self.today.day);
+        Some(day_folder::of_day(documents, day).join(format!("exhibit-{day}.toml")))
+    }
+
+    fn write(&mut self, now: Moment) {
+        // One that fails is not tried again before something changes.
+        self.kept = self.today.clone();
+        self.begun = Some(now);
+        if let Some(path) = self.path().filter(|_| self.may_write) {
+            let report = self.kept.clone();
+            let write = on_thread(move || Ok(save(&path, &report)));
+            let write = async move { write.await.ok() };
+            self.writing = Some(BackgroundJob::start_fallible(
+                &self.runtime,
+                &nobody(),
+                write,
+            ));
+        }
+    }
+
+    fn take_ended(&mut self) {
+        if let Some((earlier, told)) = BackgroundJob::take_from(&mut self.reading) {
+            let is_aside = |told: &NoticeKind| matches!(told, NoticeKind::FileIgnored { kept_as, .. } if kept_as.is_some());
+            self.may_write = told.as_ref().is_none_or(is_aside);
+            self.unreadable = told.or(self.unreadable.take());
+            if let Some(earlier) = earlier {
+                self.today.add(&earlier);
+                self.kept = earlier;
+            }
+        }
+        match BackgroundJob::take_from(&mut self.writing) {
+            None => {}
+            Some(Err((path, error))) => {
+                self.not_saved = Some(NoticeKind::not_saved(path, &error));
+            }
+            Some(Ok(())) => {
+                // What was missing is written now, if it was of the same day.
+                let day = self.path();
+                self.not_saved.take_if(|told| match told {
+                    NoticeKind::NotSaved { path, .. } => Some(path.with_extension("toml")) == day,
+                    _ => false,
+                });
+            }
+        }
+    }
+}
+
+/// The report of the day that lies here, if any does. One that cannot be read is set aside, and that is told.
+fn load(path: &Path, day: &str) -> ReadReport {
+    let read = || -> Result<Option<DayReport>, FileError> {
+        let text = read_text(path, FILE_LEN_MAX)?;
+        text.map(|text| file::read(&text, day)).transpose()
+    };
+    match read() {
+        Ok(earlier) => (earlier, None),
+        Err(error) => (None, Some(put_aside(path, error))),
+    }
+}
+
+fn save(path: &Path, report: &DayReport) -> Result<(), NotSaved> {
+    let put = |path: &Path, text: io::Result<String>| {
+        let written = text.and_then(|text| replace(path, text.as_bytes()));
+        written.map_err(|error| (path.to_owned(), error))
+    };
+    put(path, file::write(report).map_err(io::Error::other))?;
+    let page = page::html(report).map_err(io::Error::other);
+    put(&path.with_extension("html"), page)
+}
+
+/// What was read or written changes nothing that is shown.
+fn nobody() -> Arc<dyn Fn() + Send + Sync> {
+    Arc::new(|| ())
+}
