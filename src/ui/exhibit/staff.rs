@@ -234,7 +234,7 @@ fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
 /// What was counted today.
 fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
     let (look, report) = (page.look, exhibit.report.today());
-    let rows: [(Text, u64); 5] = [
+    let rows: [(Text, u32); 5] = [
         (exhibit::VISITS, report.visits),
         (exhibit::PIECES, report.pieces.values().sum()),
         (exhibit::RESTS, report.rests),
