@@ -256,7 +256,7 @@ fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
     }
 }
 
-fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (look, text, count): (Look, Text, u64)) {
+fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (look, text, count): (Look, Text, u32)) {
     let palette = look.palette;
     let line = egui::Stroke::new(1.0, palette.edge);
     ui.painter().hline(row.x_range(), row.top(), line);
