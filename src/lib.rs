@@ -42,7 +42,8 @@
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * No request outlives a lost link.
 //! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded, and in the session.
-//! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN; a stop, a lost link or
+//! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN, or a visitor
+//!   held a tile where the file allows that; a stop, a lost link or
 //!   a fault that needs a person ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;

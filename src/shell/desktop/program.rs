@@ -182,9 +182,18 @@ impl Program {
     /// During an exhibition the window fills its screen, above all others, whatever anybody did to it.
     fn fill(&mut self, ctx: &egui::Context, now: Moment) {
         let wanted = self.cockpit.state().exhibit.is_some();
-        let is_away = ctx.input(|input| {
+        let (is_away, screen) = ctx.input(|input| {
             let view = input.viewport();
-            view.fullscreen == Some(false) || view.minimized == Some(true)
+            let sizes = view
+                .inner_rect
+                .map(|rect| rect.size())
+                .zip(view.monitor_size);
+            let is_small = sizes.filter(|(inner, screen)| (*screen - *inner).max_elem() > 1.0);
+            let is_away = view.fullscreen == Some(false) || view.minimized == Some(true);
+            (
+                is_away || is_small.is_some(),
+                is_small.map(|(_, screen)| screen),
+            )
         });
         let level = |level| ViewportCommand::WindowLevel(level);
         let commands = match self.fills {
@@ -199,14 +208,20 @@ impl Program {
             }
             Some(told) if !is_away || now.since(told) < FILL_EACH => return,
             _ => {
-                self.fills = Some(now);
-                vec![
+                let by_hand = self.fills.replace(now).and(screen);
+                let mut commands = vec![
                     ViewportCommand::Minimized(false),
                     ViewportCommand::Decorations(false),
                     ViewportCommand::Fullscreen(true),
                     level(WindowLevel::AlwaysOnTop),
                     ViewportCommand::Focus,
-                ]
+                ];
+                // Without a window manager nobody does what full screen asks for.
+                if let Some(screen) = by_hand {
+                    commands.push(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
+                    commands.push(ViewportCommand::InnerSize(screen));
+                }
+                commands
             }
         };
         for command in commands {
