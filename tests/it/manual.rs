@@ -256,12 +256,9 @@ fn the_unit_of_a_booth_starts_what_the_command_line_takes() {
         words,
         ["/usr/local/bin/handscope", "exhibit", "%h/exhibit.toml"]
     );
-    let (code, help, err) = handscope(&[words[1], "--help"]);
+    let (code, help, _) = handscope(&[words[1], "--help"]);
     if code != Some(0) {
-        return skipped(
-            "handscope exhibit",
-            &format!("there is no such command: {err}"),
-        );
+        return skipped("handscope exhibit", "there is no such command");
     }
     assert!(help.contains("Usage: handscope exhibit"), "{help}");
     // Taken as the name of a file, which is not there.
