@@ -213,7 +213,7 @@ impl ExhibitReader<'_> {
         Ok(AttractLoop {
             pieces: self.pieces("pieces", row.pieces.get_ref(), limits)?,
             after: self.seconds("after_s", row.after_s.as_ref(), 60)?,
-            play: self.seconds("play_s", row.play_s.as_ref(), 60)?,
+            play: self.seconds("play_s", row.play_s.as_ref(), 45)?,
             rest: self.seconds("rest_s", row.rest_s.as_ref(), 120)?,
         })
     }

@@ -1,5 +1,6 @@
 //! The README and the manual: short, without dead links, and shown by `handscope help`.
 
+use crate::setup::skipped::skipped;
 use handscope::manual::TOPICS;
 use std::fs;
 use std::path::Path;
@@ -171,4 +172,122 @@ fn the_poses_of_the_manual_are_a_file_that_is_taken_whole() {
         .unwrap();
     let library = handscope::poses::file::read(example).unwrap();
     assert_eq!((library.poses.len(), library.sequences.len()), (1, 1));
+}
+
+#[test]
+fn the_exhibition_of_the_manual_is_a_file_that_is_taken_whole() {
+    let page = handscope::manual::topic("exhibit").unwrap().text;
+    let example = page.split("```toml\n").nth(1).unwrap();
+    let example = example.split("```").next().unwrap();
+    let own = handscope::poses::library::PoseLibrary::default();
+    let plan = handscope::exhibit::file::read(example, Path::new(""), &own).unwrap();
+    assert_eq!(plan.tiles.len(), 6);
+    assert!(plan.pin.is_some() && plan.logo.is_some() && plan.attract.is_some());
+    let bare = "format = \"handscope-exhibit\"\nversion = 1\n";
+    let line = |key| example.lines().find(|line: &&str| line.starts_with(key));
+    let bare = format!(
+        "{bare}{}\n[attract]\n{}",
+        line("tiles").unwrap(),
+        line("pieces").unwrap()
+    );
+    let usual = handscope::exhibit::file::read(&bare, Path::new(""), &own).unwrap();
+    let limits = |plan: &handscope::exhibit::plan::ExhibitPlan| {
+        let attract = plan.attract.clone().unwrap();
+        let times = [plan.visit, attract.after, attract.play, attract.rest];
+        (plan.limits, plan.visitor_restart, times)
+    };
+    assert_eq!(
+        limits(&plan),
+        limits(&usual),
+        "the example shows what is usual"
+    );
+}
+
+/// The unit that starts an exhibition with the desktop.
+const UNIT: &str = include_str!("../../assets/handscope-exhibit.service");
+
+/// The values of a key in a section of the unit.
+fn of_unit(section: &str, key: &str) -> Vec<&'static str> {
+    let section = format!("[{section}]");
+    let lines = UNIT
+        .lines()
+        .skip_while(move |line| *line != section)
+        .skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('['));
+    let pairs = lines.filter_map(|line| line.split_once('='));
+    pairs
+        .filter(|(own, _)| *own == key)
+        .map(|(_, value)| value)
+        .collect()
+}
+
+#[test]
+fn the_unit_of_a_booth_starts_it_again_after_a_crash_and_not_after_leaving() {
+    for (section, key, value) in [
+        ("Unit", "PartOf", "graphical-session.target"),
+        ("Unit", "After", "graphical-session.target"),
+        ("Unit", "StartLimitIntervalSec", "0"),
+        ("Service", "Restart", "on-failure"),
+        ("Service", "RestartSec", "2"),
+        ("Install", "WantedBy", "graphical-session.target"),
+    ] {
+        assert_eq!(of_unit(section, key), [value], "{key}");
+    }
+    assert!(
+        of_unit("Service", "Type").is_empty(),
+        "it runs until it is left"
+    );
+    let page = handscope::manual::topic("exhibit").unwrap().text;
+    let lines = UNIT.lines().filter(|line| !line.starts_with('#'));
+    let unit = lines.collect::<Vec<_>>().join("\n");
+    assert!(
+        page.contains(&format!("```ini\n{unit}\n```")),
+        "the manual shows the same"
+    );
+}
+
+#[test]
+fn the_unit_of_a_booth_starts_what_the_command_line_takes() {
+    let [command] = of_unit("Service", "ExecStart")[..] else {
+        panic!("{UNIT}")
+    };
+    let words: Vec<&str> = command.split(' ').collect();
+    assert_eq!(
+        words,
+        ["/usr/local/bin/handscope", "exhibit", "%h/exhibit.toml"]
+    );
+    let (code, help, _) = handscope(&[words[1], "--help"]);
+    if code != Some(0) {
+        return skipped("handscope exhibit", "there is no such command");
+    }
+    assert!(help.contains("Usage: handscope exhibit"), "{help}");
+    // Taken as the name of a file, which is not there.
+    let folder = tempfile::tempdir().unwrap();
+    let path = words[2].replace("%h", folder.path().to_str().unwrap());
+    let (code, _, err) = handscope(&[words[1], &path]);
+    assert_eq!(code, Some(1), "{err}");
+    assert!(err.contains("exhibit.toml"), "{err}");
+}
+
+#[test]
+fn systemd_takes_the_unit_of_a_booth() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("handscope-exhibit.service");
+    // The program need not be installed where the test runs.
+    let unit = UNIT.replace("/usr/local/bin/handscope", env!("CARGO_BIN_EXE_handscope"));
+    fs::write(&path, unit).unwrap();
+    let verify = Command::new("systemd-analyze")
+        .args(["verify", "--user", "--man=no"])
+        .arg(&path)
+        .env("XDG_RUNTIME_DIR", folder.path())
+        .output();
+    let Ok(verify) = verify else {
+        return skipped("the unit of a booth", "there is no systemd-analyze");
+    };
+    let told = String::from_utf8_lossy(&verify.stderr);
+    let ours: Vec<&str> = told
+        .lines()
+        .filter(|line| line.contains("handscope-exhibit"))
+        .collect();
+    assert!(verify.status.success() && ours.is_empty(), "{told}");
 }

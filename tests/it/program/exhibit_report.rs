@@ -6,6 +6,7 @@ use handscope::app::exhibit::{ExhibitAction, StaffPanel};
 use handscope::app::notices::NoticeKind;
 use handscope::exhibit::report::{DayReport, file};
 use handscope::exhibit::run::{Stage, Wish};
+use handscope::store::calendar;
 use std::path::PathBuf;
 
 impl Bench {
@@ -91,8 +92,10 @@ async fn what_visitors_do_is_in_the_report_of_the_day_and_the_next_exhibition_co
 #[tokio::test(start_paused = true)]
 async fn a_report_that_cannot_be_written_is_told_once_at_the_end() {
     let mut bench = Bench::live().await;
-    // A file where the folder of the documents would be.
-    std::fs::write(bench.folder.path().join("documents"), "").unwrap();
+    // A folder where the new file would be made.
+    let day = calendar::day(calendar::since_1970());
+    let folder = bench.folder.path().join("documents/Handscope").join(&day);
+    std::fs::create_dir_all(folder.join(format!("exhibit-{day}.new.toml"))).unwrap();
     bench.visit().await;
     bench.run(200_000).await;
     let not_saved = |bench: &Bench| {
