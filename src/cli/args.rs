@@ -124,7 +124,7 @@ pub(crate) enum Command {
     Params(ParamsArgs),
     /// Let visitors of a booth play with a hand: full screen, one page, left with a PIN only
     #[command(
-        after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibition' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is well; 1 FILE cannot be taken, or no window opens; 2 wrong usage."
+        after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibit' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is well; 1 FILE cannot be taken, or no window opens; 2 wrong usage."
     )]
     Exhibit(ExhibitArgs),
     /// Close joints on an object repeatedly, and measure each grasp
