@@ -133,6 +133,8 @@ pub enum NoticeKind {
     },
     /// Something else was asked of the hand while a series runs. Nothing was sent.
     SeriesRuns,
+    /// An exhibition needs a hand that is connected, and that nothing else is done to.
+    ExhibitNotBegun,
     /// A recorded session could not be opened or read on.
     SessionRefused {
         /// The file.

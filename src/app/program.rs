@@ -555,8 +555,9 @@ impl App {
         let State { hands, notices, .. } = &mut self.state;
         let hand = hands.shown_mut();
         hand.now = now;
-        if hand.runs_series() || hand.procedure.is_some() {
-            self.tell(NoticeKind::SeriesRuns, now);
+        let is_free = !hand.runs_series() && hand.procedure.is_none() && hand.open.is_some();
+        if !is_free {
+            notices.push(now, NoticeKind::ExhibitNotBegun);
             return;
         }
         if hand.may_move() {

@@ -1,6 +1,7 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
+use crate::cli::exhibit::ExhibitArgs;
 use crate::cli::help::{self, HelpArgs};
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
@@ -35,6 +36,21 @@ pub(crate) struct Cli {
 /// How the window opens.
 #[derive(Debug, Default, Args)]
 pub(crate) struct WindowArgs {
+    #[command(flatten)]
+    pub(crate) drawn: DrawnArgs,
+
+    /// Record nothing in this run
+    #[arg(long)]
+    pub(crate) no_record: bool,
+
+    /// A recorded session to replay in the window
+    #[arg(value_name = "FILE.mcap", value_parser = recording)]
+    pub(crate) replay: Option<PathBuf>,
+}
+
+/// The hand in the window, and what draws it.
+#[derive(Debug, Default, Args)]
+pub(crate) struct DrawnArgs {
     /// The hand to open in the window, for example tcp:192.168.11.210:6000
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Option<Endpoint>,
@@ -47,15 +63,7 @@ pub(crate) struct WindowArgs {
     #[arg(long)]
     pub(crate) opengl: bool,
 
-    /// Record nothing in this run
-    #[arg(long)]
-    pub(crate) no_record: bool,
-
-    /// A recorded session to replay in the window
-    #[arg(value_name = "FILE.mcap", value_parser = recording)]
-    pub(crate) replay: Option<PathBuf>,
-
-    /// The same, with the reason for the window to show
+    /// The same as --software, with the reason for the window to show
     #[arg(long, value_name = "REASON", hide = true)]
     pub(crate) software_because: Option<String>,
 }
@@ -114,6 +122,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope params dump --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n  handscope params apply left-hand.toml --only default_force --hand rs485:/dev/ttyUSB0\n  handscope params save --yes --hand rs485:/dev/ttyUSB0\n  handscope params diff --saved --hand rs485:/dev/ttyUSB0\n\nNothing moves. Only apply, save and reset write to the hand, and each makes a backup first."
     )]
     Params(ParamsArgs),
+    /// Let visitors of a booth play with a hand: full screen, one page, left with a PIN only
+    #[command(
+        after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibition' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is well; 1 FILE cannot be taken, or no window opens; 2 wrong usage."
+    )]
+    Exhibit(ExhibitArgs),
     /// Close joints on an object repeatedly, and measure each grasp
     #[command(
         after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nThis moves the hand, and only with --arm: keep everything but the object out of its way. The joints go to --start gently, rest for half a second, close, hold for --dwell after they have stopped, and go back. No joint closes before the hand confirms the speed and the threshold that were set. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials done; 1 ended early, or no setting qualifies for --best; 2 wrong usage."

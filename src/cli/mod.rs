@@ -2,6 +2,7 @@
 
 mod args;
 mod doctor;
+mod exhibit;
 mod help;
 mod interrupt;
 mod out;
@@ -66,6 +67,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
+        Command::Exhibit(args) => exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),

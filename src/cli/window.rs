@@ -1,19 +1,45 @@
 //! Starts the window from the command line, or says why there is none.
 
-use crate::cli::args::WindowArgs;
+use crate::cli::args::{DrawnArgs, WindowArgs};
 
 /// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
-    use crate::app::files::settings_file::{Loaded, default_path, load};
     use crate::cli::recordings::session_file;
-    use crate::shell::desktop;
-    use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
     use std::ffi::OsString;
     if let Some(path) = &args.replay {
         // Said where it was asked, and not in a window that opens without it.
         session_file::open(path)?;
     }
+    let mut again: Vec<OsString> = Vec::new();
+    if args.no_record {
+        again.push("--no-record".into());
+    }
+    again.extend(args.replay.iter().map(OsString::from));
+    let shows = WindowShows {
+        records: !args.no_record,
+        replay: args.replay,
+        exhibit: None,
+        again: (Vec::new(), again),
+    };
+    open(args.drawn, shows)
+}
+
+/// What the window begins with, and what says so on a command line: before the options of drawing, and after them.
+#[cfg(feature = "desktop")]
+pub(crate) struct WindowShows {
+    pub(crate) records: bool,
+    pub(crate) replay: Option<std::path::PathBuf>,
+    pub(crate) exhibit: Option<crate::app::exhibit::ExhibitStart>,
+    pub(crate) again: (Vec<std::ffi::OsString>, Vec<std::ffi::OsString>),
+}
+
+/// Opens the window with this in it.
+#[cfg(feature = "desktop")]
+pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
+    use crate::app::files::settings_file::{Loaded, default_path, load};
+    use crate::shell::desktop;
+    use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
     let settings_path = default_path();
     let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
     let drawing = match args.software_because {
@@ -22,25 +48,26 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
         None if args.opengl || desktop::may_draw_with_a_card() => Drawing::OpenGl,
         None => Drawing::Software,
     };
-    let mut again: Vec<OsString> = Vec::new();
+    let (mut again, rest) = shows.again;
     if let Some(hand) = &args.hand {
         again.extend(["--hand".into(), hand.to_string().into()]);
     }
-    if args.no_record {
-        again.push("--no-record".into());
-    }
-    again.extend(args.replay.iter().map(OsString::from));
     let ended = desktop::run(DesktopStart {
         snap: crate::shell::headless::snap::snap,
         endpoint: args.hand,
         drawing,
         loaded,
         settings_path,
-        records: !args.no_record,
-        replay: args.replay,
+        records: shows.records,
+        exhibit: shows.exhibit,
+        replay: shows.replay,
     });
     match ended {
-        Err(DesktopError::NoOpenGl { cause }) => restart_without_opengl(&again, &cause),
+        Err(DesktopError::NoOpenGl { cause }) => {
+            again.extend(["--software-because".into(), (&cause).into()]);
+            again.extend(rest);
+            restart_without_opengl(&again, &cause)
+        }
         ended => Ok(ended?),
     }
 }
@@ -50,7 +77,6 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
 fn restart_without_opengl(again: &[std::ffi::OsString], reason: &str) -> anyhow::Result<()> {
     use anyhow::Context as _;
     let mut program = std::process::Command::new(std::env::current_exe()?);
-    program.args(["--software-because", reason]);
     program.args(again);
     let failed = || {
         format!(
@@ -72,6 +98,12 @@ fn restart_without_opengl(again: &[std::ffi::OsString], reason: &str) -> anyhow:
 /// Says that this program was built without a window.
 #[cfg(not(feature = "desktop"))]
 pub(crate) fn run(_args: WindowArgs) -> anyhow::Result<()> {
+    without_window()
+}
+
+/// The same for whatever needs one.
+#[cfg(not(feature = "desktop"))]
+pub(crate) fn without_window() -> anyhow::Result<()> {
     anyhow::bail!(
         "this program was built without its window: use 'handscope snapshot' for pictures and 'handscope watch' for values"
     )

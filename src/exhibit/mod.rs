@@ -7,6 +7,3 @@ pub mod pin;
 pub mod plan;
 pub mod report;
 pub mod run;
-
-#[cfg(test)]
-mod run_tests;

@@ -3,7 +3,7 @@
 use crate::exhibit::heat::{HeatGovernor, HeatLevel};
 use crate::exhibit::plan::{ExhibitPlan, Piece};
 use crate::hand::{ArmEpoch, Fault, HandSample, Moment};
-use crate::link::{ArmRequest, LinkStatus};
+use crate::link::{ArmRequest, LinkStatus, LinkTrouble};
 use crate::poses::player::PlayPlan;
 use crate::record::{Disarmed, LinkState};
 use std::collections::VecDeque;
@@ -219,6 +219,7 @@ pub struct ExhibitRun {
     /// Whether the hand answers, and whether it ever did.
     is_live: bool,
     was_live: bool,
+    slept: bool,
     is_faulty: bool,
     /// The piece of the attract loop that comes next.
     next_piece: usize,
@@ -250,6 +251,7 @@ impl ExhibitRun {
             cleared: VecDeque::with_capacity(CLEARED_MAX),
             is_live: false,
             was_live: false,
+            slept: false,
             is_faulty: false,
             next_piece: 0,
             played_at: HeatLevel::Cool,
@@ -428,18 +430,27 @@ impl ExhibitRun {
         self.moves(seen.status, now)
     }
 
+    /// The hand did not answer, be it for a moment.
+    pub fn link_lost(&mut self) {
+        if std::mem::replace(&mut self.is_live, false) {
+            self.events.push(ExhibitEvent::LinkLost);
+        }
+        self.calm(Calm::NoHand);
+        self.phase = Phase::Calm(Calm::NoHand);
+    }
+
     /// A link that is lost, a stop, or another who talks to the hand ends the permission to move.
     fn watch_link(&mut self, status: &LinkStatus) {
         if !status.state.is_live() {
-            if std::mem::replace(&mut self.is_live, false) {
-                self.events.push(ExhibitEvent::LinkLost);
-            }
-            self.calm(Calm::NoHand);
-            self.phase = Phase::Calm(Calm::NoHand);
+            self.slept |= matches!(status.trouble, Some(LinkTrouble::Suspended { .. }));
+            self.link_lost();
             return;
         }
         if !std::mem::replace(&mut self.is_live, true) {
+            let slept =
+                std::mem::take(&mut self.slept) || status.disarmed == Some(Disarmed::Resume);
             self.phase = Phase::Calm(match std::mem::replace(&mut self.was_live, true) {
+                true if slept => Calm::Slept,
                 true => Calm::LinkLost,
                 false => Calm::NotArmed,
             });
@@ -476,7 +487,7 @@ impl ExhibitRun {
         let all = seen.sample.faults.map(|faults| faults.value);
         let all = all.iter().flat_map(|faults| faults.iter());
         let faults: Vec<Fault> = all.flat_map(|(_, faults)| faults.iter()).collect();
-        if !std::mem::replace(&mut self.is_faulty, true) {
+        if !faults.is_empty() && !std::mem::replace(&mut self.is_faulty, true) {
             let told = faults.iter().copied().map(ExhibitEvent::Fault);
             self.events.extend(told);
         }
@@ -486,14 +497,20 @@ impl ExhibitRun {
             }
             return;
         }
-        if let Phase::Clearing { since } = self.phase
-            && now.since(since) < CLEARS_WITHIN
-        {
+        if faults.iter().any(|fault| fault.clearable() != Some(true)) {
+            self.calm(Calm::Fault);
+            return;
+        }
+        // The link may know of a fault a moment before it is read here; nothing passes meanwhile.
+        let is_waiting = match self.phase {
+            Phase::Clearing { since } => now.since(since) < CLEARS_WITHIN,
+            _ => faults.is_empty(),
+        };
+        if is_waiting {
             return;
         }
         self.cleared.retain(|at| now.since(*at) < CLEARED_WITHIN);
-        let clearable = faults.iter().all(|fault| fault.clearable() == Some(true));
-        if !clearable || faults.is_empty() || self.cleared.len() >= CLEARED_MAX {
+        if self.cleared.len() >= CLEARED_MAX {
             self.calm(Calm::Fault);
             return;
         }

@@ -102,6 +102,7 @@ pub struct Drive {
     rested_ms: u32,
     jam: Option<f64>,
     grip: f64,
+    heating: f64,
 }
 
 /// Position counts at an angle: the register pairs run against each other (manual 2.6.10, 2.6.11).
@@ -132,6 +133,7 @@ impl Drive {
             rested_ms: 0,
             jam: None,
             grip: 1.0,
+            heating: HEATING,
         }
     }
 
@@ -209,6 +211,11 @@ impl Drive {
     /// How much of the contact force is there, 1 = all; a slip takes some away.
     pub const fn set_grip(&mut self, grip: f64) {
         self.grip = grip;
+    }
+
+    /// Lets its current heat it so many times as much as usual.
+    pub fn heat_more(&mut self, times: f64) {
+        self.heating = HEATING * times;
     }
 
     /// Makes it this warm, °C.
@@ -469,7 +476,7 @@ impl Drive {
     fn heat(&mut self) {
         let amps = self.current_ma / 1000.0;
         let cooling = (self.temperature - self.ambient) / COOLING_S;
-        self.temperature += (HEATING * amps * amps - cooling) * STEP_S;
+        self.temperature += (self.heating * amps * amps - cooling) * STEP_S;
         if self.temperature >= HOT && !self.faults.contains(Fault::OverTemperature) {
             self.inject(Fault::OverTemperature);
         }

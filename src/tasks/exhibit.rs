@@ -76,10 +76,11 @@ pub async fn exhibit<H: Hand>(
             },
             Some(setpoints) = sent.recv() => tell(ExhibitStep::Sent(setpoints)),
             () = ended(&mut at.playing) => at.run.ended(clock.now()),
-            record = timeout(TICK, records.next()) => {
-                if let Ok(Some(Record::Reading { sample, .. })) = record {
-                    at.sample = *sample;
-                }
+            record = timeout(TICK, records.next()) => match record {
+                Ok(Some(Record::Reading { sample, .. })) => at.sample = *sample,
+                // A link may be back before anybody looks at its state.
+                Ok(Some(Record::State { state, .. })) if !state.is_live() => at.run.link_lost(),
+                _ => {}
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What the window starts with.
 
+use crate::app::exhibit::ExhibitStart;
 use crate::app::files::settings_file::Loaded;
 use crate::shell::Snap;
 use crate::transport::Endpoint;
@@ -31,6 +32,8 @@ pub struct DesktopStart {
     pub snap: Snap,
     /// Whether what happens at hands is recorded, as far as the settings say so.
     pub records: bool,
+    /// An exhibition to show in place of the window.
+    pub exhibit: Option<ExhibitStart>,
     /// A recorded session to begin with.
     pub replay: Option<PathBuf>,
 }

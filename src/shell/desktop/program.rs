@@ -15,7 +15,7 @@ use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
-use egui::{Vec2, ViewportBuilder, ViewportCommand};
+use egui::{Vec2, ViewportBuilder, ViewportCommand, WindowLevel};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -23,6 +23,9 @@ use std::time::Duration;
 
 /// Ages and countdowns move on this often when nothing comes in.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
+
+/// A window that does not fill its screen, and should, is told to again after this.
+const FILL_EACH: Duration = Duration::from_millis(500);
 
 /// How the window is to stand.
 pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
@@ -82,6 +85,8 @@ pub(crate) struct Program {
     titled: Option<String>,
     /// The window was made to fit its screen.
     fits: bool,
+    /// When the window was last told to fill its screen, while it should.
+    fills: Option<Moment>,
     closing: bool,
 }
 
@@ -118,6 +123,9 @@ impl Program {
             app.record_nothing();
         }
         app.open(start.endpoint, clock.now());
+        if let Some(exhibit) = start.exhibit {
+            app.enter_exhibit(exhibit, clock.now());
+        }
         if let Some(path) = start.replay {
             app.act(Action::Session(SessionAction::Open(path)), clock.now());
         }
@@ -129,6 +137,7 @@ impl Program {
             frame_within_ms,
             titled: None,
             fits: false,
+            fills: None,
             closing: false,
         }
     }
@@ -141,8 +150,11 @@ impl Program {
         let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
         self.frame_within_ms.store(within_ms, Ordering::Relaxed);
         self.title(ctx);
-        self.fit(ctx);
-        self.keep_size(ctx, now);
+        self.fill(ctx, now);
+        if self.fills.is_none() {
+            self.fit(ctx);
+            self.keep_size(ctx, now);
+        }
         self.close(ctx, now);
         ctx.request_repaint_after(REPAINT_AT_LEAST);
     }
@@ -164,6 +176,41 @@ impl Program {
         if self.titled.as_ref() != Some(&title) {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.titled = Some(title);
+        }
+    }
+
+    /// During an exhibition the window fills its screen, above all others, whatever anybody did to it.
+    fn fill(&mut self, ctx: &egui::Context, now: Moment) {
+        let wanted = self.cockpit.state().exhibit.is_some();
+        let is_away = ctx.input(|input| {
+            let view = input.viewport();
+            view.fullscreen == Some(false) || view.minimized == Some(true)
+        });
+        let level = |level| ViewportCommand::WindowLevel(level);
+        let commands = match self.fills {
+            None if !wanted => return,
+            Some(_) if !wanted => {
+                self.fills = None;
+                vec![
+                    ViewportCommand::Fullscreen(false),
+                    ViewportCommand::Decorations(true),
+                    level(WindowLevel::Normal),
+                ]
+            }
+            Some(told) if !is_away || now.since(told) < FILL_EACH => return,
+            _ => {
+                self.fills = Some(now);
+                vec![
+                    ViewportCommand::Minimized(false),
+                    ViewportCommand::Decorations(false),
+                    ViewportCommand::Fullscreen(true),
+                    level(WindowLevel::AlwaysOnTop),
+                    ViewportCommand::Focus,
+                ]
+            }
+        };
+        for command in commands {
+            ctx.send_viewport_cmd(command);
         }
     }
 

@@ -1,5 +1,7 @@
 //! What tasks ask of a hand and what they say of it, on a hand that is only a memory and a script.
 
+mod booth;
+mod exhibit;
 mod fake;
 mod place;
 mod play;

@@ -6,6 +6,7 @@ use crate::ui::text::phrase::texts;
 texts! {
     TAB_COMPARE: "Compare", "对比";
     TAB_TUNE: "Tune", "整定";
+    EXHIBIT_NOT_BEGUN: "No exhibition: connect a hand, and end what is done to it first.", "无法进入展示：请先连接灵巧手，并结束正在进行的操作。";
     SERIES_RUNS: "A series of trials runs: stop it first.", "正在运行抓取试验：请先停止。";
     SIMULATED: "SIMULATED", "仿真", "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
     ONLY_FROM_TO: "Only a number within", "只接受此范围内的数字：";

@@ -100,6 +100,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
         NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
+        NoticeKind::ExhibitNotBegun => said(main::EXHIBIT_NOT_BEGUN),
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),

@@ -1,0 +1,84 @@
+//! `handscope exhibit`: looks at the file of an exhibition and shows it in place of the window.
+
+use crate::app::exhibit::ExhibitStart;
+use crate::app::files::exhibit_file;
+use crate::cli::args::DrawnArgs;
+use crate::cli::out::Out;
+use anyhow::Context as _;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct ExhibitArgs {
+    /// What visitors can play, and how; without it, what is built in
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+
+    /// Only look whether FILE is well, and say what it holds
+    #[arg(long)]
+    check: bool,
+
+    #[command(flatten)]
+    drawn: DrawnArgs,
+}
+
+pub(crate) fn run(out: &mut Out, args: ExhibitArgs) -> anyhow::Result<()> {
+    let start = match &args.file {
+        Some(path) => exhibit_file::read(path)
+            .with_context(|| format!("the exhibition in {} cannot be shown", path.display()))?,
+        None => exhibit_file::built_in().context("the built-in exhibition cannot be read")?,
+    };
+    if args.check {
+        return out.line(&summary(&start));
+    }
+    show(args, start)
+}
+
+/// What a file holds, in one line.
+fn summary(start: &ExhibitStart) -> String {
+    let plan = &start.plan;
+    let names: Vec<&str> = plan
+        .tiles
+        .iter()
+        .map(|tile| tile.name.en.as_str())
+        .collect();
+    let attract = match &plan.attract {
+        Some(attract) => format!("attract loop of {}", attract.pieces.len()),
+        None => "no attract loop".into(),
+    };
+    let pin = match plan.pin {
+        Some(_) => "with a PIN",
+        None => "PIN chosen at the start",
+    };
+    format!(
+        "{} tiles: {}; speed {}, force {} g, {} s a visitor, {attract}, {pin}",
+        names.len(),
+        names.join(", "),
+        plan.limits.speed.get(),
+        plan.limits.force.get(),
+        plan.visit.as_secs(),
+    )
+}
+
+#[cfg(feature = "desktop")]
+fn show(args: ExhibitArgs, start: ExhibitStart) -> anyhow::Result<()> {
+    use crate::cli::window::{WindowShows, open};
+    let shows = WindowShows {
+        records: true,
+        replay: None,
+        exhibit: Some(ExhibitStart {
+            ends_program: true,
+            ..start
+        }),
+        again: (
+            vec!["exhibit".into()],
+            args.file.into_iter().map(Into::into).collect(),
+        ),
+    };
+    open(args.drawn, shows)
+}
+
+#[cfg(not(feature = "desktop"))]
+fn show(_args: ExhibitArgs, _start: ExhibitStart) -> anyhow::Result<()> {
+    crate::cli::window::without_window()
+}
