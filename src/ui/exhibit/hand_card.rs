@@ -3,7 +3,7 @@
 use crate::app::exhibit::ExhibitState;
 use crate::hand::{Finger, PerFinger};
 use crate::ui::exhibit::large::PageLook;
-use crate::ui::exhibit::places::PagePlaces;
+use crate::ui::exhibit::places::{PagePlaces, above};
 use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::{Label, Pane};
 use crate::ui::text::{exhibit, main, words};
@@ -33,13 +33,15 @@ impl HandCard {
         page.card(ui, rect);
         let inner = rect.shrink(20.0 * unit);
         let below = (inner.height() * 0.34).min(300.0 * unit);
-        let (hand, feels) = inner.split_top_bottom_at_y(inner.bottom() - below);
+        let (hand, feels) = above(inner, inner.height() - below, 14.0 * unit);
+        // A little to the right: the badge stands before the little finger.
+        let hand = hand.with_min_x(hand.left() + 64.0 * unit);
         self.0.ui(ui, hand, pane, &tips);
         feels_ui(ui, page, feels, &tips);
         badges_ui(
             ui,
             page,
-            inner.with_max_y(inner.top() + 44.0 * unit),
+            inner.with_max_y(inner.top() + 48.0 * unit),
             (pane.state.hand().is_simulated(), exhibit.view.is_slow),
         );
     }
@@ -77,7 +79,7 @@ fn feels_ui(ui: &mut Ui, page: PageLook, rect: Rect, tips: &PerFinger<Option<Tip
         let tip = tips[finger].unwrap_or_default();
         fingertip::paint(ui.painter(), look, picture.shrink(6.0 * unit), &tip);
         let color = look.palette.dof[finger.bend()];
-        let label = Label::new(look.say(words::finger(finger)), color).font(page.font(26.0));
+        let label = Label::new(look.say(words::finger(finger)), color).font(page.font(28.0));
         label.center().put(ui, name);
     }
 }

@@ -12,6 +12,11 @@ const FONT_LEAST: f32 = 14.0;
 /// A text that does not fit is made smaller down to this part, and only then cut.
 const SHRINK_TO: f32 = 0.6;
 
+/// Size of what stands below the words of a button, in units.
+const NOTE: f32 = 28.0;
+/// Height of a line, in sizes of its font.
+const LINE: f32 = 1.22;
+
 /// Colours, language and the scale of the page.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PageLook {
@@ -75,7 +80,7 @@ impl PageLook {
         text: &str,
         (fill, color): (Color32, Color32),
     ) {
-        let font = self.font(24.0);
+        let font = self.font(28.0);
         let wide = kit::text_width(ui, text, font.clone()) + 36.0 * self.unit;
         let size = vec2(wide.min(rect.width()), rect.height());
         let place = side.align_size_within_rect(size, rect);
@@ -141,9 +146,13 @@ impl<'a> LargeButton<'a> {
             }
             (None, "") => page.paint(ui, inner, (self.words, self.size), color),
             (None, note) => {
-                let (upper, lower) = inner.split_top_bottom_at_fraction(0.62);
+                // Both together in the middle.
+                let [upper, lower] = [self.size, NOTE].map(|size| page.font(size).size * LINE);
+                let size = vec2(inner.width(), (upper + lower).min(inner.height()));
+                let both = Rect::from_center_size(inner.center(), size);
+                let (upper, lower) = both.split_top_bottom_at_fraction(upper / (upper + lower));
                 page.paint(ui, upper, (self.words, self.size), color);
-                page.paint(ui, lower, (note, 28.0), color);
+                page.paint(ui, lower, (note, NOTE), color);
             }
         }
         self.disabled.is_none() && kit::pressed(ui, &response)

@@ -56,7 +56,7 @@ impl PagePlaces {
                 (hand, rest.with_min_x(rest.left() + gap))
             }
         };
-        let (words, rest) = above(rest, 184.0 * unit, gap);
+        let (words, rest) = above(rest, 192.0 * unit, gap);
         let (tiles, stop) = above(rest, rest.height() - stop - gap, gap);
         Self {
             unit,

@@ -58,11 +58,11 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, exhibit: &ExhibitState, pla
     };
     ui.painter().rect_filled(bar, round, words.color);
     let inner = rect.with_min_x(bar.right()).shrink(18.0 * unit);
-    let (title, note) = inner.split_top_bottom_at_y(inner.top() + 62.0 * unit);
+    let (title, note) = inner.split_top_bottom_at_y(inner.top() + 66.0 * unit);
     let color = look.palette.text;
-    page.line(ui, title, (&words.title, 50.0), color);
+    page.line(ui, title, (&words.title, 54.0), color);
     let note = note.with_min_y(note.top() + 6.0 * unit);
-    page.lines(ui, note, (words.note, 30.0), look.palette.muted);
+    page.lines(ui, note, (words.note, 31.0), look.palette.muted);
     if let Some(left) = words.left {
         let bar = note.with_min_y(note.bottom() - 12.0 * unit);
         left_ui(ui, page, bar, left);

@@ -5,6 +5,7 @@ use crate::app::exhibit::{ExhibitAction, ExhibitState};
 use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, Piece};
 use crate::exhibit::run::{HELD_FOR, Wish};
+use crate::hand::Angle;
 use crate::ui::exhibit::large::PageLook;
 use crate::ui::exhibit::places::{NAME, PagePlaces};
 use crate::ui::exhibit::stage;
@@ -12,8 +13,10 @@ use crate::ui::hand::panel;
 use crate::ui::kit::{self, Pane};
 use egui::{Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 
-/// How much is left of the picture on a tile that does nothing.
-const PALE: f32 = 0.4;
+/// How much of the picture is hidden on a tile that does nothing.
+const VEIL: f32 = 0.62;
+/// How strong the colour is that rises in a tile that is held.
+const RISEN: f32 = 0.35;
 
 /// Words in the language of the page.
 pub(crate) fn words_of(words: &BothWords, language: Language) -> &str {
@@ -108,42 +111,36 @@ impl Tile<'_> {
             let wash = palette.wash(palette.accent);
             ui.painter().rect_filled(rect, round, wash);
         }
+        if let Some(part) = self.held {
+            self.held_ui(ui, page, part);
+        }
         let inner = rect.shrink(8.0 * unit);
         let (picture, words) = inner.split_top_bottom_at_y(rect.bottom() - NAME * unit);
         self.picture_ui(ui, page, picture);
         page.paint(ui, words, (name, 30.0), color);
-        if let Some(part) = self.held {
-            self.held_ui(ui, page, part);
-        }
         self.refusal.is_none() && kit::pressed(ui, &response)
     }
 
-    fn picture_ui(&self, ui: &mut Ui, page: PageLook, place: Rect) {
+    fn picture_ui(&self, ui: &Ui, page: PageLook, place: Rect) {
         // What a pose leaves alone is drawn open.
-        let open = |to: Option<crate::hand::Angle>| to.map_or(1000, crate::hand::Angle::get);
-        let shares = self
-            .piece
-            .shown()
-            .map(|to| Some(f32::from(open(to)) / 1000.0));
-        ui.scope(|ui| {
-            if self.refusal.is_some() {
-                ui.set_opacity(PALE);
-            }
-            panel::pose_ui(ui, page.look, place, &shares);
-        });
+        let share = |to: Option<Angle>| f32::from(to.unwrap_or(Angle::MAX).get()) / 1000.0;
+        let shares = self.piece.shown().map(|to| Some(share(to)));
+        panel::pose_ui(ui, page.look, place, &shares);
+        if self.refusal.is_some() {
+            let veil = page.look.palette.card.gamma_multiply(VEIL);
+            ui.painter().rect_filled(place, 0.0, veil);
+        }
     }
 
-    /// How long it is held already: a bar that fills.
+    /// How long it is held already: it fills from below.
     fn held_ui(&self, ui: &Ui, page: PageLook, part: f32) {
-        let (palette, unit) = (page.look.palette, page.unit);
-        let rail = self.rect.shrink(14.0 * unit);
-        let rail = rail.with_max_y(rail.top() + 16.0 * unit);
-        let round = 8.0 * unit;
-        ui.painter().rect_filled(rail, round, palette.sunken);
-        let bar = rail.with_max_x(rail.left() + rail.width() * part);
-        ui.painter().rect_filled(bar, round, palette.accent);
-        let edge = Stroke::new((4.0 * unit).max(2.0), palette.accent);
+        let (accent, round) = (page.look.palette.accent, 16.0 * page.unit);
+        let full = self.rect;
+        let risen = full.with_min_y(full.bottom() - full.height() * part);
+        let painter = ui.painter().with_clip_rect(risen);
+        painter.rect_filled(full, round, accent.gamma_multiply(RISEN));
+        let edge = Stroke::new((5.0 * page.unit).max(2.0), accent);
         ui.painter()
-            .rect_stroke(self.rect, 16.0 * unit, edge, StrokeKind::Inside);
+            .rect_stroke(full, round, edge, StrokeKind::Inside);
     }
 }

@@ -32,7 +32,7 @@ texts! {
 
     STAFF: "Staff", "工作人员";
     STAFF_BUTTON: "Staff: unlock", "工作人员：解锁";
-    PIN_ASK: "PIN of the staff", "工作人员 PIN 码";
+    PIN_ASK: "Staff PIN", "工作人员 PIN 码";
     PIN_CHOOSE: "Choose a PIN: 4 to 8 digits", "设置 PIN 码：4 到 8 位数字";
     PIN_CHOOSE_NOTE: "It is asked for to arm and to leave.", "使能和退出时需要输入。";
     PIN_AGAIN: "Type the PIN once more", "请再次输入 PIN 码";

@@ -5,6 +5,7 @@ use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
+use handscope::app::exhibit::ExhibitStart;
 use handscope::app::files::choose::{ChooseFile, NoChoice};
 use handscope::app::files::reveal::no_reveal;
 use handscope::app::program::App;
@@ -86,6 +87,13 @@ impl Program {
     pub(crate) fn act(&mut self, action: Action) {
         let _inside = self.runtime.enter();
         self.cockpit.app().act(action, self.clock.now());
+    }
+
+    /// Shows an exhibition, as the command line does.
+    pub(crate) fn exhibit(&mut self, start: ExhibitStart) {
+        let _inside = self.runtime.enter();
+        let now = self.clock.now();
+        self.cockpit.app().enter_exhibit(start, now);
     }
 
     /// Time goes by, and the program looks at what came.

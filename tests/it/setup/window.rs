@@ -11,8 +11,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
+use handscope::app::exhibit::ExhibitStart;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
+use handscope::exhibit::plan::ExhibitPlan;
 use handscope::hand::{Dof, Moment, SerialSpeed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
@@ -277,6 +279,47 @@ impl Bench {
     /// Asks for something as a view does that is not open.
     pub(crate) fn act(&mut self, action: Action) {
         self.harness.state_mut().program.act(action);
+    }
+
+    /// Shows an exhibition as the command line does, and waits until it knows its hand.
+    pub(crate) fn exhibit(&mut self, plan: ExhibitPlan) {
+        let room = self.harness.state_mut();
+        room.program.exhibit(ExhibitStart {
+            plan: Arc::new(plan),
+            logo: None,
+            ends_program: false,
+        });
+        self.run(400);
+    }
+
+    /// The pointer that is asked for.
+    pub(crate) fn cursor(&self) -> egui::CursorIcon {
+        self.harness.output().platform_output.cursor_icon
+    }
+
+    /// The secondary button, pressed and let go.
+    pub(crate) fn press_secondary_at(&mut self, pos: egui::Pos2) {
+        for pressed in [true, false] {
+            self.harness.event(egui::Event::PointerButton {
+                pos,
+                button: egui::PointerButton::Secondary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+            self.harness.step();
+        }
+    }
+
+    /// A finger comes down on the screen, which is no pointer.
+    pub(crate) fn touch_at(&mut self, pos: egui::Pos2) {
+        self.harness.event(egui::Event::Touch {
+            device_id: egui::TouchDeviceId(0),
+            id: egui::TouchId(2),
+            phase: egui::TouchPhase::Start,
+            pos,
+            force: None,
+        });
+        self.harness.step();
     }
 
     /// The first start, one second later.

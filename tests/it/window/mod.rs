@@ -3,6 +3,7 @@
 mod cards;
 mod compare;
 mod device;
+mod exhibit;
 mod faults;
 mod joints;
 mod keys;
