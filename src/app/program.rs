@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::exhibit::{ExhibitAction, ExhibitStart, ExhibitState, KeptReport};
-use crate::app::files::exhibit_file;
+use crate::app::exhibit::ExhibitStart;
+use crate::app::exhibit::work::ExhibitWork;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
 use crate::app::files::pose_file;
@@ -58,9 +58,7 @@ pub struct App {
     finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
     exporting: Option<BackgroundJob<NoticeKind>>,
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
-    opening_exhibit: Option<BackgroundJob<Result<ExhibitStart, NoticeKind>>>,
-    /// Of an exhibition that was left; it is being written.
-    left_report: Option<KeptReport>,
+    exhibit: ExhibitWork,
     sessions: Option<BackgroundJob<FilesEnd>>,
     keeping: Option<BackgroundJob<FilesEnd>>,
     recorded: SessionWork,
@@ -108,8 +106,7 @@ impl App {
             finding_ports: None,
             exporting: None,
             importing: None,
-            opening_exhibit: None,
-            left_report: None,
+            exhibit: ExhibitWork::default(),
             sessions: None,
             keeping: None,
             recorded: SessionWork::default(),
@@ -195,7 +192,7 @@ impl App {
             self.quirk_notes.tick(hand, env, notices, now);
         }
         scan.drain();
-        self.tick_exhibit(now);
+        self.exhibit.tick(&mut self.state, &self.env, now);
         self.take_jobs(now);
         self.recorded.tick(&mut self.state, &self.env);
         self.save_changes(now);
@@ -223,11 +220,6 @@ impl App {
         {
             let session = self.state.trials.session(id);
             self.keeping = session.and_then(|session| files::keep(session, &self.env));
-        }
-        match BackgroundJob::take_from(&mut self.opening_exhibit) {
-            None => {}
-            Some(Ok(start)) => self.enter_exhibit(start, now),
-            Some(Err(refused)) => self.tell(refused, now),
         }
         match BackgroundJob::take_from(&mut self.importing) {
             None => {}
@@ -288,7 +280,9 @@ impl App {
                 self.records |= on.contains(&action);
                 self.recorded.act(action, &mut self.state, &self.env);
             }
-            Action::Exhibit(action) => self.exhibit_action(action, now),
+            Action::Exhibit(action) => {
+                self.leaves |= self.exhibit.act(action, &mut self.state, &self.env);
+            }
             Action::Param(action) => self.param_action(action),
             Action::Trial(action) => self.trial_action(action),
             Action::Save(content) => self.export(content),
@@ -555,83 +549,7 @@ impl App {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: ExhibitStart, now: Moment) {
         self.recorded.player = None;
-        self.leave_exhibit(now);
-        let State { hands, notices, .. } = &mut self.state;
-        let hand = hands.shown_mut();
-        hand.now = now;
-        let is_free = !hand.runs_series() && hand.procedure.is_none() && hand.open.is_some();
-        if !is_free {
-            notices.push(now, NoticeKind::ExhibitNotBegun);
-            return;
-        }
-        if hand.may_move() {
-            hand.stop(notices);
-        }
-        hand.take_over();
-        let language = self.state.settings.language;
-        self.state.exhibit = ExhibitState::begin(start, self.state.hand(), language, &self.env);
-        if let Some(exhibit) = &mut self.state.exhibit
-            && let Some(left) = self.left_report.take()
-        {
-            exhibit.report = left;
-        }
-    }
-
-    fn exhibit_action(&mut self, action: ExhibitAction, now: Moment) {
-        let Some(exhibit) = &mut self.state.exhibit else {
-            match action {
-                ExhibitAction::Enter => {
-                    if let Some(start) = exhibit_file::built_in() {
-                        self.enter_exhibit(start, now);
-                    }
-                }
-                ExhibitAction::EnterFile if self.opening_exhibit.is_none() => {
-                    self.opening_exhibit = Some(exhibit_file::open(&self.env));
-                }
-                _ => {}
-            }
-            return;
-        };
-        if exhibit.act(action, now) {
-            self.leaves = exhibit.ends_program;
-            self.leave_exhibit(now);
-        }
-    }
-
-    fn leave_exhibit(&mut self, now: Moment) {
-        let Some(exhibit) = self.state.exhibit.take() else {
-            return;
-        };
-        self.state.settings.language = exhibit.language;
-        self.left_report = Some(exhibit.report);
-        let State { hands, notices, .. } = &mut self.state;
-        let hand = hands.shown_mut();
-        hand.now = now;
-        if hand.may_move() {
-            hand.stop(notices);
-        }
-    }
-
-    fn tick_exhibit(&mut self, now: Moment) {
-        let State {
-            hands,
-            exhibit,
-            settings,
-            ..
-        } = &mut self.state;
-        if let Some(exhibit) = exhibit
-            && exhibit.tick(hands.shown_mut(), now)
-        {
-            settings.language = exhibit.language;
-        }
-        if let Some(mut report) = self.left_report.take() {
-            match report.flush(now) {
-                true => report
-                    .troubles()
-                    .for_each(|told| self.tell(told.clone(), now)),
-                false => self.left_report = Some(report),
-            }
-        }
+        self.exhibit.enter(start, &mut self.state, &self.env, now);
     }
 
     /// A person wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
@@ -679,13 +597,7 @@ impl App {
         let rests = !closing.held || self.state.hands.iter().all(is_held);
         let trials = &self.state.trials;
         let is_kept = trials.running.is_none() && trials.to_keep.is_empty();
-        let shown = self
-            .state
-            .exhibit
-            .as_mut()
-            .map(|exhibit| &mut exhibit.report);
-        let mut reports = shown.into_iter().chain(&mut self.left_report);
-        let is_kept = reports.all(|report| report.flush(now)) && is_kept;
+        let is_kept = self.exhibit.flush(&mut self.state, now) && is_kept;
         let is_kept = is_kept && self.keeping.is_none() && self.recorded.is_written();
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);

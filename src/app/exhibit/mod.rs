@@ -1,8 +1,9 @@
 //! The exhibition that is shown in place of the window: what it shows, what a person may do in it.
 
 pub mod kept_report;
+mod page;
 pub mod state;
-mod work;
+pub(crate) mod work;
 
 #[cfg(test)]
 mod kept_report_tests;

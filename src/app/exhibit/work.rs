@@ -1,162 +1,111 @@
-//! Begins an exhibition, passes on what persons do, takes in what it tells, and ends it.
+//! Begins an exhibition in place of the window, and ends it.
 
 use crate::app::env::Env;
 use crate::app::exhibit::kept_report::KeptReport;
-use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, StaffPanel};
-use crate::app::hand::HandState;
-use crate::app::running::Running;
-use crate::app::settings::Language;
-use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
-use crate::exhibit::run::{ExhibitView, Stage, Wish};
+use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState};
+use crate::app::files::exhibit_file;
+use crate::app::notices::NoticeKind;
+use crate::app::state::State;
 use crate::hand::Moment;
-use crate::store::calendar;
-use crate::tasks::exhibit::{self, ExhibitStep};
-use std::time::Duration;
-use tokio::sync::mpsc;
+use crate::store::BackgroundJob;
 
-/// Wishes that may wait: persons cannot press faster than a task takes them.
-const WISHES_MAX: usize = 64;
-/// What staff see closes by itself after this: nobody leaves it open for visitors.
-const STAFF_FOR: Duration = Duration::from_secs(30);
+/// What goes on around exhibitions.
+#[derive(Debug, Default)]
+pub(crate) struct ExhibitWork {
+    opening: Option<BackgroundJob<Result<ExhibitStart, NoticeKind>>>,
+    /// Of an exhibition that was left; it is being written.
+    left: Option<KeptReport>,
+}
 
-impl ExhibitState {
-    /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
-    pub(crate) fn begin(
-        start: ExhibitStart,
-        hand: &HandState,
-        language: Language,
-        env: &Env,
-    ) -> Option<Self> {
-        let open = hand.open.as_ref()?;
-        let link = open.link.clone();
-        let task_start = exhibit::ExhibitStart {
-            plan: start.plan.clone(),
-            seen: hand.sample,
-            clock: env.clock,
+impl ExhibitWork {
+    /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
+    pub(crate) fn enter(&mut self, start: ExhibitStart, state: &mut State, env: &Env, now: Moment) {
+        self.leave(state, now);
+        let State { hands, notices, .. } = state;
+        let hand = hands.shown_mut();
+        hand.now = now;
+        let is_free = !hand.runs_series() && hand.procedure.is_none() && hand.open.is_some();
+        if !is_free {
+            notices.push(now, NoticeKind::ExhibitNotBegun);
+            return;
+        }
+        if hand.may_move() {
+            hand.stop(notices);
+        }
+        hand.take_over();
+        let language = state.settings.language;
+        state.exhibit = ExhibitState::begin(start, state.hands.shown(), language, env);
+        if let Some(exhibit) = &mut state.exhibit
+            && let Some(left) = self.left.take()
+        {
+            exhibit.report = left;
+        }
+    }
+
+    /// Does what a person asked for. True if the program is to end with the exhibition.
+    pub(crate) fn act(&mut self, action: ExhibitAction, state: &mut State, env: &Env) -> bool {
+        let now = state.now;
+        let Some(exhibit) = &mut state.exhibit else {
+            match action {
+                ExhibitAction::Enter => {
+                    if let Some(start) = exhibit_file::built_in() {
+                        self.enter(start, state, env, now);
+                    }
+                }
+                ExhibitAction::EnterFile if self.opening.is_none() => {
+                    self.opening = Some(exhibit_file::open(env));
+                }
+                _ => {}
+            }
+            return false;
         };
-        let (wishes, wanted) = mpsc::channel(WISHES_MAX);
-        let task = Running::start(env, |steps| async move {
-            exhibit::exhibit(&link, task_start, wanted, |step| steps.tell(step)).await;
-        });
-        let gate = start.plan.pin.clone().map(PinGate::new);
-        Some(Self {
-            staff: match gate {
-                Some(_) => StaffPanel::Closed,
-                None => StaffPanel::Choose {
-                    first: None,
-                    refused: false,
-                },
-            },
-            plan: start.plan,
-            logo: start.logo,
-            view: ExhibitView::default(),
-            report: KeptReport::new(env.documents.clone(), env.runtime.clone()),
-            gate,
-            ends_program: start.ends_program,
-            language,
-            wishes,
-            task,
-        })
+        let leaves = exhibit.act(action, now);
+        let ends_program = exhibit.ends_program;
+        if leaves {
+            self.leave(state, now);
+        }
+        leaves && ends_program
     }
 
-    /// Takes in what went on, and closes what staff left open. True if a visitor has gone and the next one finds the page as the
-    /// first did.
-    pub(crate) fn tick(&mut self, hand: &mut HandState, now: Moment) -> bool {
-        self.report.tick(hand, calendar::since_1970());
-        let before = self.view.stage;
-        let (steps, _end) = self.task.news();
-        for (_, step) in steps {
-            match step {
-                ExhibitStep::View(view) => self.view = view,
-                ExhibitStep::Sent(setpoints) => {
-                    hand.commanded = true;
-                    hand.show(&setpoints);
-                }
-                ExhibitStep::Event(event) => self.report.count(&event),
-            }
-        }
-        let until = match &self.staff {
-            StaffPanel::Ask { until, .. } | StaffPanel::Open { until } => Some(*until),
-            StaffPanel::Closed | StaffPanel::Choose { .. } => None,
+    fn leave(&mut self, state: &mut State, now: Moment) {
+        let Some(exhibit) = state.exhibit.take() else {
+            return;
         };
-        if until.is_some_and(|until| now >= until) {
-            self.staff = StaffPanel::Closed;
+        state.settings.language = exhibit.language;
+        self.left = Some(exhibit.report);
+        let hand = state.hands.shown_mut();
+        hand.now = now;
+        if hand.may_move() {
+            hand.stop(&mut state.notices);
         }
-        let is_played = |stage| matches!(stage, Stage::Visit { .. });
-        is_played(before) && !is_played(self.view.stage)
     }
 
-    /// Does what a person asked for. True if the exhibition is to end.
-    pub(crate) fn act(&mut self, action: ExhibitAction, now: Moment) -> bool {
-        let is_staff = matches!(self.staff, StaffPanel::Open { .. });
-        match action {
-            ExhibitAction::Wish(Wish::Arm | Wish::Disarm) | ExhibitAction::Leave if !is_staff => {}
-            ExhibitAction::Wish(wish) => {
-                if matches!(wish, Wish::Arm | Wish::Disarm) {
-                    self.staff = StaffPanel::Closed;
-                }
-                self.wish(wish);
+    /// Lets the exhibition, its file and its report go on.
+    pub(crate) fn tick(&mut self, state: &mut State, env: &Env, now: Moment) {
+        match BackgroundJob::take_from(&mut self.opening) {
+            None => {}
+            Some(Ok(start)) => self.enter(start, state, env, now),
+            Some(Err(refused)) => state.notices.push(now, refused),
+        }
+        if let Some(exhibit) = &mut state.exhibit
+            && exhibit.tick(state.hands.shown_mut(), now)
+        {
+            state.settings.language = exhibit.language;
+        }
+        if let Some(mut report) = self.left.take() {
+            match report.flush(now) {
+                true => report
+                    .troubles()
+                    .for_each(|told| state.notices.push(now, told.clone())),
+                false => self.left = Some(report),
             }
-            ExhibitAction::AskPin => self.ask(now),
-            ExhibitAction::Pin(typed) => self.pin(typed, now),
-            ExhibitAction::CloseStaff if self.gate.is_some() => self.staff = StaffPanel::Closed,
-            ExhibitAction::Leave => return true,
-            ExhibitAction::CloseStaff | ExhibitAction::Enter | ExhibitAction::EnterFile => {}
-        }
-        false
-    }
-
-    /// Passes on what a person did.
-    pub(crate) fn wish(&mut self, wish: Wish) {
-        // What does not fit is one of very many touches within a moment; a stop goes to the hand by another way, too.
-        let _taken = self.wishes.try_send(wish);
-    }
-
-    /// Asks for the PIN, or goes on asking.
-    pub(crate) fn ask(&mut self, now: Moment) {
-        if matches!(self.staff, StaffPanel::Closed) {
-            let locked = self.gate.as_ref().and_then(|gate| gate.locked_until(now));
-            self.staff = StaffPanel::Ask {
-                answer: locked.map(|until| PinAnswer::Locked { until }),
-                until: now.plus(STAFF_FOR),
-            };
         }
     }
 
-    fn pin(&mut self, typed: String, now: Moment) {
-        let until = now.plus(STAFF_FOR);
-        match (&self.staff, &mut self.gate) {
-            (StaffPanel::Choose { first, .. }, None) => {
-                let pin = Pin::try_from(typed).ok();
-                match (first, pin) {
-                    (None, Some(pin)) => {
-                        self.staff = StaffPanel::Choose {
-                            first: Some(pin),
-                            refused: false,
-                        };
-                    }
-                    (Some(first), Some(pin)) if *first == pin => {
-                        self.gate = Some(PinGate::new(pin));
-                        self.staff = StaffPanel::Open { until };
-                    }
-                    _ => {
-                        self.staff = StaffPanel::Choose {
-                            first: None,
-                            refused: true,
-                        };
-                    }
-                }
-            }
-            (StaffPanel::Ask { .. }, Some(gate)) => {
-                self.staff = match gate.enter(&typed, now) {
-                    PinAnswer::Right => StaffPanel::Open { until },
-                    answer => StaffPanel::Ask {
-                        answer: Some(answer),
-                        until,
-                    },
-                };
-            }
-            _ => {}
-        }
+    /// Writes what is not written yet. True when all is in files, or cannot be.
+    pub(crate) fn flush(&mut self, state: &mut State, now: Moment) -> bool {
+        let shown = state.exhibit.iter_mut().map(|exhibit| &mut exhibit.report);
+        let mut reports = shown.chain(&mut self.left);
+        reports.all(|report| report.flush(now))
     }
 }

@@ -101,6 +101,25 @@ impl Display {
         self.move_to([4.0, f64::from(SIZE.1) - 4.0]);
     }
 
+    /// Clicks with another button: 2 the middle one, 3 the right one.
+    pub(crate) fn click_with(&self, button: u8, at: [f64; 2]) {
+        self.move_to(at);
+        self.tool(&["click", &button.to_string()]);
+        sleep(FRAME);
+    }
+
+    /// Presses a key, or several together.
+    pub(crate) fn key(&self, key: &str) {
+        self.tool(&["key", key]);
+        sleep(FRAME);
+    }
+
+    /// Moves the window or gives it another size, as a person does at its frame.
+    pub(crate) fn change(&self, how: &str, title: &str, [x, y]: [&str; 2]) {
+        self.tool(&["search", "--onlyvisible", "--name", title, how, x, y]);
+        sleep(FRAME);
+    }
+
     /// Gives the window the keyboard, as a window manager does.
     pub(crate) fn focus(&self, title: &str) {
         self.tool(&[

@@ -3,6 +3,8 @@
 #[cfg(all(target_os = "linux", feature = "desktop"))]
 mod display;
 #[cfg(all(target_os = "linux", feature = "desktop"))]
+mod exhibit;
+#[cfg(all(target_os = "linux", feature = "desktop"))]
 mod mouse;
 #[cfg(all(target_os = "linux", feature = "desktop"))]
 mod program;

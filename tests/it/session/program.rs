@@ -3,7 +3,8 @@
 use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp};
 use handscope::hand::Dof;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -105,13 +106,25 @@ impl Window {
         Self::start_in(&hidden, display, hand, &["--opengl"])
     }
 
-    fn start_in(around: &[(&str, &str)], display: &str, hand: &Hand, more: &[&str]) -> Self {
-        let home = tempfile::tempdir().unwrap();
+    /// An exhibition of this file.
+    pub(crate) fn exhibit(display: &str, hand: &Hand, file: &Path) -> Self {
         let mut command = handscope();
+        command.arg("exhibit").arg(file);
+        command.args(["--hand", &hand.endpoint]);
+        Self::start_command(command, &[], display)
+    }
+
+    fn start_in(around: &[(&str, &str)], display: &str, hand: &Hand, more: &[&str]) -> Self {
+        let mut command = handscope();
+        // The twin records nothing either.
+        command.args(["--hand", &hand.endpoint, "--no-record"]);
+        command.args(more);
+        Self::start_command(command, around, display)
+    }
+
+    fn start_command(mut command: Command, around: &[(&str, &str)], display: &str) -> Self {
+        let home = tempfile::tempdir().unwrap();
         command
-            // The twin records nothing either.
-            .args(["--hand", &hand.endpoint, "--no-record"])
-            .args(more)
             .env("DISPLAY", display)
             .envs(around.iter().copied())
             .env("HOME", home.path())

@@ -1,0 +1,162 @@
+//! What a person does on the page of an exhibition, and what it tells.
+
+use crate::app::env::Env;
+use crate::app::exhibit::kept_report::KeptReport;
+use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, StaffPanel};
+use crate::app::hand::HandState;
+use crate::app::running::Running;
+use crate::app::settings::Language;
+use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
+use crate::exhibit::run::{ExhibitView, Stage, Wish};
+use crate::hand::Moment;
+use crate::store::calendar;
+use crate::tasks::exhibit::{self, ExhibitStep};
+use std::time::Duration;
+use tokio::sync::mpsc;
+
+/// Wishes that may wait: persons cannot press faster than a task takes them.
+const WISHES_MAX: usize = 64;
+/// What staff see closes by itself after this: nobody leaves it open for visitors.
+const STAFF_FOR: Duration = Duration::from_secs(30);
+
+impl ExhibitState {
+    /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
+    pub(crate) fn begin(
+        start: ExhibitStart,
+        hand: &HandState,
+        language: Language,
+        env: &Env,
+    ) -> Option<Self> {
+        let open = hand.open.as_ref()?;
+        let link = open.link.clone();
+        let task_start = exhibit::ExhibitStart {
+            plan: start.plan.clone(),
+            seen: hand.sample,
+            clock: env.clock,
+        };
+        let (wishes, wanted) = mpsc::channel(WISHES_MAX);
+        let task = Running::start(env, |steps| async move {
+            exhibit::exhibit(&link, task_start, wanted, |step| steps.tell(step)).await;
+        });
+        let gate = start.plan.pin.clone().map(PinGate::new);
+        Some(Self {
+            staff: match gate {
+                Some(_) => StaffPanel::Closed,
+                None => StaffPanel::Choose {
+                    first: None,
+                    refused: false,
+                },
+            },
+            plan: start.plan,
+            logo: start.logo,
+            view: ExhibitView::default(),
+            report: KeptReport::new(env.documents.clone(), env.runtime.clone()),
+            gate,
+            ends_program: start.ends_program,
+            language,
+            wishes,
+            task,
+        })
+    }
+
+    /// Takes in what went on, and closes what staff left open. True if a visitor has gone and the next one finds the page as the
+    /// first did.
+    pub(crate) fn tick(&mut self, hand: &mut HandState, now: Moment) -> bool {
+        self.report.tick(hand, calendar::since_1970());
+        let before = self.view.stage;
+        let (steps, _end) = self.task.news();
+        for (_, step) in steps {
+            match step {
+                ExhibitStep::View(view) => self.view = view,
+                ExhibitStep::Sent(setpoints) => {
+                    hand.commanded = true;
+                    hand.show(&setpoints);
+                }
+                ExhibitStep::Event(event) => self.report.count(&event),
+            }
+        }
+        let until = match &self.staff {
+            StaffPanel::Ask { until, .. } | StaffPanel::Open { until } => Some(*until),
+            StaffPanel::Closed | StaffPanel::Choose { .. } => None,
+        };
+        if until.is_some_and(|until| now >= until) {
+            self.staff = StaffPanel::Closed;
+        }
+        let is_played = |stage| matches!(stage, Stage::Visit { .. });
+        is_played(before) && !is_played(self.view.stage)
+    }
+
+    /// Does what a person asked for. True if the exhibition is to end.
+    pub(crate) fn act(&mut self, action: ExhibitAction, now: Moment) -> bool {
+        let is_staff = matches!(self.staff, StaffPanel::Open { .. });
+        match action {
+            ExhibitAction::Wish(Wish::Arm | Wish::Disarm) | ExhibitAction::Leave if !is_staff => {}
+            ExhibitAction::Wish(wish) => {
+                if matches!(wish, Wish::Arm | Wish::Disarm) {
+                    self.staff = StaffPanel::Closed;
+                }
+                self.wish(wish);
+            }
+            ExhibitAction::AskPin => self.ask(now),
+            ExhibitAction::Pin(typed) => self.pin(typed, now),
+            ExhibitAction::CloseStaff if self.gate.is_some() => self.staff = StaffPanel::Closed,
+            ExhibitAction::Leave => return true,
+            ExhibitAction::CloseStaff | ExhibitAction::Enter | ExhibitAction::EnterFile => {}
+        }
+        false
+    }
+
+    /// Passes on what a person did.
+    pub(crate) fn wish(&mut self, wish: Wish) {
+        // What does not fit is one of very many touches within a moment; a stop goes to the hand by another way, too.
+        let _taken = self.wishes.try_send(wish);
+    }
+
+    /// Asks for the PIN, or goes on asking.
+    pub(crate) fn ask(&mut self, now: Moment) {
+        if matches!(self.staff, StaffPanel::Closed) {
+            let locked = self.gate.as_ref().and_then(|gate| gate.locked_until(now));
+            self.staff = StaffPanel::Ask {
+                answer: locked.map(|until| PinAnswer::Locked { until }),
+                until: now.plus(STAFF_FOR),
+            };
+        }
+    }
+
+    fn pin(&mut self, typed: String, now: Moment) {
+        let until = now.plus(STAFF_FOR);
+        match (&self.staff, &mut self.gate) {
+            (StaffPanel::Choose { first, .. }, None) => {
+                let pin = Pin::try_from(typed).ok();
+                match (first, pin) {
+                    (None, Some(pin)) => {
+                        self.staff = StaffPanel::Choose {
+                            first: Some(pin),
+                            refused: false,
+                        };
+                    }
+                    (Some(first), Some(pin)) if *first == pin => {
+                        self.gate = Some(PinGate::new(pin));
+                        self.staff = StaffPanel::Open { until };
+                    }
+                    _ => {
+                        self.staff = StaffPanel::Choose {
+                            first: None,
+                            refused: true,
+                        };
+                    }
+                }
+            }
+            (StaffPanel::Ask { .. }, Some(gate)) => {
+                self.staff = match gate.enter(&typed, now) {
+                    PinAnswer::Right => StaffPanel::Open { until },
+                    answer => StaffPanel::Ask {
+                        answer: Some(answer),
+                        until,
+                    },
+                };
+            }
+            _ => {}
+        }
+    }
+}
