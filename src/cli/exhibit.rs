@@ -2,8 +2,8 @@
 
 use crate::app::exhibit::ExhibitStart;
 use crate::app::files::exhibit_file;
-use crate::cli::args::DrawnArgs;
 use crate::cli::out::Out;
+use crate::cli::window::DrawnArgs;
 use anyhow::Context as _;
 use clap::Args;
 use std::path::PathBuf;

@@ -1,6 +1,59 @@
 //! Starts the window from the command line, or says why there is none.
 
-use crate::cli::args::{DrawnArgs, WindowArgs};
+use crate::transport::Endpoint;
+use clap::Args;
+use std::path::PathBuf;
+
+/// How the window opens.
+#[derive(Debug, Default, Args)]
+pub(crate) struct WindowArgs {
+    #[command(flatten)]
+    pub(crate) drawn: DrawnArgs,
+
+    /// Record nothing in this run
+    #[arg(long)]
+    pub(crate) no_record: bool,
+
+    /// A recorded session to replay in the window
+    #[arg(value_name = "FILE.mcap", value_parser = recording)]
+    pub(crate) replay: Option<PathBuf>,
+}
+
+/// The hand in the window, and what draws it.
+#[derive(Debug, Default, Args)]
+pub(crate) struct DrawnArgs {
+    /// The hand to open in the window, for example tcp:192.168.11.210:6000
+    #[arg(long, value_name = "URL")]
+    pub(crate) hand: Option<Endpoint>,
+
+    /// Draw the window without OpenGL; chosen automatically where OpenGL does not start or is only software
+    #[arg(long, conflicts_with = "opengl")]
+    pub(crate) software: bool,
+
+    /// Draw the window with OpenGL even where no graphics card is found
+    #[arg(long)]
+    pub(crate) opengl: bool,
+
+    /// The same as --software, with the reason for the window to show
+    #[arg(long, value_name = "REASON", hide = true)]
+    pub(crate) software_because: Option<String>,
+}
+
+/// A mistyped command must not be taken for a file.
+fn recording(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("mcap") => Ok(path),
+        Some("csv") => {
+            Err("values are no recording; 'handscope import' makes a recording of them".into())
+        }
+        _ => Err(
+            "no such command, and a recording ends in .mcap; 'handscope --help' lists the commands"
+                .into(),
+        ),
+    }
+}
 
 /// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
 #[cfg(feature = "desktop")]

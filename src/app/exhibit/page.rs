@@ -101,7 +101,9 @@ impl ExhibitState {
             ExhibitAction::Pin(typed) => self.pin(typed, now),
             ExhibitAction::CloseStaff if self.gate.is_some() => self.staff = StaffPanel::Closed,
             ExhibitAction::Leave => return true,
-            ExhibitAction::CloseStaff | ExhibitAction::Enter | ExhibitAction::EnterFile => {}
+            // Nobody chose a PIN yet, so there is nothing that one would keep from visitors.
+            ExhibitAction::CloseStaff => return true,
+            ExhibitAction::Enter | ExhibitAction::EnterFile => {}
         }
         false
     }

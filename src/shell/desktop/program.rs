@@ -15,7 +15,7 @@ use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
-use egui::{Vec2, ViewportBuilder, ViewportCommand, WindowLevel};
+use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -85,8 +85,8 @@ pub(crate) struct Program {
     titled: Option<String>,
     /// The window was made to fit its screen.
     fits: bool,
-    /// When the window was last told to fill its screen, while it should.
-    fills: Option<Moment>,
+    /// How it fills its screen, while it should.
+    fills: Option<Filling>,
     closing: bool,
 }
 
@@ -182,21 +182,8 @@ impl Program {
     /// During an exhibition the window fills its screen, above all others, whatever anybody did to it.
     fn fill(&mut self, ctx: &egui::Context, now: Moment) {
         let wanted = self.cockpit.state().exhibit.is_some();
-        let (is_away, screen) = ctx.input(|input| {
-            let view = input.viewport();
-            let sizes = view
-                .inner_rect
-                .map(|rect| rect.size())
-                .zip(view.monitor_size);
-            let is_small = sizes.filter(|(inner, screen)| (*screen - *inner).max_elem() > 1.0);
-            let is_away = view.fullscreen == Some(false) || view.minimized == Some(true);
-            (
-                is_away || is_small.is_some(),
-                is_small.map(|(_, screen)| screen),
-            )
-        });
         let level = |level| ViewportCommand::WindowLevel(level);
-        let commands = match self.fills {
+        let commands = match &mut self.fills {
             None if !wanted => return,
             Some(_) if !wanted => {
                 self.fills = None;
@@ -206,9 +193,10 @@ impl Program {
                     level(WindowLevel::Normal),
                 ]
             }
-            Some(told) if !is_away || now.since(told) < FILL_EACH => return,
-            _ => {
-                let by_hand = self.fills.replace(now).and(screen);
+            fills => {
+                let filling = fills.get_or_insert_default();
+                let by_hand = ctx.input(|input| filling.is_away(input.viewport(), now));
+                let Some(by_hand) = by_hand else { return };
                 let mut commands = vec![
                     ViewportCommand::Minimized(false),
                     ViewportCommand::Decorations(false),
@@ -216,7 +204,6 @@ impl Program {
                     level(WindowLevel::AlwaysOnTop),
                     ViewportCommand::Focus,
                 ];
-                // Without a window manager nobody does what full screen asks for.
                 if let Some(screen) = by_hand {
                     commands.push(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
                     commands.push(ViewportCommand::InnerSize(screen));
@@ -285,6 +272,41 @@ impl Program {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             ctx.request_repaint_after(self.cockpit.frame_within());
         }
+    }
+}
+
+/// A window that is to fill its screen.
+#[derive(Debug, Default)]
+struct Filling {
+    /// When it was told to.
+    told: Option<Moment>,
+    /// Nobody does what full screen asks for, as there is no window manager: size and place are set.
+    by_hand: bool,
+}
+
+impl Filling {
+    /// Whether it is to be told now, and the size to set where nobody else does.
+    fn is_away(&mut self, view: &ViewportInfo, now: Moment) -> Option<Option<Vec2>> {
+        let Some(told) = self.told else {
+            self.told = Some(now);
+            return Some(None);
+        };
+        if now.since(told) < FILL_EACH {
+            return None;
+        }
+        let screen = view.monitor_size.zip(view.inner_rect);
+        let is_small =
+            screen.is_some_and(|(screen, inner)| (screen - inner.size()).max_elem() > 1.0);
+        self.by_hand |= is_small && view.fullscreen == Some(true);
+        let is_moved = view
+            .inner_rect
+            .is_some_and(|inner| inner.min != egui::Pos2::ZERO);
+        let is_hidden = view.fullscreen == Some(false) || view.minimized == Some(true);
+        if !(is_small || is_hidden || self.by_hand && is_moved) {
+            return None;
+        }
+        self.told = Some(now);
+        Some(screen.filter(|_| self.by_hand).map(|(screen, _)| screen))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::ui::exhibit::keypad::Keypad;
 use crate::ui::exhibit::large::{LargeButton, PageLook};
 use crate::ui::exhibit::places::{PagePlaces, above};
 use crate::ui::kit::{Label, Look, Pane, Weight};
-use crate::ui::text::{Text, exhibit};
+use crate::ui::text::{Text, exhibit, notices};
 use egui::{Key, Rect, Role, Sense, Ui, WidgetInfo, vec2};
 use std::mem::Discriminant;
 
@@ -28,7 +28,6 @@ struct PadWords {
     note: String,
     is_bad: bool,
     locked: bool,
-    can_cancel: bool,
 }
 
 impl StaffView {
@@ -89,19 +88,13 @@ impl StaffView {
         };
         page.line(ui, note, (&words.note, 28.0), color);
         let last = 84.0 * unit;
-        let keys = match words.can_cancel {
-            true => rest.with_max_y(rest.bottom() - last - 16.0 * unit),
-            false => rest,
-        };
+        let keys = rest.with_max_y(rest.bottom() - last - 16.0 * unit);
         let locked = words.locked.then_some(words.note.as_str());
         let typed = self.keypad.ui(ui, page, keys, locked);
-        if words.can_cancel {
-            let cancel = LargeButton::new(look.say(exhibit::CANCEL));
-            let place = rest.with_min_y(rest.bottom() - last);
-            if cancel.ui(ui, page, place) {
-                pane.actions
-                    .push(Action::Exhibit(ExhibitAction::CloseStaff));
-            }
+        let cancel = LargeButton::new(look.say(exhibit::CANCEL));
+        if cancel.ui(ui, page, rest.with_min_y(rest.bottom() - last)) {
+            let close = Action::Exhibit(ExhibitAction::CloseStaff);
+            pane.actions.push(close);
         }
         typed
     }
@@ -130,7 +123,6 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
         note: look.say(note).to_owned(),
         is_bad: false,
         locked: false,
-        can_cancel: false,
     };
     let bad = |title, note| PadWords {
         note,
@@ -147,21 +139,18 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
             look.say(exhibit::PIN_REFUSED).to_owned(),
         ),
         StaffPanel::Choose { .. } => plain(exhibit::PIN_CHOOSE, exhibit::PIN_CHOOSE_NOTE),
-        StaffPanel::Ask { answer, .. } => PadWords {
-            can_cancel: true,
-            ..match answer {
-                Some(PinAnswer::Wrong { left }) => {
-                    bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_WRONG, &[left]))
-                }
-                Some(PinAnswer::Locked { until }) if *until > pane.state.now => {
-                    let left = until.since(pane.state.now).as_millis().div_ceil(1000);
-                    PadWords {
-                        locked: true,
-                        ..bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_LOCKED, &[&left]))
-                    }
-                }
-                _ => plain(exhibit::PIN_ASK, exhibit::PIN_CHOOSE_NOTE),
+        StaffPanel::Ask { answer, .. } => match answer {
+            Some(PinAnswer::Wrong { left }) => {
+                bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_WRONG, &[left]))
             }
+            Some(PinAnswer::Locked { until }) if *until > pane.state.now => {
+                let left = until.since(pane.state.now).as_millis().div_ceil(1000);
+                PadWords {
+                    locked: true,
+                    ..bad(exhibit::PIN_ASK, look.fill(exhibit::PIN_LOCKED, &[&left]))
+                }
+            }
+            _ => plain(exhibit::PIN_ASK, exhibit::PIN_CHOOSE_NOTE),
         },
     })
 }
@@ -241,7 +230,7 @@ fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
         (exhibit::FAULTS, report.faults.values().sum()),
         (exhibit::STOPS, report.stops),
     ];
-    let high = rect.height() / 6.0;
+    let high = rect.height() / 7.0;
     let (head, mut rest) = above(rect, high, 0.0);
     page.line(
         ui,
@@ -253,6 +242,10 @@ fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
         let (row, below) = above(rest, high, 0.0);
         rest = below;
         figure_ui(ui, page, row, (look, text, count));
+    }
+    if let Some(trouble) = exhibit.report.troubles().last() {
+        let words = notices::notice(look, trouble);
+        page.lines(ui, rest, (&words, 20.0), look.palette.bad);
     }
 }
 
