@@ -170,7 +170,10 @@ impl Action {
     /// True for what is carried out during an exhibition: nothing on its page asks for more.
     #[must_use]
     pub const fn passes_in_exhibit(&self) -> bool {
-        matches!(self, Self::Stop | Self::Exhibit(_) | Self::Language(_))
+        matches!(
+            self,
+            Self::Stop | Self::Exhibit(_) | Self::Language(_) | Self::Theme(_)
+        )
     }
 
     /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All

@@ -31,7 +31,7 @@ pub(crate) struct SnapshotArgs {
     at: Duration,
     #[arg(long, value_name = "NAME", default_value = "window", value_parser = views, help = views_help())]
     view: Views,
-    /// A dialog to show over the view; the files take its name. keep and danger need the built-in hand
+    /// A dialog to show over the view; the files take its name. keep, danger and exhibit need the built-in hand
     #[arg(long, value_parser = CARDS.map(|(name, _)| name))]
     card: Option<String>,
     /// Width x height in points
@@ -63,12 +63,14 @@ enum Views {
 }
 
 /// The dialogs that can be shown.
-const CARDS: [(&str, SceneCard); 5] = [
+const CARDS: [(&str, SceneCard); 7] = [
     ("reset", SceneCard::Reset),
     ("calibrate", SceneCard::Calibrate),
     ("address", SceneCard::Address),
     ("keep", SceneCard::Keep),
     ("danger", SceneCard::Danger),
+    ("exhibit", SceneCard::Exhibit),
+    ("exhibit-pin", SceneCard::ExhibitPin),
 ];
 const THEMES: [(&str, Theme); 2] = [("dark", Theme::Dark), ("light", Theme::Light)];
 const LANGUAGES: [(&str, Language); 2] = [("en", Language::En), ("zh", Language::Zh)];

@@ -1,9 +1,11 @@
 //! Cards over the window, brought there as a person brings them. Draws nothing.
 
 use crate::app::action::Action;
+use crate::app::exhibit::ExhibitAction;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
+use crate::exhibit::run::Wish;
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::shell::headless::driver::{ANSWER_WITHIN, Driver};
@@ -25,8 +27,14 @@ pub enum SceneCard {
     Keep,
     /// The question before defaults that hit hard.
     Danger,
+    /// The page of an exhibition in place of the window: armed, and a visitor plays.
+    Exhibit,
+    /// The same with the pad on which staff choose a PIN.
+    ExhibitPin,
 }
 
+/// A tile that shows more than a fist.
+const PLAYED_TILE: usize = 3;
 /// An address of this computer, so that the way to it is the same everywhere.
 const OTHER_ADDRESS: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 20);
 /// A calibration wants the force steady for two seconds.
@@ -48,7 +56,7 @@ impl SceneCard {
     /// True if a hand has to be written to before it is shown, or might be: only the built-in one is.
     #[must_use]
     pub const fn wants_built_in(self) -> bool {
-        matches!(self, Self::Keep | Self::Danger)
+        matches!(self, Self::Keep | Self::Danger | Self::Exhibit)
     }
 
     /// The line that the built-in hand has to stand at, if it has to.
@@ -74,6 +82,8 @@ impl Driver {
             }
             SceneCard::Keep => self.change_id(),
             SceneCard::Danger => self.apply_hard_defaults(),
+            SceneCard::Exhibit => self.play_at_exhibit(),
+            SceneCard::ExhibitPin => self.act(Action::Exhibit(ExhibitAction::Enter)),
         }
         self.run_for(CHECKED_WITHIN);
         self.hold_still();
@@ -85,6 +95,22 @@ impl Driver {
         self.act(Action::ChangePlace(ParamId::HandId, id));
         self.act(Action::Procedure(ProcedureAction::Begin));
         self.until(MOVED_WITHIN, is_kept_open);
+    }
+
+    fn play_at_exhibit(&mut self) {
+        let pin = || ExhibitAction::Pin("0000".into());
+        let (arm, press) = (Wish::Arm, Wish::Press(PLAYED_TILE));
+        for (action, millis) in [
+            (ExhibitAction::Enter, 500),
+            (pin(), 100),
+            (pin(), 500),
+            (ExhibitAction::Wish(arm), 6000),
+            (ExhibitAction::Wish(press), 200),
+            (ExhibitAction::Wish(Wish::Release), 1400),
+        ] {
+            self.act(Action::Exhibit(action));
+            self.run_for(Duration::from_millis(millis));
+        }
     }
 
     fn apply_hard_defaults(&mut self) {

@@ -149,6 +149,11 @@ fn a_card_is_drawn_over_the_view_the_same_in_every_run() {
     for (card, words) in [
         ("keep", ["Keep the change?", "Goes back by itself in 13 s"]),
         ("danger", ["Apply defaults that hit hard?", "Apply anyway"]),
+        ("exhibit", ["Your turn", "Play time left"]),
+        (
+            "exhibit-pin",
+            ["Choose a PIN: 4 to 8 digits", "Digits typed"],
+        ),
     ] {
         let draw = |name: &str| {
             let out = folder.path().join(name).to_str().unwrap().to_owned();
@@ -181,7 +186,7 @@ fn a_card_is_drawn_over_the_view_the_same_in_every_run() {
 
 #[test]
 fn a_card_that_would_write_to_a_real_hand_is_not_drawn_over_one() {
-    for card in ["keep", "danger"] {
+    for card in ["keep", "danger", "exhibit"] {
         let hand = "rs485:/nowhere/hand";
         let args = [
             "snapshot", "--hand", hand, "--card", card, "--out", "/nowhere",

@@ -6,13 +6,8 @@
 
 use crate::setup::recorded;
 use handscope::app::action::Action;
-use handscope::app::exhibit::{ExhibitAction, ExhibitStart};
 use handscope::app::sessions::SessionAction;
 use handscope::app::settings::{Language, Theme};
-use handscope::exhibit::file;
-use handscope::exhibit::pin::Pin;
-use handscope::exhibit::plan::ExhibitPlan;
-use handscope::exhibit::run::Wish;
 use handscope::hand::Moment;
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::cards::SceneCard;
@@ -24,7 +19,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Duration;
 
 const SIZE: (u32, u32) = (1440, 900);
@@ -77,7 +71,7 @@ const fn card(card: SceneCard, shots: &'static [(&'static str, View)]) -> Stage 
 }
 
 /// The grasp is looked at while it holds; the faults when two drives have one.
-const STAGES: [Stage; 8] = [
+const STAGES: [Stage; 9] = [
     watching(
         "grasp",
         3,
@@ -108,6 +102,10 @@ const STAGES: [Stage; 8] = [
     card(SceneCard::Address, &[("card-address", View::Device)]),
     card(SceneCard::Keep, &[("card-keep", View::Device)]),
     card(SceneCard::Danger, &[("card-danger", View::Device)]),
+    Stage {
+        scenario: "free",
+        ..card(SceneCard::Exhibit, &[("exhibit", View::Live)])
+    },
 ];
 
 /// What has a small picture.
@@ -218,46 +216,6 @@ fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Pic
     let stretch = [10, 20].map(|second| Moment::from_micros(second * 1_000_000));
     driver.replay(faulty, stretch.into()).unwrap();
     shoot(&mut driver, "replay", View::Live);
-}
-
-/// Draws the page of an exhibition while somebody plays, in both languages.
-fn draw_exhibit(mut take: impl FnMut(String, &Picture)) {
-    for (language, name) in [(Language::En, "exhibit"), (Language::Zh, "exhibit-zh")] {
-        let scene = Scene {
-            endpoint: "sim:?seed=1&scenario=free".parse().unwrap(),
-            size: SIZE,
-            scale: 1.0,
-            theme: Theme::Dark,
-            language,
-        };
-        let mut driver = Driver::start(&scene).unwrap();
-        driver.connect().unwrap();
-        driver.run_for(Duration::from_secs(1));
-        let plan = ExhibitPlan {
-            pin: Pin::try_from("4711".to_owned()).ok(),
-            ..file::built_in().unwrap()
-        };
-        let start = ExhibitStart {
-            plan: Arc::new(plan),
-            logo: None,
-            ends_program: false,
-        };
-        let now = driver.now();
-        driver.cockpit().app().enter_exhibit(start, now);
-        for (action, millis) in [
-            (ExhibitAction::AskPin, 500),
-            (ExhibitAction::Pin("4711".into()), 500),
-            (ExhibitAction::Wish(Wish::Arm), 6000),
-            (ExhibitAction::Wish(Wish::Press(3)), 200),
-            (ExhibitAction::Wish(Wish::Release), 4000),
-        ] {
-            let now = driver.now();
-            let app = driver.cockpit().app();
-            app.act(Action::Exhibit(action), now);
-            driver.run_for(Duration::from_millis(millis));
-        }
-        take(name.into(), &driver.picture(View::Live));
-    }
 }
 
 /// A small picture: RGB, row by row.
@@ -465,7 +423,6 @@ fn the_window_looks_as_it_is_committed() {
         draw(stage, 1.0, wants, &mut take);
     }
     draw_sessions(wants, &mut take);
-    draw_exhibit(&mut take);
     for kind in ["txt", "png"] {
         for path in files("tests/it/looks", kind)
             .iter()
