@@ -1,7 +1,6 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
-use crate::cli::exhibit::ExhibitArgs;
 use crate::cli::help::{self, HelpArgs};
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
@@ -13,10 +12,11 @@ use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::sim::{self, SimArgs};
-use crate::cli::snapshot::SnapshotArgs;
 use crate::cli::trial::TrialArgs;
 use crate::cli::watch::WatchArgs;
 use crate::cli::window::WindowArgs;
+use crate::cli::window::exhibit::ExhibitArgs;
+use crate::cli::window::snapshot::SnapshotArgs;
 use clap::{Args, Parser, Subcommand};
 
 /// Watch, drive and tune the FTP series tactile hand.

@@ -2,7 +2,6 @@
 
 mod args;
 mod doctor;
-mod exhibit;
 mod help;
 mod interrupt;
 mod out;
@@ -15,7 +14,6 @@ mod registers;
 mod scan;
 mod session;
 mod sim;
-mod snapshot;
 mod trial;
 mod value;
 mod watch;
@@ -60,14 +58,14 @@ pub fn run() -> ExitCode {
 fn obey(command: Command) -> anyhow::Result<()> {
     let mut out = Out::stdout();
     let done = match command {
-        Command::Snapshot(args) => snapshot::run(&mut out, &args),
+        Command::Snapshot(args) => window::snapshot::run(&mut out, &args),
         Command::Watch(args) => wait_for(watch::run(&mut out, &args)),
         Command::Read(args) => wait_for(read::run(&mut out, &args)),
         Command::Scan(args) => wait_for(scan::run(&mut out, &args)),
         Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
-        Command::Exhibit(args) => exhibit::run(&mut out, args),
+        Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),

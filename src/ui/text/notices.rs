@@ -168,16 +168,10 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             let why = errors::system(look, message);
             look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
         }
-        NoticeKind::SessionRefused { path, why } => {
-            let why = match why {
-                OpenError::Unreadable { message } => errors::system(look, message),
-                OpenError::NotAFile => look.say(sessions::NOT_A_FILE).to_owned(),
-                OpenError::NotMcap => look.say(sessions::NOT_MCAP).to_owned(),
-                OpenError::Foreign => look.say(sessions::FOREIGN).to_owned(),
-                OpenError::Empty => look.say(sessions::EMPTY).to_owned(),
-            };
-            look.fill(sessions::REFUSED, &[&path.display(), &why])
-        }
+        NoticeKind::SessionRefused { path, why } => look.fill(
+            sessions::REFUSED,
+            &[&path.display(), &not_opened(look, why)],
+        ),
         NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
         NoticeKind::SessionsPlanned {
@@ -193,6 +187,18 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
         _ => String::new(),
     }
+}
+
+/// Why a recorded session was not opened.
+fn not_opened(look: Look, why: &OpenError) -> String {
+    let words = match why {
+        OpenError::Unreadable { message } => return errors::system(look, message),
+        OpenError::NotAFile => sessions::NOT_A_FILE,
+        OpenError::NotMcap => sessions::NOT_MCAP,
+        OpenError::Foreign => sessions::FOREIGN,
+        OpenError::Empty => sessions::EMPTY,
+    };
+    look.say(words).to_owned()
 }
 
 fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> String {

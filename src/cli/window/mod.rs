@@ -1,5 +1,8 @@
 //! Starts the window from the command line, or says why there is none.
 
+pub(crate) mod exhibit;
+pub(crate) mod snapshot;
+
 use crate::transport::Endpoint;
 use clap::Args;
 use std::path::PathBuf;
