@@ -22,6 +22,8 @@ const TICK: Duration = Duration::from_millis(50);
 pub struct ExhibitStart {
     /// What may be played.
     pub plan: Arc<ExhibitPlan>,
+    /// Joints that are left alone.
+    pub locked: PerDof<bool>,
     /// What was read until now.
     pub seen: HandSample,
     /// The program's clock.
@@ -52,6 +54,7 @@ pub async fn exhibit<H: Hand>(
     let mut at = AtHand {
         hand,
         run: ExhibitRun::new(start.plan, clock.now()),
+        locked: start.locked,
         sample: start.seen,
         playing: None,
         told,
@@ -110,6 +113,7 @@ async fn ended(playing: &mut Option<PlayingPiece>) {
 struct AtHand<'a, H> {
     hand: &'a H,
     run: ExhibitRun,
+    locked: PerDof<bool>,
     sample: HandSample,
     playing: Option<PlayingPiece>,
     told: mpsc::UnboundedSender<Setpoints>,
@@ -163,7 +167,7 @@ impl<H: Hand> AtHand<'_, H> {
             pace: PlayMode::Through,
             epoch,
             turn: self.hand.take_turn(),
-            locked: PerDof::splat(false),
+            locked: self.locked,
             seen: self.sample,
             clock: self.clock,
         };

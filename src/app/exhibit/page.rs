@@ -31,6 +31,7 @@ impl ExhibitState {
         let link = open.link.clone();
         let task_start = exhibit::ExhibitStart {
             plan: start.plan.clone(),
+            locked: hand.joints.map(|joint| joint.locked),
             seen: hand.sample,
             clock: env.clock,
         };

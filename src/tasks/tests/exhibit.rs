@@ -3,7 +3,7 @@
 use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::run::{Calm, ExhibitEvent, ExhibitView, Stage, Wish};
-use crate::hand::{Angle, Dof, Fault, HandSample, Target};
+use crate::hand::{Angle, Dof, Fault, HandSample, PerDof, Target};
 use crate::record::{Disarmed, LinkState};
 use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, exhibit};
 use crate::tasks::tests::booth::BoothHand;
@@ -34,12 +34,17 @@ struct Booth {
 
 impl Booth {
     fn open(plan: ExhibitPlan, heating: f64) -> Self {
+        Self::open_with(plan, heating, PerDof::splat(false))
+    }
+
+    fn open_with(plan: ExhibitPlan, heating: f64, locked: PerDof<bool>) -> Self {
         let hand = BoothHand::new(&plan, 30.0, heating);
         let (wishes, wanted) = mpsc::channel(64);
         let view = Arc::new(Mutex::new(ExhibitView::default()));
         let events = Arc::new(Mutex::new(BTreeMap::new()));
         let start = ExhibitStart {
             plan: Arc::new(plan),
+            locked,
             seen: HandSample::default(),
             clock: hand.clock,
         };
@@ -374,6 +379,18 @@ async fn a_held_tile_arms_again_only_where_the_file_says_so_and_after_two_second
         assert_eq!((is_playing, booth.moves() > moves), (restart, restart));
         booth.all_well();
     }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_joint_that_was_locked_is_left_alone() {
+    let locked = PerDof::from_fn(|dof| dof == Dof::Ring);
+    let booth = Booth::open_with(plan(), 1.0, locked);
+    sleep(s(2)).await;
+    booth.arm().await;
+    booth.press(FIST).await;
+    sleep(s(8)).await;
+    assert!(booth.hand.angle(Dof::Ring) > 990.0 && booth.hand.angle(Dof::Middle) < 10.0);
+    booth.all_well();
 }
 
 #[tokio::test(start_paused = true)]
