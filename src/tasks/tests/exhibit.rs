@@ -454,15 +454,16 @@ async fn drives_that_would_grow_too_hot_are_slowed_and_rested_before_they_do() {
 
 /// Marks the process that has a day to itself, so that its memory is its own.
 const ALONE: &str = "HANDSCOPE_TEST_ALONE";
+/// What runs in it.
+const THIS: &str =
+    "tasks::tests::exhibit::a_day_of_touches_faults_and_losses_moves_nothing_that_it_should_not";
 
 #[test]
 fn a_day_of_touches_faults_and_losses_moves_nothing_that_it_should_not() {
     if std::env::var_os(ALONE).is_none() {
-        let name = std::thread::current().name().unwrap().to_owned();
+        let name = THIS;
         let mut alone = std::process::Command::new(std::env::current_exe().unwrap());
-        alone
-            .args([&name, "--exact", "--nocapture"])
-            .env(ALONE, "1");
+        alone.args([name, "--exact", "--nocapture"]).env(ALONE, "1");
         let output = alone.output().unwrap();
         let said = String::from_utf8_lossy(&output.stdout);
         println!("{said}{}", String::from_utf8_lossy(&output.stderr));
