@@ -195,6 +195,10 @@ impl App {
         self.exhibit.tick(&mut self.state, &self.env, now);
         self.take_jobs(now);
         self.recorded.tick(&mut self.state, &self.env);
+        if self.state.exhibit.is_some() {
+            // A replay would cover the page, and lead from it.
+            self.recorded.player = None;
+        }
         self.save_changes(now);
     }
 
@@ -548,7 +552,6 @@ impl App {
 
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: ExhibitStart, now: Moment) {
-        self.recorded.player = None;
         self.exhibit.enter(start, &mut self.state, &self.env, now);
     }
 

@@ -178,11 +178,8 @@ enum Phase {
 enum Motion {
     /// Nothing.
     None,
-    /// This, once the hand is armed; asked for then.
-    Waits {
-        plan: PlayPlan,
-        asked: Option<Moment>,
-    },
+    /// This, once the hand is armed.
+    Waits(PlayPlan),
     /// It plays.
     Plays,
     /// It was played, then.
@@ -200,6 +197,8 @@ pub struct ExhibitRun {
     /// What is played is to be held; and it was told to, and has not ended yet.
     holds: bool,
     is_holding: bool,
+    /// Arming was asked for then, whatever is wanted by now, and the link did not arm yet.
+    asked: Option<Moment>,
     /// The link's arming that was asked for here.
     epoch: Option<ArmEpoch>,
     /// The hand is to be stopped.
@@ -239,6 +238,7 @@ impl ExhibitRun {
             motion: Motion::None,
             holds: false,
             is_holding: false,
+            asked: None,
             epoch: None,
             stops: false,
             clears: false,
@@ -296,7 +296,11 @@ impl ExhibitRun {
                 self.calm(Calm::Stopped);
             }
             Wish::Disarm => self.calm(Calm::NotArmed),
-            Wish::Arm => self.permit(now),
+            Wish::Arm => {
+                // A visitor who arms again is nobody who looked at what failed.
+                self.cleared.clear();
+                self.permit(now);
+            }
             Wish::Touch => self.touch(now),
             Wish::Release => self.held = None,
             Wish::Press(tile) => {
@@ -313,7 +317,6 @@ impl ExhibitRun {
     fn permit(&mut self, now: Moment) {
         if self.is_live {
             self.permitted = true;
-            self.cleared.clear();
             self.phase = Phase::Idle;
             self.rest(now);
         }
@@ -329,7 +332,8 @@ impl ExhibitRun {
         self.held = None;
         self.holds = false;
         self.is_holding = false;
-        self.stops |= self.epoch.take().is_some() || self.motion != Motion::None;
+        let may_move = self.epoch.take().is_some() | self.asked.take().is_some();
+        self.stops |= may_move || self.motion != Motion::None;
         self.motion = Motion::None;
     }
 
@@ -381,14 +385,14 @@ impl ExhibitRun {
             _ => self.plan.limits.slower().keep(&piece.plan),
         };
         self.played_at = self.level;
-        self.motion = Motion::Waits { plan, asked: None };
+        self.motion = Motion::Waits(plan);
     }
 
     /// The hand opens, and is disarmed then.
     fn rest(&mut self, now: Moment) {
         self.quiet_since = now;
         let plan = self.plan.open.clone();
-        self.motion = Motion::Waits { plan, asked: None };
+        self.motion = Motion::Waits(plan);
     }
 
     /// What was played is over.
@@ -477,7 +481,8 @@ impl ExhibitRun {
     /// Faults are cleared by themselves where that may be, and need a person where not.
     fn watch_faults(&mut self, seen: Seen<'_>, now: Moment) {
         if seen.status.state != LinkState::Fault {
-            self.is_faulty = false;
+            // A stop in a fault does not end it.
+            self.is_faulty &= seen.status.state == LinkState::Holding;
             if matches!(self.phase, Phase::Clearing { .. }) {
                 self.phase = Phase::Idle;
                 self.rest(now);
@@ -517,7 +522,11 @@ impl ExhibitRun {
         self.cleared.push_back(now);
         self.phase = Phase::Clearing { since: now };
         self.clears = true;
+        // The link disarmed, and what played ends with that.
+        self.holds = false;
+        self.is_holding = false;
         self.motion = Motion::None;
+        self.asked = None;
         self.epoch = None;
     }
 
@@ -537,6 +546,7 @@ impl ExhibitRun {
     /// What time and heat change.
     fn go_on(&mut self, now: Moment) {
         match self.phase {
+            Phase::Calm(_) | Phase::Clearing { .. } => {}
             Phase::Cooling { until } if now < until => {}
             Phase::Cooling { .. } if self.heat.is_rested(now) => {
                 self.phase = Phase::Idle;
@@ -562,7 +572,6 @@ impl ExhibitRun {
             Phase::Visit { tile, .. } => self.go_on_visiting(tile, now),
             Phase::Attract { until } => self.go_on_attracting(until, now),
             Phase::Idle => self.attract(now),
-            Phase::Calm(_) | Phase::Clearing { .. } => {}
         }
     }
 
@@ -625,35 +634,34 @@ impl ExhibitRun {
 
     /// Brings the motion that is wanted to the hand.
     fn moves(&mut self, status: &LinkStatus, now: Moment) -> Option<Order> {
+        if self.asked.is_some() && status.state == LinkState::Armed {
+            self.asked = None;
+            self.epoch = status.armed;
+        }
+        let is_late = |at| now.since(at) >= ARMS_WITHIN;
+        if self.asked.take_if(|at| is_late(*at)).is_some() {
+            self.motion = Motion::None;
+            // Nor is it armed later.
+            return Some(Order::Disarm);
+        }
         let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
-        match &mut self.motion {
+        let is_disarmed = status.state == LinkState::Monitoring && status.armed.is_none();
+        match &self.motion {
             Motion::Done { .. } if is_resting => {
                 self.motion = Motion::None;
                 self.epoch = None;
                 Some(Order::Disarm)
             }
-            Motion::None | Motion::Plays | Motion::Done { .. } => None,
-            Motion::Waits { plan, asked } => {
-                if asked.is_some() && status.state == LinkState::Armed {
-                    self.epoch = status.armed;
-                }
-                if self.epoch.is_some() && self.epoch == status.armed {
-                    let plan = plan.clone();
-                    self.motion = Motion::Plays;
-                    return Some(Order::Play(plan));
-                }
-                match *asked {
-                    None if status.state == LinkState::Monitoring && status.armed.is_none() => {
-                        *asked = Some(now);
-                        Some(Order::Arm(self.plan.limits.request()))
-                    }
-                    Some(at) if now.since(at) >= ARMS_WITHIN => {
-                        self.motion = Motion::None;
-                        None
-                    }
-                    _ => None,
-                }
+            Motion::Waits(plan) if self.epoch.is_some() && self.epoch == status.armed => {
+                let plan = plan.clone();
+                self.motion = Motion::Plays;
+                Some(Order::Play(plan))
             }
+            Motion::Waits(_) if self.asked.is_none() && is_disarmed => {
+                self.asked = Some(now);
+                Some(Order::Arm(self.plan.limits.request()))
+            }
+            _ => None,
         }
     }
 }

@@ -4,7 +4,8 @@ use crate::app::env::Env;
 use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState};
 use crate::app::files::exhibit_file;
-use crate::app::notices::NoticeKind;
+use crate::app::hand::HandState;
+use crate::app::notices::{NoticeKind, Notices};
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
@@ -21,17 +22,17 @@ impl ExhibitWork {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub(crate) fn enter(&mut self, start: ExhibitStart, state: &mut State, env: &Env, now: Moment) {
         self.leave(state, now);
+        // A file that is still asked for would take the place of this exhibition, PIN and all.
+        self.opening = None;
         let State { hands, notices, .. } = state;
         let hand = hands.shown_mut();
         hand.now = now;
-        let is_free = !hand.runs_series() && hand.procedure.is_none() && hand.open.is_some();
-        if !is_free {
+        let is_busy = hand.runs_series() || hand.procedure.is_some() || hand.leaving.is_some();
+        if is_busy || hand.open.is_none() {
             notices.push(now, NoticeKind::ExhibitNotBegun);
             return;
         }
-        if hand.may_move() {
-            hand.stop(notices);
-        }
+        put_down(hand, notices);
         hand.take_over();
         let language = state.settings.language;
         state.exhibit = ExhibitState::begin(start, state.hands.shown(), language, env);
@@ -75,9 +76,7 @@ impl ExhibitWork {
         self.left = Some(exhibit.report);
         let hand = state.hands.shown_mut();
         hand.now = now;
-        if hand.may_move() {
-            hand.stop(&mut state.notices);
-        }
+        put_down(hand, &mut state.notices);
     }
 
     /// Lets the exhibition, its file and its report go on.
@@ -107,5 +106,13 @@ impl ExhibitWork {
         let shown = state.exhibit.iter_mut().map(|exhibit| &mut exhibit.report);
         let mut reports = shown.chain(&mut self.left);
         reports.all(|report| report.flush(now))
+    }
+}
+
+/// Stops a hand that may move. One that rests is not armed later by what was asked before.
+fn put_down(hand: &mut HandState, notices: &mut Notices) {
+    match hand.may_move() {
+        true => hand.stop(notices),
+        false => hand.disarm(),
     }
 }

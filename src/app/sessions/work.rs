@@ -357,5 +357,6 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
 /// True while something goes on at the live hand that a person must see.
 fn is_busy(state: &State) -> bool {
     let hand = state.hand();
-    hand.runs_series() || hand.procedure.is_some() || hand.params.question.is_some()
+    let asks = hand.procedure.is_some() || hand.params.question.is_some();
+    hand.runs_series() || asks || state.exhibit.is_some()
 }

@@ -24,6 +24,8 @@ const SLOW_STEP: Duration = Duration::from_millis(500);
 const TOLD: usize = 6;
 /// Records that may wait for a reader.
 const RECORDS: usize = 64;
+/// How long the link takes to arm: it writes the limits first.
+const ARMS_AFTER: Duration = Duration::from_millis(40);
 
 /// Everything there is of it.
 pub(crate) struct BoothFacts {
@@ -35,6 +37,9 @@ pub(crate) struct BoothFacts {
     told: VecDeque<PerDof<i16>>,
     now_ms: u64,
     epoch: u64,
+    /// The wish to arm that is under way, by its number.
+    arming: Option<u64>,
+    armings: u64,
     turn: u64,
     records: broadcast::Sender<Record>,
     /// What may be sent at all.
@@ -97,6 +102,8 @@ impl BoothHand {
             told: VecDeque::new(),
             now_ms: 0,
             epoch: 0,
+            arming: None,
+            armings: 0,
             turn: 0,
             records: broadcast::channel(RECORDS).0,
             allowed,
@@ -196,6 +203,7 @@ impl BoothFacts {
         match self.status.state {
             LinkState::Fault if !is_faulty => self.status.state = LinkState::Monitoring,
             LinkState::Fault => {}
+            LinkState::Holding if self.drives.iter().any(|(_, one)| one.status().is_moving()) => {}
             _ if is_faulty => {
                 self.disarm(Disarmed::Fault);
                 self.status.state = LinkState::Fault;
@@ -204,9 +212,7 @@ impl BoothFacts {
                 self.person_armed &= faults.iter().all(|one| one.clearable() == Some(true));
             }
             // A stop is over as soon as everything stands.
-            LinkState::Holding if !self.drives.iter().any(|(_, one)| one.status().is_moving()) => {
-                self.status.state = LinkState::Monitoring;
-            }
+            LinkState::Holding => self.status.state = LinkState::Monitoring,
             _ => {}
         }
         self.tell(now);
@@ -258,10 +264,30 @@ impl BoothFacts {
     }
 
     fn disarm(&mut self, why: Disarmed) {
+        self.arming = None;
         if self.status.armed.take().is_some() {
             self.status.disarmed = Some(why);
             self.status.state = LinkState::Monitoring;
         }
+    }
+
+    fn arm(&mut self, request: ArmRequest) {
+        if self.status.state != LinkState::Monitoring || self.sample.angle.is_none() {
+            return;
+        }
+        if !self.person_armed {
+            self.complain("armed, and no person did".into());
+        }
+        for dof in Dof::ALL {
+            self.settings[dof] = DriveSettings {
+                speed: request.speed[dof].get().into(),
+                threshold_g: request.force[dof].get().into(),
+            };
+        }
+        self.epoch += 1;
+        self.status.armed = Some(ArmEpoch(self.epoch));
+        self.status.disarmed = None;
+        self.status.state = LinkState::Armed;
     }
 
     fn complain(&mut self, what: String) {
@@ -350,7 +376,7 @@ impl Hand for BoothHand {
         let mut facts = self.facts();
         facts.disarm(Disarmed::Stop);
         facts.hold();
-        if facts.status.state == LinkState::Monitoring {
+        if facts.status.state.is_live() {
             facts.status.state = LinkState::Holding;
         }
     }
@@ -361,22 +387,18 @@ impl Hand for BoothHand {
 
     fn arm(&self, request: ArmRequest) {
         let mut facts = self.facts();
-        if facts.status.state != LinkState::Monitoring || facts.sample.angle.is_none() {
-            return;
-        }
-        if !facts.person_armed {
-            facts.complain("armed, and no person did".into());
-        }
-        for dof in Dof::ALL {
-            facts.settings[dof] = DriveSettings {
-                speed: request.speed[dof].get().into(),
-                threshold_g: request.force[dof].get().into(),
-            };
-        }
-        facts.epoch += 1;
-        facts.status.armed = Some(ArmEpoch(facts.epoch));
-        facts.status.disarmed = None;
-        facts.status.state = LinkState::Armed;
+        facts.armings += 1;
+        let number = facts.armings;
+        facts.arming = Some(number);
+        let hand = self.clone();
+        tokio::spawn(async move {
+            sleep(ARMS_AFTER).await;
+            let mut facts = hand.facts();
+            if facts.arming == Some(number) {
+                facts.arming = None;
+                facts.arm(request);
+            }
+        });
     }
 
     fn take_turn(&self) -> MotionTurn {

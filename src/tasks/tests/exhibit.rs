@@ -407,6 +407,127 @@ async fn nobody_who_leaves_the_exhibition_leaves_an_armed_hand() {
     assert_eq!(hand.facts().status.disarmed, Some(Disarmed::Stop));
 }
 
+#[tokio::test(start_paused = true)]
+async fn a_touch_while_the_attract_loop_is_arming_leaves_tiles_that_play() {
+    let booth = Booth::armed(plan()).await;
+    while booth.stage() != Stage::Attract {
+        sleep(Duration::from_millis(10)).await;
+    }
+    assert!(!booth.is_armed(), "it is only asked for");
+    booth.wish(Wish::Touch);
+    sleep(s(3)).await;
+    booth.press(FIST).await;
+    sleep(s(6)).await;
+    assert!(booth.hand.angle(Dof::Index) < 10.0);
+    sleep(s(30)).await;
+    assert!(booth.hand.angle(Dof::Index) > 990.0 && !booth.is_armed());
+    booth.all_well();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_while_it_is_arming_wins() {
+    let booth = Booth::armed(plan()).await;
+    for wait_ms in [0, 5, 20, 39, 41, 60] {
+        let moves = booth.moves();
+        booth.wish(Wish::Press(FIST));
+        sleep(Duration::from_millis(wait_ms)).await;
+        booth.stop();
+        sleep(Duration::from_millis(5)).await;
+        assert!(booth.moves() <= moves + 1, "{wait_ms}");
+        let moves = booth.moves();
+        sleep(s(5)).await;
+        assert_eq!(booth.stage(), Stage::Calm(Calm::Stopped), "{wait_ms}");
+        assert_eq!((booth.moves(), booth.is_armed()), (moves, false));
+        booth.arm().await;
+        sleep(s(5)).await;
+    }
+    booth.all_well();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
+    let booth = Booth::armed(plan()).await;
+    while !(booth.stage() == Stage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
+        sleep(Duration::from_millis(20)).await;
+    }
+    // The touch is seen first, and the fault before what plays can end.
+    booth.wish(Wish::Touch);
+    booth.hand.fails(Dof::Ring, Fault::Stall);
+    sleep(s(8)).await;
+    assert_eq!(booth.stage(), Stage::Idle);
+    booth.press(FIST).await;
+    sleep(s(6)).await;
+    assert!(booth.hand.angle(Dof::Index) < 10.0);
+    booth.all_well();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stall_of_a_hot_hand_is_cleared_once_and_then_the_hand_rests() {
+    let booth = Booth::armed(plan()).await;
+    booth.press(FIST).await;
+    sleep(s(3)).await;
+    {
+        let mut facts = booth.hand.facts();
+        for (_, drive) in facts.drives.iter_mut() {
+            drive.warm(58.0);
+        }
+    }
+    booth.hand.fails(Dof::Index, Fault::Stall);
+    sleep(s(8)).await;
+    assert!(
+        matches!(booth.stage(), Stage::Cooling { .. }),
+        "{:?}",
+        booth.stage()
+    );
+    assert_eq!((booth.hand.facts().clears, booth.count("Rest")), (1, 1));
+    booth.all_well();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_fault_that_lasts_is_counted_once() {
+    let booth = Booth::armed(plan()).await;
+    booth.press(FIST).await;
+    sleep(s(1)).await;
+    booth.hand.facts().person_armed = false;
+    booth.hand.facts().drives[Dof::Ring].warm(80.0);
+    booth.hand.fails(Dof::Ring, Fault::OverTemperature);
+    sleep(s(5)).await;
+    assert_eq!(booth.stage(), Stage::Calm(Calm::Fault));
+    booth.stop();
+    sleep(s(5)).await;
+    assert_eq!(booth.count("Fault(OverTemperature)"), 1);
+    booth.all_well();
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_visitor_who_arms_again_does_not_begin_the_count_of_faults_anew() {
+    let booth = Booth::armed(ExhibitPlan {
+        visitor_restart: true,
+        ..plan()
+    })
+    .await;
+    for clears in 1..=3 {
+        booth.press(FIST).await;
+        sleep(s(1)).await;
+        booth.hand.fails(Dof::Index, Fault::Stall);
+        sleep(s(8)).await;
+        assert_eq!(booth.hand.facts().clears, clears);
+    }
+    booth.stop();
+    sleep(s(2)).await;
+    booth.hand.facts().person_armed = true;
+    booth.wish(Wish::Press(FIST));
+    sleep(s(3)).await;
+    booth.wish(Wish::Release);
+    assert!(booth.is_armed());
+    booth.hand.facts().person_armed = false;
+    booth.hand.fails(Dof::Index, Fault::Stall);
+    sleep(s(8)).await;
+    assert_eq!(booth.stage(), Stage::Calm(Calm::Fault));
+    assert_eq!(booth.hand.facts().clears, 3);
+    booth.all_well();
+}
+
 /// Visitors who press without a pause, some of whom hold fingers, for so many hours. Gives the highest temperature of all, how
 /// often it rested, and how many pieces were played.
 async fn crowd(hours: u64, heating: f64) -> (f64, u64, u64) {

@@ -305,6 +305,38 @@ fn nothing_leads_from_the_page_to_anything_else() {
 }
 
 #[test]
+fn a_file_that_is_still_asked_for_does_not_replace_an_exhibition() {
+    let mut bench = Bench::live();
+    let text = include_str!("../../../assets/exhibit.toml");
+    let text = text.replace("Touch a tile: the hand does it", "Another");
+    std::fs::write(bench.folder().join("handscope-exhibit.toml"), text).unwrap();
+    bench.act(Action::Exhibit(ExhibitAction::EnterFile));
+    bench.act(Action::Exhibit(ExhibitAction::Enter));
+    for _ in 0..20 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        bench.run(20);
+    }
+    let title = &bench.state().exhibit.as_ref().unwrap().plan.title.en;
+    assert_eq!(title, "Touch a tile: the hand does it");
+}
+
+#[test]
+fn arming_that_was_asked_for_before_does_not_arm_the_exhibition() {
+    let mut bench = Bench::open(free(), vec2(1440.0, 900.0));
+    bench.wait(1000);
+    bench.act(Action::Arm);
+    bench.exhibit(plan());
+    assert!(!bench.state().hand().is_armed());
+    unlock(&mut bench);
+    bench.click_button("Arm");
+    bench.wait(6000);
+    assert_eq!(stage(&bench), Stage::Idle);
+    press(&mut bench, "Fist");
+    bench.wait(5000);
+    assert!(bench.angle(Dof::Index) < 100);
+}
+
+#[test]
 fn the_page_has_its_own_zoom_and_the_window_gets_its_own_back() {
     let zoom = Zoom::from(1.2);
     let mut bench = Bench::with(Settings {

@@ -3,6 +3,8 @@
 use crate::setup::window::{Bench, LARGE};
 use crate::window::tune;
 use handscope::app::action::Action;
+use handscope::app::exhibit::ExhibitAction;
+use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
 use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
 use handscope::app::settings::Theme;
@@ -450,6 +452,29 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
         !bench.texts_with("Not replayed now").is_empty()
     });
     assert!(bench.state().timeline.is_none(), "a question is open");
+}
+
+#[test]
+fn a_replay_and_an_exhibition_are_never_shown_together() {
+    let is_told = |bench: &Bench| {
+        let mut told = bench.state().notices.iter();
+        told.any(|notice| notice.what == NoticeKind::NotReplayedNow)
+    };
+    let mut late = bench(Scenario::Idle);
+    let path = ended(&mut late);
+    late.act(Action::Session(SessionAction::Open(path)));
+    late.act(Action::Exhibit(ExhibitAction::Enter));
+    settle(&mut late, is_told);
+    assert!(late.state().exhibit.is_some() && late.state().timeline.is_none());
+
+    let mut early = bench(Scenario::Idle);
+    let path = ended(&mut early);
+    let text = include_str!("../../../assets/exhibit.toml");
+    std::fs::write(early.folder().join("handscope-exhibit.toml"), text).unwrap();
+    early.act(Action::Exhibit(ExhibitAction::EnterFile));
+    early.act(Action::Session(SessionAction::Open(path)));
+    settle(&mut early, |bench| bench.state().exhibit.is_some());
+    assert!(early.state().timeline.is_none());
 }
 
 #[test]
