@@ -242,7 +242,11 @@ impl App {
 
     fn save_changes(&mut self, now: Moment) {
         let at = now.since(Moment::ZERO);
-        let settings = self.settings_saver.tick(&self.state.settings, at);
+        // What a visitor chooses is not what staff chose.
+        let settings = match self.state.exhibit {
+            Some(_) => Ok(()),
+            None => self.settings_saver.tick(&self.state.settings, at),
+        };
         let poses = self.pose_saver.tick(&self.state.poses.library, at);
         for (path, error) in [settings.err(), poses.err()].into_iter().flatten() {
             self.tell(NoticeKind::not_saved(path, &error), now);

@@ -2,8 +2,12 @@
 
 use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{Calm, ExhibitEvent, ExhibitView, Stage, Wish};
-use crate::hand::{Angle, Dof, Fault, HandSample, PerDof, Target};
+use crate::exhibit::run::{Calm, ExhibitEvent, ExhibitRun, ExhibitView, Order, Seen, Stage, Wish};
+use crate::hand::{
+    Angle, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target, TemperatureReading,
+    Timed,
+};
+use crate::link::LinkStatus;
 use crate::record::{Disarmed, LinkState};
 use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, exhibit};
 use crate::tasks::tests::booth::BoothHand;
@@ -444,21 +448,64 @@ async fn a_stop_while_it_is_arming_wins() {
     booth.all_well();
 }
 
-#[tokio::test(start_paused = true)]
-async fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
-    let booth = Booth::armed(plan()).await;
-    while !(booth.stage() == Stage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
-        sleep(Duration::from_millis(20)).await;
+fn at(second: u64) -> Moment {
+    Moment::from_micros(second * 1_000_000)
+}
+
+/// What an exhibition orders at a cool hand whose link is in this state, under the arming of this number if any.
+fn order(
+    run: &mut ExhibitRun,
+    (state, armed): (LinkState, Option<u64>),
+    second: u64,
+) -> Option<Order> {
+    fn timed<T: Copy>(value: T, second: u64) -> Option<Timed<PerDof<T>>> {
+        Some(Timed {
+            value: PerDof::splat(value),
+            asked: at(second),
+            received: at(second),
+        })
     }
-    // The touch is seen first, and the fault before what plays can end.
-    booth.wish(Wish::Touch);
-    booth.hand.fails(Dof::Ring, Fault::Stall);
-    sleep(s(8)).await;
-    assert_eq!(booth.stage(), Stage::Idle);
-    booth.press(FIST).await;
-    sleep(s(6)).await;
-    assert!(booth.hand.angle(Dof::Index) < 10.0);
-    booth.all_well();
+    let bits = u8::from(state == LinkState::Fault) << Fault::Stall.bit();
+    let sample = HandSample {
+        faults: timed(Faults::from_raw(bits), second),
+        temperature: timed(TemperatureReading::new(30), second),
+        ..HandSample::default()
+    };
+    let status = LinkStatus {
+        state,
+        armed: armed.map(ArmEpoch),
+        ..LinkStatus::default()
+    };
+    let seen = Seen {
+        status: &status,
+        sample: &sample,
+    };
+    run.tick(seen, at(second))
+}
+
+#[test]
+fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
+    let free = (LinkState::Monitoring, None);
+    let mut run = ExhibitRun::new(Arc::new(plan()), at(0));
+    assert_eq!(order(&mut run, free, 1), None);
+    run.wish(Wish::Arm, at(1));
+    for (second, epoch) in [(1, 1), (70, 2)] {
+        let asked = order(&mut run, free, second);
+        assert!(matches!(asked, Some(Order::Arm(_))), "{asked:?}");
+        let armed = (LinkState::Armed, Some(epoch));
+        let plays = order(&mut run, armed, second);
+        assert!(matches!(plays, Some(Order::Play(_))), "{plays:?}");
+        if epoch == 1 {
+            run.ended(at(5));
+            assert_eq!(order(&mut run, armed, 5), Some(Order::Disarm));
+        }
+    }
+    // What plays is to be held for a visitor, and ends with the fault before it can be.
+    run.wish(Wish::Touch, at(71));
+    let faulty = (LinkState::Fault, None);
+    assert_eq!(order(&mut run, faulty, 71), Some(Order::Clear));
+    let asked = order(&mut run, free, 72);
+    assert!(matches!(asked, Some(Order::Arm(_))), "to open: {asked:?}");
 }
 
 #[tokio::test(start_paused = true)]
