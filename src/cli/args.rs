@@ -42,7 +42,7 @@ pub(crate) enum Command {
     Snapshot(SnapshotArgs),
     /// Print what the hand reports, as it arrives
     #[command(
-        after_help = "Examples:\n  handscope watch --hand sim: --for 5\n  handscope watch --hand rs485:/dev/ttyUSB0 --for 5 --json\n\nIt only reads. With --json each line is one object; the last one holds the statistics."
+        after_help = "Examples:\n  handscope watch --hand sim: --for 5\n  handscope watch --hand rs485:/dev/ttyUSB0 --for 5 --json\n  handscope watch --hand sim: --json --udp 127.0.0.1:9870\n\nIt only reads. With --json each line is one object; the last one holds the statistics."
     )]
     Watch(WatchArgs),
     /// Read registers by the names in the maker's manual

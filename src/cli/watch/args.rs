@@ -3,6 +3,7 @@
 use crate::cli::parse::seconds;
 use crate::link::PollRates;
 use crate::transport::Endpoint;
+use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -17,6 +18,9 @@ pub(crate) struct WatchArgs {
     /// Print one JSON object per line
     #[arg(long)]
     pub(crate) json: bool,
+    /// Send each sample there, one JSON object a datagram, instead of printing it
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address, requires = "json", conflicts_with = "wire")]
+    pub(crate) udp: Option<SocketAddr>,
     /// Print the frames on the wire instead of values
     #[arg(long)]
     pub(crate) wire: bool,
@@ -41,4 +45,14 @@ impl WatchArgs {
             None => std::future::pending().await,
         }
     }
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let address = text.parse().ok();
+    let address = address.filter(|address: &SocketAddr| address.port() != 0);
+    address.ok_or_else(|| {
+        format!(
+            "'{text}' is not an address with a port: write it in numbers, such as 127.0.0.1:9870"
+        )
+    })
 }

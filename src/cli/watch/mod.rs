@@ -1,5 +1,6 @@
 //! `watch`: what the hand says, as it says it, and at the end what the link measured. Writes nothing to the hand.
 mod args;
+mod datagrams;
 pub(crate) mod telemetry;
 mod wire;
 
@@ -8,12 +9,14 @@ pub(crate) use args::WatchArgs;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::cli::watch::datagrams::Datagrams;
 use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
 use crate::cli::watch::wire::FramePrinter;
 use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
 use anyhow::bail;
+use serde_json::Value;
 use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{MissedTickBehavior, interval};
@@ -26,7 +29,7 @@ const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 /// Watches until the time is up or a person ends it. Fails if the hand never answered.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
-    Watch::new(out, args).run(interrupt).await
+    Watch::new(out, args)?.run(interrupt).await
 }
 
 struct Watch<'a> {
@@ -35,6 +38,8 @@ struct Watch<'a> {
     clock: Clock,
     link: LinkHandle,
     records: Records,
+    /// Samples are sent in place of being printed.
+    datagrams: Option<Datagrams>,
     /// Frames are printed in place of values.
     frames: Option<FramePrinter>,
     /// State reads taken so far; each of them is a line of JSON.
@@ -45,10 +50,12 @@ struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    fn new(out: &'a mut Out, args: &'a WatchArgs) -> Self {
+    fn new(out: &'a mut Out, args: &'a WatchArgs) -> anyhow::Result<Self> {
+        let datagrams = args.udp.map(Datagrams::to).transpose()?;
         let clock = Clock::start();
         let (link, records) = session::open_with_records(&args.hand, args.rates(), clock);
-        Self {
+        Ok(Self {
+            datagrams,
             frames: args.wire.then(|| FramePrinter::new(args, &link)),
             link,
             records,
@@ -59,7 +66,7 @@ impl<'a> Watch<'a> {
             last_text: None,
             answered: false,
             told: None,
-        }
+        })
     }
 
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
@@ -151,6 +158,10 @@ impl<'a> Watch<'a> {
         }
         self.taken += 1;
         let at = angle.received;
+        if let Some(datagrams) = &mut self.datagrams {
+            datagrams.send(&sample_json(&sample, at));
+            return Ok(());
+        }
         if self.args.json {
             return self.out.object(&sample_json(&sample, at));
         }
@@ -190,7 +201,14 @@ impl<'a> Watch<'a> {
         // A sample is told before it is counted.
         stats.state_reads = stats.state_reads.max(self.taken);
         match self.args.json {
-            true => self.out.object(&stats_json(&stats, elapsed))?,
+            true => {
+                let mut line = stats_json(&stats, elapsed);
+                let fields = line.get_mut("stats").and_then(Value::as_object_mut);
+                if let (Some(datagrams), Some(fields)) = (&self.datagrams, fields) {
+                    fields.insert("udp".into(), datagrams.figures());
+                }
+                self.out.object(&line)?;
+            }
             false => self.out.line(&stats_text(&stats, elapsed))?,
         }
         self.out.flush()

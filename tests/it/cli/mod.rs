@@ -2,6 +2,7 @@
 
 #[cfg(unix)]
 mod can;
+mod datagrams;
 #[cfg(unix)]
 mod doctor;
 #[cfg(unix)]
