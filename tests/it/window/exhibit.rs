@@ -6,7 +6,7 @@ use egui::{Key, Modifiers, Pos2, Vec2, vec2};
 use handscope::app::action::Action;
 use handscope::app::exhibit::{ExhibitAction, StaffPanel};
 use handscope::app::params::ParamAction;
-use handscope::app::settings::{Language, Settings, Theme, Zoom};
+use handscope::app::settings::{Language, Settings, Zoom};
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::ExhibitPlan;
@@ -257,7 +257,6 @@ fn nothing_leads_from_the_page_to_anything_else() {
         Action::ClearErrors,
         Action::FactoryReset,
         Action::CalibrateForce,
-        Action::Theme(Theme::Light),
         Action::Leave,
         Action::Exhibit(ExhibitAction::Leave),
         Action::Exhibit(ExhibitAction::Enter),
