@@ -29,7 +29,8 @@
 //! hand; each recorded session is written by a thread of its own behind a bounded queue, and other files are read and written
 //! on threads that may wait. Values cross between them, locks do not: what happens at a hand comes as
 //! [`record::Record`]s, setpoints go into one slot that a stop empties, and a task's steps and its end come over a channel.
-//! The limits of a series are judged in its task, where the readings arrive, so no window is in their way.
+//! The limits of a series are judged in its task, where the readings arrive, so no window is in their way; so is all that happens at
+//! an exhibition.
 //!
 //! # What always holds
 //!

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::exhibit::ExhibitStart;
+use crate::app::exhibit::Exhibition;
 use crate::app::exhibit::work::ExhibitWork;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
@@ -22,7 +22,7 @@ use crate::app::settings::Settings;
 use crate::app::state::{LeaveQuestion, State};
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
-use crate::exhibit::run::Wish;
+use crate::exhibit::run::ExhibitWish;
 use crate::hand::{Dof, Moment};
 use crate::history::MarkKind;
 use crate::params::file::ParamsFile;
@@ -325,7 +325,7 @@ impl App {
             Action::Stop => {
                 hand.stop(notices);
                 if let Some(exhibit) = exhibit {
-                    exhibit.wish(Wish::Stop);
+                    exhibit.wish(ExhibitWish::Stop);
                 }
             }
             Action::Arm => hand.arm(notices),
@@ -555,7 +555,7 @@ impl App {
     }
 
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
-    pub fn enter_exhibit(&mut self, start: ExhibitStart, now: Moment) {
+    pub fn enter_exhibit(&mut self, start: Exhibition, now: Moment) {
         self.exhibit.enter(start, &mut self.state, &self.env, now);
     }
 

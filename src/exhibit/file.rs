@@ -2,10 +2,10 @@
 
 use crate::exhibit::pin::{BadPin, DIGITS, Pin};
 use crate::exhibit::plan::{
-    AttractLoop, BothWords, ExhibitPlan, MotionLimits, Piece, TILES, open_plan,
+    AttractLoop, BothWords, ExhibitPiece, ExhibitPlan, MotionLimits, TILES, open_plan,
 };
 use crate::hand::{Force, Speed};
-use crate::poses::library::{PoseId, PoseLibrary};
+use crate::poses::library::PoseLibrary;
 use crate::poses::starter::starter;
 use crate::store::{FileCause, FileError, FileText};
 use serde::Deserialize;
@@ -29,7 +29,7 @@ const BUILT_IN: &str = include_str!("../../assets/exhibit.toml");
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileRow {
+struct ExhibitRow {
     #[serde(rename = "format")]
     _format: String,
     #[serde(rename = "version")]
@@ -73,9 +73,17 @@ struct AttractRow {
 /// What is shown without a file.
 #[must_use]
 pub fn built_in() -> Option<ExhibitPlan> {
-    let plan = read(BUILT_IN, Path::new(""), &PoseLibrary::default());
+    let file = ExhibitFile::parse(BUILT_IN, Path::new(""));
+    let plan = file.and_then(|file| file.plan(&PoseLibrary::default()));
     debug_assert!(plan.is_ok(), "{plan:?}");
     plan.ok()
+}
+
+/// The text of such a file, and the folder in which it lies.
+pub struct ExhibitFile<'a> {
+    source: FileText<'a>,
+    row: ExhibitRow,
+    folder: &'a Path,
 }
 
 /// A file that the one of an exhibition names.
@@ -98,61 +106,65 @@ impl NamedFile<'_> {
     }
 }
 
-/// The file of poses that a text names, in this folder.
-///
-/// # Errors
-/// [`FileError`] with line and field.
-pub fn poses_of<'a>(text: &'a str, folder: &Path) -> Result<Option<NamedFile<'a>>, FileError> {
-    let source = FileText::of(text, FORMAT)?;
-    let row: FileRow = source.parse()?;
-    Ok(row.poses.map(|poses| NamedFile {
-        path: folder.join(poses.get_ref()),
-        source,
-        at: poses.span(),
-        field: "poses",
-    }))
-}
-
-/// The picture that a text names, in this folder.
-///
-/// # Errors
-/// [`FileError`] with line and field.
-pub fn logo_of<'a>(text: &'a str, folder: &Path) -> Result<Option<NamedFile<'a>>, FileError> {
-    let source = FileText::of(text, FORMAT)?;
-    let row: FileRow = source.parse()?;
-    logo(source, row.logo, folder)
-}
-
-fn logo<'a>(
-    source: FileText<'a>,
-    got: Option<Spanned<PathBuf>>,
-    folder: &Path,
-) -> Result<Option<NamedFile<'a>>, FileError> {
-    let Some(got) = got else { return Ok(None) };
-    let (path, at) = (got.get_ref(), got.span());
-    let is_png = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("png");
-    if !path.extension().is_some_and(is_png) {
-        let cause = FileCause::Value {
-            got: quoted(&path.display().to_string()),
-            allowed: "a file that ends in .png".into(),
-        };
-        return Err(source.blame(at, "logo", cause));
+impl<'a> ExhibitFile<'a> {
+    /// A text with known fields only.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and field.
+    pub fn parse(text: &'a str, folder: &'a Path) -> Result<Self, FileError> {
+        let source = FileText::of(text, FORMAT)?;
+        let row = source.parse()?;
+        Ok(Self {
+            source,
+            row,
+            folder,
+        })
     }
-    Ok(Some(NamedFile {
-        path: folder.join(path),
-        source,
-        at,
-        field: "logo",
-    }))
-}
 
-/// The exhibition that a text in this folder holds. Its tiles are named after entries of `own`, or after what is shipped.
-///
-/// # Errors
-/// [`FileError`] with line and field; nothing is taken of such a text.
-pub fn read(text: &str, folder: &Path, own: &PoseLibrary) -> Result<ExhibitPlan, FileError> {
-    let source = FileText::of(text, FORMAT)?;
-    ExhibitReader { source, own }.plan(source.parse()?, folder)
+    /// The file of poses that it names.
+    #[must_use]
+    pub fn poses(&self) -> Option<NamedFile<'a>> {
+        let poses = self.row.poses.as_ref();
+        poses.map(|named| self.named("poses", named))
+    }
+
+    /// The picture that it names.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and field, where that is no PNG by its name.
+    pub fn logo(&self) -> Result<Option<NamedFile<'a>>, FileError> {
+        let Some(logo) = &self.row.logo else {
+            return Ok(None);
+        };
+        let path = logo.get_ref();
+        let is_png = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("png");
+        if !path.extension().is_some_and(is_png) {
+            let cause = FileCause::Value {
+                got: quoted(&path.display().to_string()),
+                allowed: "a file that ends in .png".into(),
+            };
+            return Err(self.source.blame(logo.span(), "logo", cause));
+        }
+        Ok(Some(self.named("logo", logo)))
+    }
+
+    fn named(&self, field: &'static str, file: &Spanned<PathBuf>) -> NamedFile<'a> {
+        NamedFile {
+            path: self.folder.join(file.get_ref()),
+            source: self.source,
+            at: file.span(),
+            field,
+        }
+    }
+
+    /// The exhibition that it holds. Its tiles are named after entries of `own`, or after what is shipped.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and field; nothing is taken of such a text.
+    pub fn plan(&self, own: &PoseLibrary) -> Result<ExhibitPlan, FileError> {
+        let source = self.source;
+        ExhibitReader { source, own }.plan(&self.row)
+    }
 }
 
 /// Makes an exhibition of what a text holds.
@@ -163,23 +175,12 @@ struct ExhibitReader<'a> {
 }
 
 impl ExhibitReader<'_> {
-    fn plan(self, row: FileRow, folder: &Path) -> Result<ExhibitPlan, FileError> {
+    fn plan(self, row: &ExhibitRow) -> Result<ExhibitPlan, FileError> {
         let limits = MotionLimits {
             speed: self.moving("speed", row.speed.as_ref(), Speed::nearest(300), Speed::MIN)?,
             force: self.moving("force", row.force.as_ref(), Force::nearest(800), Force::MIN)?,
         };
-        let count = row.tiles.get_ref().len();
-        if !TILES.contains(&count) {
-            let cause = FileCause::Value {
-                got: format!("{count}"),
-                allowed: format!(
-                    "a number of tiles from {} to {}",
-                    TILES.start(),
-                    TILES.end()
-                ),
-            };
-            return Err(self.source.blame(row.tiles.span(), "tiles", cause));
-        }
+        self.count("tiles", &row.tiles, TILES)?;
         let title = BothWords {
             en: self.line("title", row.title.as_ref())?,
             zh: self.line("title_zh", row.title_zh.as_ref())?,
@@ -187,29 +188,37 @@ impl ExhibitReader<'_> {
         let attract = row.attract.as_ref();
         Ok(ExhibitPlan {
             title,
-            logo: logo(self.source, row.logo, folder)?.map(|logo| logo.path),
-            pin: self.pin(row.pin)?,
+            pin: self.pin(row.pin.as_ref())?,
             limits,
             tiles: self.pieces("tiles", row.tiles.get_ref(), limits)?,
-            open: open_plan(
-                limits,
-                starter().pose_named("Open").map_or(PoseId(0), |own| own.id),
-            ),
+            open: open_plan(limits),
             visit: self.seconds("visit_s", row.visit_s.as_ref(), 120)?,
             attract: attract.map(|row| self.attract(row, limits)).transpose()?,
             visitor_restart: row.visitor_restart,
         })
     }
 
-    fn attract(self, row: &AttractRow, limits: MotionLimits) -> Result<AttractLoop, FileError> {
-        let count = row.pieces.get_ref().len();
-        if !(1..=ATTRACT_MAX).contains(&count) {
-            let cause = FileCause::Value {
-                got: format!("{count}"),
-                allowed: format!("a number of pieces from 1 to {ATTRACT_MAX}"),
-            };
-            return Err(self.source.blame(row.pieces.span(), "pieces", cause));
+    /// Looks whether a list of names has as many as there may be.
+    fn count(
+        self,
+        field: &str,
+        names: &Spanned<Vec<Spanned<String>>>,
+        allowed: RangeInclusive<usize>,
+    ) -> Result<(), FileError> {
+        let count = names.get_ref().len();
+        if allowed.contains(&count) {
+            return Ok(());
         }
+        let (least, most) = (allowed.start(), allowed.end());
+        let cause = FileCause::Value {
+            got: format!("{count}"),
+            allowed: format!("a number of {field} from {least} to {most}"),
+        };
+        Err(self.source.blame(names.span(), field, cause))
+    }
+
+    fn attract(self, row: &AttractRow, limits: MotionLimits) -> Result<AttractLoop, FileError> {
+        self.count("pieces", &row.pieces, 1..=ATTRACT_MAX)?;
         Ok(AttractLoop {
             pieces: self.pieces("pieces", row.pieces.get_ref(), limits)?,
             after: self.seconds("after_s", row.after_s.as_ref(), 60)?,
@@ -223,8 +232,8 @@ impl ExhibitReader<'_> {
         field: &str,
         names: &[Spanned<String>],
         limits: MotionLimits,
-    ) -> Result<Vec<Piece>, FileError> {
-        let mut pieces: Vec<Piece> = Vec::with_capacity(names.len());
+    ) -> Result<Vec<ExhibitPiece>, FileError> {
+        let mut pieces: Vec<ExhibitPiece> = Vec::with_capacity(names.len());
         for name in names {
             let Some(piece) = self.piece(name.get_ref(), limits) else {
                 let cause = FileCause::Value {
@@ -245,7 +254,7 @@ impl ExhibitReader<'_> {
     }
 
     /// The pose, else the sequence, else the reaction of this name, the file's own first.
-    fn piece(self, name: &str, limits: MotionLimits) -> Option<Piece> {
+    fn piece(self, name: &str, limits: MotionLimits) -> Option<ExhibitPiece> {
         [self.own, starter()].into_iter().find_map(|library| {
             let mut entries = library.entries();
             let is_it = |entry: &_| library.named(*entry).is_some_and(|own| own.text == name);
@@ -256,12 +265,12 @@ impl ExhibitReader<'_> {
                 true => names.text,
                 false => names.zh,
             };
-            (!plan.cues.is_empty()).then(|| Piece {
+            (!plan.cues.is_empty()).then(|| ExhibitPiece {
                 name: BothWords {
                     en: names.text.into(),
                     zh: zh.into(),
                 },
-                plan: limits.keep(&plan),
+                plan: limits.limited(&plan),
                 again,
             })
         })
@@ -323,11 +332,10 @@ impl ExhibitReader<'_> {
     }
 
     /// Never repeats what stands there.
-    fn pin(self, got: Option<Spanned<toml::Value>>) -> Result<Option<Pin>, FileError> {
+    fn pin(self, got: Option<&Spanned<toml::Value>>) -> Result<Option<Pin>, FileError> {
         let Some(got) = got else { return Ok(None) };
-        let at = got.span();
-        let pin = match got.into_inner() {
-            toml::Value::String(text) => Pin::try_from(text),
+        let pin = match got.get_ref() {
+            toml::Value::String(text) => Pin::try_from(text.clone()),
             _ => Err(BadPin),
         };
         pin.map(Some).map_err(|BadPin| {
@@ -339,7 +347,7 @@ impl ExhibitReader<'_> {
                     DIGITS.end()
                 ),
             };
-            self.source.blame(at, "pin", cause)
+            self.source.blame(got.span(), "pin", cause)
         })
     }
 }

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
-use crate::exhibit::file::{built_in, logo_of, poses_of, read};
+use crate::exhibit::file::{ExhibitFile, built_in};
 use crate::exhibit::pin::Pin;
+use crate::exhibit::plan::ExhibitPlan;
 use crate::hand::{Force, Speed};
 use crate::poses::library::PoseLibrary;
 use crate::store::FileError;
@@ -27,6 +28,13 @@ play_s = 3600
 rest_s = 30
 "#;
 
+/// All that is looked at of a text in this folder.
+fn read(text: &str, folder: &Path, own: &PoseLibrary) -> Result<ExhibitPlan, FileError> {
+    let file = ExhibitFile::parse(text, folder)?;
+    file.logo()?;
+    file.plan(own)
+}
+
 fn error(text: &str) -> FileError {
     read(text, Path::new(""), &PoseLibrary::default()).unwrap_err()
 }
@@ -39,7 +47,6 @@ fn every_field_is_taken_and_most_may_be_left_out() {
         (plan.title.en.as_str(), plan.title.zh.as_str()),
         ("Touch", "点")
     );
-    assert_eq!(plan.logo, Some(folder.join("logo.png")));
     assert_eq!(plan.pin, Pin::try_from("4711".to_owned()).ok());
     assert_eq!(plan.tiles.len(), 6);
     assert_eq!(plan.limits.speed, Speed::nearest(250));
@@ -51,14 +58,11 @@ fn every_field_is_taken_and_most_may_be_left_out() {
     let attract = plan.attract.unwrap();
     let times = [attract.after, attract.play, attract.rest].map(|time| time.as_secs());
     assert_eq!((attract.pieces.len(), times), (2, [5, 3600, 30]));
-    let named = |file: Option<_>| file.map(|file: crate::exhibit::file::NamedFile<'_>| file.path);
+    let file = ExhibitFile::parse(FILE, folder).unwrap();
+    let named = [file.poses(), file.logo().unwrap()].map(|named| named.unwrap().path);
     assert_eq!(
-        named(poses_of(FILE, folder).unwrap()),
-        Some(folder.join("poses.toml"))
-    );
-    assert_eq!(
-        named(logo_of(FILE, folder).unwrap()),
-        Some(folder.join("logo.png"))
+        named,
+        ["poses.toml", "logo.png"].map(|name| folder.join(name))
     );
     let short = FILE.lines().filter(|line| {
         ["format", "version", "tiles"]
@@ -67,7 +71,7 @@ fn every_field_is_taken_and_most_may_be_left_out() {
     });
     let short = short.collect::<Vec<_>>().join("\n");
     let plan = read(&short, folder, &PoseLibrary::default()).unwrap();
-    assert_eq!((plan.pin, plan.logo, plan.attract), (None, None, None));
+    assert_eq!((plan.pin, plan.attract), (None, None));
     assert_eq!(
         (plan.limits.speed, plan.limits.force),
         (Speed::nearest(300), Force::nearest(800))
@@ -76,9 +80,8 @@ fn every_field_is_taken_and_most_may_be_left_out() {
         (plan.visit, plan.visitor_restart),
         (Duration::from_secs(120), false)
     );
-    assert!(
-        poses_of(&short, folder).unwrap().is_none() && logo_of(&short, folder).unwrap().is_none()
-    );
+    let file = ExhibitFile::parse(&short, folder).unwrap();
+    assert!(file.poses().is_none() && file.logo().unwrap().is_none());
 }
 
 #[test]

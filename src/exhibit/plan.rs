@@ -1,12 +1,11 @@
 //! What an exhibition may do: its tiles, limits and times. What is not in it cannot be played.
 
 use crate::exhibit::pin::Pin;
-use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::link::ArmRequest;
-use crate::poses::library::{EntryId, PoseId};
+use crate::poses::library::{EntryId, LibraryPose};
 use crate::poses::player::{Cue, PlayPlan};
 use crate::poses::way::Targets;
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// Tiles of a page: fewer leave it empty, more would be too small to hit.
@@ -32,7 +31,7 @@ pub struct BothWords {
 
 /// One thing that can be played.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Piece {
+pub struct ExhibitPiece {
     /// What it is called.
     pub name: BothWords,
     /// How it is played, once, within the limits.
@@ -41,7 +40,7 @@ pub struct Piece {
     pub again: bool,
 }
 
-impl Piece {
+impl ExhibitPiece {
     /// What its tile shows: a pose of it that says most, the one that is furthest from open.
     #[must_use]
     pub fn shown(&self) -> Targets {
@@ -62,7 +61,7 @@ impl Piece {
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttractLoop {
     /// One after the other.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<ExhibitPiece>,
     /// Nobody touched the page for this long before it begins.
     pub after: Duration,
     /// It plays for this long, …
@@ -76,14 +75,12 @@ pub struct AttractLoop {
 pub struct ExhibitPlan {
     /// What stands above the hand.
     pub title: BothWords,
-    /// A picture that stands beside it, PNG.
-    pub logo: Option<PathBuf>,
     /// What staff type; without one they choose it at the start.
     pub pin: Option<Pin>,
     /// Speed and force that nothing passes.
     pub limits: MotionLimits,
     /// What visitors may press.
-    pub tiles: Vec<Piece>,
+    pub tiles: Vec<ExhibitPiece>,
     /// Open, in which the hand rests.
     pub open: PlayPlan,
     /// Play time of one visitor.
@@ -97,7 +94,7 @@ pub struct ExhibitPlan {
 impl MotionLimits {
     /// What the link sets before anything moves.
     #[must_use]
-    pub const fn request(self) -> ArmRequest {
+    pub const fn arm_request(self) -> ArmRequest {
         ArmRequest {
             speed: PerDof::splat(self.speed),
             force: PerDof::splat(self.force),
@@ -115,16 +112,16 @@ impl MotionLimits {
 
     /// A plan that keeps within them. What is slower then has so much longer to arrive.
     #[must_use]
-    pub fn keep(self, plan: &PlayPlan) -> PlayPlan {
+    pub fn limited(self, plan: &PlayPlan) -> PlayPlan {
         let mut plan = plan.clone();
         let touched = plan.reaction.iter_mut().map(|cue| &mut cue.touched);
         for cue in plan.cues.iter_mut().chain(touched) {
-            self.keep_cue(cue);
+            self.limit_cue(cue);
         }
         plan
     }
 
-    fn keep_cue(self, cue: &mut Cue) {
+    fn limit_cue(self, cue: &mut Cue) {
         let (wanted, given) = (cue.speed.get().max(1), self.speed.get().max(1));
         if given < wanted {
             cue.limit = cue.limit * wanted.unsigned_abs().into() / given.unsigned_abs().into();
@@ -135,18 +132,11 @@ impl MotionLimits {
 }
 
 /// All joints open, gently.
-pub(crate) fn open_plan(limits: MotionLimits, id: PoseId) -> PlayPlan {
-    let cue = Cue {
-        pose: id,
-        targets: PerDof::from_fn(|_: Dof| Some(Angle::MAX)),
-        speed: Speed::GENTLE,
-        force: Force::GENTLE,
-        dwell: Duration::ZERO,
-        limit: Duration::from_secs(5),
-    };
-    limits.keep(&PlayPlan {
-        entry: EntryId::Pose(id),
-        cues: vec![cue],
+pub(crate) fn open_plan(limits: MotionLimits) -> PlayPlan {
+    let pose = LibraryPose::at(PerDof::splat(Angle::MAX));
+    limits.limited(&PlayPlan {
+        entry: EntryId::Pose(pose.id),
+        cues: vec![Cue::of(&pose)],
         looped: false,
         reaction: None,
     })

@@ -1,7 +1,7 @@
 //! What happens at an exhibition, and when: touches, the link and heat in, orders out. Sends nothing and reads no clock.
 
 use crate::exhibit::heat::{HeatGovernor, HeatLevel};
-use crate::exhibit::plan::{ExhibitPlan, Piece};
+use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan};
 use crate::hand::{ArmEpoch, Fault, HandSample, Moment};
 use crate::link::{ArmRequest, LinkStatus, LinkTrouble};
 use crate::poses::player::PlayPlan;
@@ -30,10 +30,9 @@ const PAUSE: Duration = Duration::from_millis(1200);
 const COOLS_FOR: Duration = Duration::from_secs(120);
 
 /// Why the hand stands still until staff come, or a visitor holds a tile where that is allowed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Calm {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HaltReason {
     /// Nobody armed it since the program started.
-    #[default]
     NotArmed,
     /// No hand answers.
     NoHand,
@@ -51,9 +50,9 @@ pub enum Calm {
 
 /// What goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum ExhibitStage {
     /// Nothing moves, and nothing may.
-    Calm(Calm),
+    Halted(HaltReason),
     /// Nobody is there; the hand is open, or opens.
     Idle,
     /// Nobody is there, and the hand shows what it can do.
@@ -83,7 +82,7 @@ pub enum Stage {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExhibitView {
     /// What goes on.
-    pub stage: Stage,
+    pub stage: ExhibitStage,
     /// The tile that is played.
     pub tile: Option<usize>,
     /// The tile that is held, and since when.
@@ -95,7 +94,7 @@ pub struct ExhibitView {
 impl Default for ExhibitView {
     fn default() -> Self {
         Self {
-            stage: Stage::Calm(Calm::NoHand),
+            stage: ExhibitStage::Halted(HaltReason::NoHand),
             tile: None,
             held: None,
             is_slow: false,
@@ -105,7 +104,7 @@ impl Default for ExhibitView {
 
 /// What a person does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wish {
+pub enum ExhibitWish {
     /// Touches the page, anywhere.
     Touch,
     /// Presses a tile.
@@ -122,7 +121,7 @@ pub enum Wish {
 
 /// What is to be done at the hand.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Order {
+pub enum ExhibitOrder {
     /// Let setpoints pass, with these limits.
     Arm(ArmRequest),
     /// Let none pass any more; the hand is open and rests.
@@ -156,7 +155,7 @@ pub enum ExhibitEvent {
 
 /// What is known of the hand now.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen<'a> {
+pub struct ExhibitInput<'a> {
     /// Where its link stands.
     pub status: &'a LinkStatus,
     /// What was read.
@@ -165,7 +164,7 @@ pub struct Seen<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    Calm(Calm),
+    Halted(HaltReason),
     Idle,
     Attract { until: Moment },
     Visit { until: Moment, tile: Option<usize> },
@@ -175,7 +174,7 @@ enum Phase {
 
 /// The motion that is wanted, on its way to the hand.
 #[derive(Debug, Clone, PartialEq)]
-enum Motion {
+enum Playback {
     /// Nothing.
     None,
     /// This, once the hand is armed.
@@ -193,7 +192,7 @@ pub struct ExhibitRun {
     /// A person armed for the exhibition, and nothing ended that since.
     permitted: bool,
     phase: Phase,
-    motion: Motion,
+    motion: Playback,
     /// What is played is to be held; and it was told to, and has not ended yet.
     holds: bool,
     is_holding: bool,
@@ -234,8 +233,8 @@ impl ExhibitRun {
         Self {
             plan,
             permitted: false,
-            phase: Phase::Calm(Calm::NotArmed),
-            motion: Motion::None,
+            phase: Phase::Halted(HaltReason::NotArmed),
+            motion: Playback::None,
             holds: false,
             is_holding: false,
             asked: None,
@@ -263,17 +262,17 @@ impl ExhibitRun {
     #[must_use]
     pub fn view(&self, now: Moment) -> ExhibitView {
         let (stage, tile) = match self.phase {
-            Phase::Calm(why) => (Stage::Calm(why), None),
-            Phase::Cooling { until } => (Stage::Cooling { until }, None),
-            Phase::Clearing { .. } => (Stage::Clearing, None),
-            Phase::Visit { until, tile } => (Stage::Visit { until }, tile),
-            _ if self.level == HeatLevel::Unknown => (Stage::HeatUnknown, None),
-            Phase::Attract { .. } => (Stage::Attract, None),
+            Phase::Halted(why) => (ExhibitStage::Halted(why), None),
+            Phase::Cooling { until } => (ExhibitStage::Cooling { until }, None),
+            Phase::Clearing { .. } => (ExhibitStage::Clearing, None),
+            Phase::Visit { until, tile } => (ExhibitStage::Visit { until }, tile),
+            _ if self.level == HeatLevel::Unknown => (ExhibitStage::HeatUnknown, None),
+            Phase::Attract { .. } => (ExhibitStage::Attract, None),
             Phase::Idle if now < self.next_from => {
                 let at = self.next_from;
-                (Stage::NextVisitor { at }, None)
+                (ExhibitStage::NextVisitor { at }, None)
             }
-            Phase::Idle => (Stage::Idle, None),
+            Phase::Idle => (ExhibitStage::Idle, None),
         };
         ExhibitView {
             stage,
@@ -289,21 +288,21 @@ impl ExhibitRun {
     }
 
     /// Takes in what a person did.
-    pub fn wish(&mut self, wish: Wish, now: Moment) {
+    pub fn wish(&mut self, wish: ExhibitWish, now: Moment) {
         match wish {
-            Wish::Stop => {
+            ExhibitWish::Stop => {
                 self.events.push(ExhibitEvent::Stop);
-                self.calm(Calm::Stopped);
+                self.halt(HaltReason::Stopped);
             }
-            Wish::Disarm => self.calm(Calm::NotArmed),
-            Wish::Arm => {
+            ExhibitWish::Disarm => self.halt(HaltReason::NotArmed),
+            ExhibitWish::Arm => {
                 // A visitor who arms again is nobody who looked at what failed.
                 self.cleared.clear();
                 self.permit(now);
             }
-            Wish::Touch => self.touch(now),
-            Wish::Release => self.held = None,
-            Wish::Press(tile) => {
+            ExhibitWish::Touch => self.touch(now),
+            ExhibitWish::Release => self.held = None,
+            ExhibitWish::Press(tile) => {
                 self.touch(now);
                 if tile < self.plan.tiles.len() {
                     self.held = Some((tile, now));
@@ -323,9 +322,9 @@ impl ExhibitRun {
     }
 
     /// Nothing moves any more before a person arms again.
-    fn calm(&mut self, why: Calm) {
-        if self.permitted || !matches!(self.phase, Phase::Calm(_)) {
-            self.phase = Phase::Calm(why);
+    fn halt(&mut self, why: HaltReason) {
+        if self.permitted || !matches!(self.phase, Phase::Halted(_)) {
+            self.phase = Phase::Halted(why);
         }
         self.permitted = false;
         // A tile that was held before does not count as held from now on.
@@ -333,16 +332,16 @@ impl ExhibitRun {
         self.holds = false;
         self.is_holding = false;
         let may_move = self.epoch.take().is_some() | self.asked.take().is_some();
-        self.stops |= may_move || self.motion != Motion::None;
-        self.motion = Motion::None;
+        self.stops |= may_move || self.motion != Playback::None;
+        self.motion = Playback::None;
     }
 
     fn touch(&mut self, now: Moment) {
         self.quiet_since = now;
         if matches!(self.phase, Phase::Attract { .. }) {
             self.begin_visit(now);
-            self.holds = self.motion == Motion::Plays;
-            self.motion = Motion::Done { at: now };
+            self.holds = self.motion == Playback::Plays;
+            self.motion = Playback::Done { at: now };
         }
     }
 
@@ -379,20 +378,20 @@ impl ExhibitRun {
         }
     }
 
-    fn play(&mut self, piece: &Piece) {
+    fn play(&mut self, piece: &ExhibitPiece) {
         let plan = match self.level {
             HeatLevel::Cool => piece.plan.clone(),
-            _ => self.plan.limits.slower().keep(&piece.plan),
+            _ => self.plan.limits.slower().limited(&piece.plan),
         };
         self.played_at = self.level;
-        self.motion = Motion::Waits(plan);
+        self.motion = Playback::Waits(plan);
     }
 
     /// The hand opens, and is disarmed then.
     fn rest(&mut self, now: Moment) {
         self.quiet_since = now;
         let plan = self.plan.open.clone();
-        self.motion = Motion::Waits(plan);
+        self.motion = Playback::Waits(plan);
     }
 
     /// What was played is over.
@@ -400,14 +399,14 @@ impl ExhibitRun {
         if std::mem::replace(&mut self.is_holding, false) {
             return;
         }
-        if self.motion == Motion::Plays {
-            self.motion = Motion::Done { at: now };
+        if self.motion == Playback::Plays {
+            self.motion = Playback::Done { at: now };
             self.quiet_since = now;
         }
     }
 
     /// Time goes on. What is to be done at the hand, one after the other until nothing is.
-    pub fn tick(&mut self, seen: Seen<'_>, now: Moment) -> Option<Order> {
+    pub fn tick(&mut self, seen: ExhibitInput<'_>, now: Moment) -> Option<ExhibitOrder> {
         self.heat.take(seen.sample);
         self.level = self.heat.level(now);
         self.watch_link(seen.status);
@@ -416,14 +415,14 @@ impl ExhibitRun {
         if std::mem::take(&mut self.stops) && self.is_live {
             self.holds = false;
             self.is_holding = false;
-            return Some(Order::Stop);
+            return Some(ExhibitOrder::Stop);
         }
         if std::mem::take(&mut self.holds) {
             self.is_holding = true;
-            return Some(Order::Hold);
+            return Some(ExhibitOrder::Hold);
         }
         if std::mem::take(&mut self.clears) {
-            return Some(Order::Clear);
+            return Some(ExhibitOrder::Clear);
         }
         if self.is_holding {
             return None;
@@ -439,8 +438,8 @@ impl ExhibitRun {
         if std::mem::replace(&mut self.is_live, false) {
             self.events.push(ExhibitEvent::LinkLost);
         }
-        self.calm(Calm::NoHand);
-        self.phase = Phase::Calm(Calm::NoHand);
+        self.halt(HaltReason::NoHand);
+        self.phase = Phase::Halted(HaltReason::NoHand);
     }
 
     /// A link that is lost, a stop, or another who talks to the hand ends the permission to move.
@@ -453,33 +452,33 @@ impl ExhibitRun {
         if !std::mem::replace(&mut self.is_live, true) {
             let slept =
                 std::mem::take(&mut self.slept) || status.disarmed == Some(Disarmed::Resume);
-            self.phase = Phase::Calm(match std::mem::replace(&mut self.was_live, true) {
-                true if slept => Calm::Slept,
-                true => Calm::LinkLost,
-                false => Calm::NotArmed,
+            self.phase = Phase::Halted(match std::mem::replace(&mut self.was_live, true) {
+                true if slept => HaltReason::Slept,
+                true => HaltReason::LinkLost,
+                false => HaltReason::NotArmed,
             });
             self.held = None;
         }
         let is_ours = self.epoch.is_none() || status.armed == self.epoch;
         let why = match status.disarmed {
-            _ if status.other_controller => Some(Calm::OtherController),
-            _ if status.state == LinkState::Holding => Some(Calm::Stopped),
+            _ if status.other_controller => Some(HaltReason::OtherController),
+            _ if status.state == LinkState::Holding => Some(HaltReason::Stopped),
             // What can be cleared is looked at next.
             _ if is_ours || status.state == LinkState::Fault => None,
-            Some(Disarmed::Stop) => Some(Calm::Stopped),
-            Some(Disarmed::Fault) => Some(Calm::Fault),
-            Some(Disarmed::Resume) => Some(Calm::Slept),
-            Some(Disarmed::OtherController) => Some(Calm::OtherController),
-            Some(Disarmed::LinkLost | Disarmed::Stale) => Some(Calm::LinkLost),
-            Some(Disarmed::Person) | None => Some(Calm::NotArmed),
+            Some(Disarmed::Stop) => Some(HaltReason::Stopped),
+            Some(Disarmed::Fault) => Some(HaltReason::Fault),
+            Some(Disarmed::Resume) => Some(HaltReason::Slept),
+            Some(Disarmed::OtherController) => Some(HaltReason::OtherController),
+            Some(Disarmed::LinkLost | Disarmed::Stale) => Some(HaltReason::LinkLost),
+            Some(Disarmed::Person) | None => Some(HaltReason::NotArmed),
         };
         if let Some(why) = why.filter(|_| self.permitted) {
-            self.calm(why);
+            self.halt(why);
         }
     }
 
     /// Faults are cleared by themselves where that may be, and need a person where not.
-    fn watch_faults(&mut self, seen: Seen<'_>, now: Moment) {
+    fn watch_faults(&mut self, seen: ExhibitInput<'_>, now: Moment) {
         if seen.status.state != LinkState::Fault {
             // A stop in a fault does not end it.
             self.is_faulty &= seen.status.state == LinkState::Holding;
@@ -497,13 +496,13 @@ impl ExhibitRun {
             self.events.extend(told);
         }
         if !self.permitted {
-            if matches!(self.phase, Phase::Calm(_)) {
-                self.phase = Phase::Calm(Calm::Fault);
+            if matches!(self.phase, Phase::Halted(_)) {
+                self.phase = Phase::Halted(HaltReason::Fault);
             }
             return;
         }
         if faults.iter().any(|fault| fault.clearable() != Some(true)) {
-            self.calm(Calm::Fault);
+            self.halt(HaltReason::Fault);
             return;
         }
         // The link may know of a fault a moment before it is read here; nothing passes meanwhile.
@@ -516,7 +515,7 @@ impl ExhibitRun {
         }
         self.cleared.retain(|at| now.since(*at) < CLEARED_WITHIN);
         if self.cleared.len() >= CLEARED_MAX {
-            self.calm(Calm::Fault);
+            self.halt(HaltReason::Fault);
             return;
         }
         self.cleared.push_back(now);
@@ -525,17 +524,18 @@ impl ExhibitRun {
         // The link disarmed, and what played ends with that.
         self.holds = false;
         self.is_holding = false;
-        self.motion = Motion::None;
+        self.motion = Playback::None;
         self.asked = None;
         self.epoch = None;
     }
 
     /// A tile that is held arms again, where visitors may.
     fn watch_held(&mut self, status: &LinkStatus, now: Moment) {
-        let is_calm = matches!(self.phase, Phase::Calm(_)) && status.state == LinkState::Monitoring;
+        let is_halted =
+            matches!(self.phase, Phase::Halted(_)) && status.state == LinkState::Monitoring;
         if let Some((tile, since)) = self.held
             && self.plan.visitor_restart
-            && is_calm
+            && is_halted
             && now.since(since) >= HELD_FOR
         {
             self.permit(now);
@@ -546,7 +546,7 @@ impl ExhibitRun {
     /// What time and heat change.
     fn go_on(&mut self, now: Moment) {
         match self.phase {
-            Phase::Calm(_) | Phase::Clearing { .. } => {}
+            Phase::Halted(_) | Phase::Clearing { .. } => {}
             Phase::Cooling { until } if now < until => {}
             Phase::Cooling { .. } if self.heat.is_rested(now) => {
                 self.phase = Phase::Idle;
@@ -585,24 +585,24 @@ impl ExhibitRun {
         let again = piece.is_some_and(|piece| piece.again);
         let reacts = piece.is_some_and(|piece| piece.plan.reaction.is_some());
         match self.motion {
-            Motion::Done { .. } if again => self.play_tile(tile),
-            Motion::Done { .. } if now.since(self.quiet_since) >= GONE_AFTER => self.go_idle(now),
+            Playback::Done { .. } if again => self.play_tile(tile),
+            Playback::Done { .. } if now.since(self.quiet_since) >= GONE_AFTER => self.go_idle(now),
             // It has no end of its own at which it would be played more slowly.
-            Motion::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
+            Playback::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
             // The hand was not armed in time.
-            Motion::None => self.go_idle(now),
+            Playback::None => self.go_idle(now),
             _ => {}
         }
     }
 
     fn go_on_attracting(&mut self, until: Moment, now: Moment) {
-        if now >= until || self.motion == Motion::None {
+        if now >= until || self.motion == Playback::None {
             let rest = self.plan.attract.as_ref().map(|attract| attract.rest);
             self.attract_from = now.plus(rest.unwrap_or_default());
             self.go_idle(now);
             return;
         }
-        if let Motion::Done { at } = self.motion
+        if let Playback::Done { at } = self.motion
             && now.since(at) >= PAUSE
         {
             self.play_next();
@@ -614,7 +614,7 @@ impl ExhibitRun {
             return;
         };
         let is_quiet = now.since(self.quiet_since) >= attract.after && now >= self.attract_from;
-        if is_quiet && self.motion == Motion::None && self.level < HeatLevel::Hot {
+        if is_quiet && self.motion == Playback::None && self.level < HeatLevel::Hot {
             let until = now.plus(attract.play);
             self.phase = Phase::Attract { until };
             self.play_next();
@@ -633,33 +633,33 @@ impl ExhibitRun {
     }
 
     /// Brings the motion that is wanted to the hand.
-    fn moves(&mut self, status: &LinkStatus, now: Moment) -> Option<Order> {
+    fn moves(&mut self, status: &LinkStatus, now: Moment) -> Option<ExhibitOrder> {
         if self.asked.is_some() && status.state == LinkState::Armed {
             self.asked = None;
             self.epoch = status.armed;
         }
         let is_late = |at| now.since(at) >= ARMS_WITHIN;
         if self.asked.take_if(|at| is_late(*at)).is_some() {
-            self.motion = Motion::None;
+            self.motion = Playback::None;
             // Nor is it armed later.
-            return Some(Order::Disarm);
+            return Some(ExhibitOrder::Disarm);
         }
         let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
         let is_disarmed = status.state == LinkState::Monitoring && status.armed.is_none();
         match &self.motion {
-            Motion::Done { .. } if is_resting => {
-                self.motion = Motion::None;
+            Playback::Done { .. } if is_resting => {
+                self.motion = Playback::None;
                 self.epoch = None;
-                Some(Order::Disarm)
+                Some(ExhibitOrder::Disarm)
             }
-            Motion::Waits(plan) if self.epoch.is_some() && self.epoch == status.armed => {
+            Playback::Waits(plan) if self.epoch.is_some() && self.epoch == status.armed => {
                 let plan = plan.clone();
-                self.motion = Motion::Plays;
-                Some(Order::Play(plan))
+                self.motion = Playback::Plays;
+                Some(ExhibitOrder::Play(plan))
             }
-            Motion::Waits(_) if self.asked.is_none() && is_disarmed => {
+            Playback::Waits(_) if self.asked.is_none() && is_disarmed => {
                 self.asked = Some(now);
-                Some(Order::Arm(self.plan.limits.request()))
+                Some(ExhibitOrder::Arm(self.plan.limits.arm_request()))
             }
             _ => None,
         }

@@ -1,7 +1,9 @@
 //! An exhibition at a hand: the only one that moves it while it lasts. What happens when is decided in `exhibit`; here it is done.
 
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{ExhibitEvent, ExhibitRun, ExhibitView, Order, Seen, Wish};
+use crate::exhibit::run::{
+    ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitView, ExhibitWish,
+};
 use crate::hand::{HandCommand, HandSample, PerDof, Setpoints};
 use crate::link::Clock;
 use crate::poses::player::{PlayMode, PlayPlan};
@@ -45,7 +47,7 @@ pub enum ExhibitStep {
 pub async fn exhibit<H: Hand>(
     hand: &H,
     start: ExhibitStart,
-    mut wishes: mpsc::Receiver<Wish>,
+    mut wishes: mpsc::Receiver<ExhibitWish>,
     mut tell: impl FnMut(ExhibitStep),
 ) {
     let clock = start.clock;
@@ -124,7 +126,7 @@ impl<H: Hand> AtHand<'_, H> {
     fn obey_all(&mut self) {
         loop {
             let status = self.hand.status();
-            let seen = Seen {
+            let seen = ExhibitInput {
                 status: &status,
                 sample: &self.sample,
             };
@@ -135,21 +137,21 @@ impl<H: Hand> AtHand<'_, H> {
         }
     }
 
-    fn obey(&mut self, order: Order) {
+    fn obey(&mut self, order: ExhibitOrder) {
         match order {
-            Order::Arm(request) => self.hand.arm(request),
-            Order::Disarm => self.hand.disarm(),
-            Order::Stop => {
+            ExhibitOrder::Arm(request) => self.hand.arm(request),
+            ExhibitOrder::Disarm => self.hand.disarm(),
+            ExhibitOrder::Stop => {
                 self.playing = None;
                 self.hand.stop();
             }
-            Order::Hold => match &self.playing {
+            ExhibitOrder::Hold => match &self.playing {
                 // It holds where the hand is, and ends; one that has ended already says so anyway.
                 Some(piece) => drop(piece.commands.try_send(PlayCommand::End)),
                 None => self.run.ended(self.clock.now()),
             },
-            Order::Play(plan) => self.play(plan),
-            Order::Clear => {
+            ExhibitOrder::Play(plan) => self.play(plan),
+            ExhibitOrder::Clear => {
                 self.playing = None;
                 let hand = self.hand.clone();
                 // Whether it helped is seen at the link.

@@ -1,6 +1,7 @@
 //! The README and the manual: short, without dead links, and shown by `handscope help`.
 
 use crate::setup::skipped::skipped;
+use handscope::exhibit::file::ExhibitFile;
 use handscope::manual::TOPICS;
 use std::fs;
 use std::path::Path;
@@ -180,9 +181,13 @@ fn the_exhibition_of_the_manual_is_a_file_that_is_taken_whole() {
     let example = page.split("```toml\n").nth(1).unwrap();
     let example = example.split("```").next().unwrap();
     let own = handscope::poses::library::PoseLibrary::default();
-    let plan = handscope::exhibit::file::read(example, Path::new(""), &own).unwrap();
+    fn read(text: &str) -> ExhibitFile<'_> {
+        ExhibitFile::parse(text, Path::new("")).unwrap()
+    }
+    let plan = read(example).plan(&own).unwrap();
     assert_eq!(plan.tiles.len(), 6);
-    assert!(plan.pin.is_some() && plan.logo.is_some() && plan.attract.is_some());
+    assert!(plan.pin.is_some() && plan.attract.is_some());
+    assert!(read(example).logo().unwrap().is_some());
     let bare = "format = \"handscope-exhibit\"\nversion = 1\n";
     let line = |key| example.lines().find(|line: &&str| line.starts_with(key));
     let bare = format!(
@@ -190,7 +195,7 @@ fn the_exhibition_of_the_manual_is_a_file_that_is_taken_whole() {
         line("tiles").unwrap(),
         line("pieces").unwrap()
     );
-    let usual = handscope::exhibit::file::read(&bare, Path::new(""), &own).unwrap();
+    let usual = read(&bare).plan(&own).unwrap();
     let limits = |plan: &handscope::exhibit::plan::ExhibitPlan| {
         let attract = plan.attract.clone().unwrap();
         let times = [plan.visit, attract.after, attract.play, attract.rest];

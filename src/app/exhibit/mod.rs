@@ -9,4 +9,4 @@ pub(crate) mod work;
 mod kept_report_tests;
 
 pub use crate::app::exhibit::kept_report::KeptReport;
-pub use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, Logo, StaffPanel};
+pub use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, Logo, StaffPanel};

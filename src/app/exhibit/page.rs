@@ -2,12 +2,12 @@
 
 use crate::app::env::Env;
 use crate::app::exhibit::kept_report::KeptReport;
-use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState, StaffPanel};
+use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, StaffPanel};
 use crate::app::hand::HandState;
 use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
-use crate::exhibit::run::{ExhibitView, Stage, Wish};
+use crate::exhibit::run::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
 use crate::store::calendar;
 use crate::tasks::exhibit::{self, ExhibitStep};
@@ -22,7 +22,7 @@ const STAFF_FOR: Duration = Duration::from_secs(30);
 impl ExhibitState {
     /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
     pub(crate) fn begin(
-        start: ExhibitStart,
+        start: Exhibition,
         hand: &HandState,
         language: Language,
         env: &Env,
@@ -83,17 +83,21 @@ impl ExhibitState {
         if until.is_some_and(|until| now >= until) {
             self.staff = StaffPanel::Closed;
         }
-        let is_played = |stage| matches!(stage, Stage::Visit { .. });
-        is_played(before) && !is_played(self.view.stage)
+        let after = self.view.stage;
+        let plays = |stage| matches!(stage, ExhibitStage::Visit { .. });
+        // Somebody who only looked, and changed the language, is gone as well.
+        let is_alone = before != after && after == ExhibitStage::Attract;
+        plays(before) && !plays(after) || is_alone
     }
 
     /// Does what a person asked for. True if the exhibition is to end.
     pub(crate) fn act(&mut self, action: ExhibitAction, now: Moment) -> bool {
         let is_staff = matches!(self.staff, StaffPanel::Open { .. });
         match action {
-            ExhibitAction::Wish(Wish::Arm | Wish::Disarm) | ExhibitAction::Leave if !is_staff => {}
+            ExhibitAction::Wish(ExhibitWish::Arm | ExhibitWish::Disarm) | ExhibitAction::Leave
+                if !is_staff => {}
             ExhibitAction::Wish(wish) => {
-                if matches!(wish, Wish::Arm | Wish::Disarm) {
+                if matches!(wish, ExhibitWish::Arm | ExhibitWish::Disarm) {
                     self.staff = StaffPanel::Closed;
                 }
                 self.wish(wish);
@@ -110,7 +114,7 @@ impl ExhibitState {
     }
 
     /// Passes on what a person did.
-    pub(crate) fn wish(&mut self, wish: Wish) {
+    pub(crate) fn wish(&mut self, wish: ExhibitWish) {
         // What does not fit is one of very many touches within a moment; a stop goes to the hand by another way, too.
         let _taken = self.wishes.try_send(wish);
     }

@@ -5,7 +5,7 @@ use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{ExhibitView, Wish};
+use crate::exhibit::run::{ExhibitView, ExhibitWish};
 use crate::hand::Moment;
 use crate::tasks::exhibit::ExhibitStep;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 
 /// An exhibition that is ready to be shown.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExhibitStart {
+pub struct Exhibition {
     /// What may be played.
     pub plan: Arc<ExhibitPlan>,
     /// What stands beside its title.
@@ -65,7 +65,7 @@ pub enum ExhibitAction {
     /// Staff, in the window: show the one of a file that is asked for.
     EnterFile,
     /// What visitors do; arming and disarming passes with the staff panel open only.
-    Wish(Wish),
+    Wish(ExhibitWish),
     /// Ask for the PIN.
     AskPin,
     /// This was typed.
@@ -93,6 +93,6 @@ pub struct ExhibitState {
     pub(crate) ends_program: bool,
     /// The language that it begins with for each visitor.
     pub(crate) language: Language,
-    pub(crate) wishes: mpsc::Sender<Wish>,
+    pub(crate) wishes: mpsc::Sender<ExhibitWish>,
     pub(crate) task: Running<ExhibitStep, ()>,
 }

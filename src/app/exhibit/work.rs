@@ -2,7 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::exhibit::kept_report::KeptReport;
-use crate::app::exhibit::state::{ExhibitAction, ExhibitStart, ExhibitState};
+use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition};
 use crate::app::files::exhibit_file;
 use crate::app::hand::HandState;
 use crate::app::notices::{NoticeKind, Notices};
@@ -13,14 +13,14 @@ use crate::store::BackgroundJob;
 /// What goes on around exhibitions.
 #[derive(Debug, Default)]
 pub(crate) struct ExhibitWork {
-    opening: Option<BackgroundJob<Result<ExhibitStart, NoticeKind>>>,
+    opening: Option<BackgroundJob<Result<Exhibition, NoticeKind>>>,
     /// Of an exhibition that was left; it is being written.
     left: Option<KeptReport>,
 }
 
 impl ExhibitWork {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
-    pub(crate) fn enter(&mut self, start: ExhibitStart, state: &mut State, env: &Env, now: Moment) {
+    pub(crate) fn enter(&mut self, start: Exhibition, state: &mut State, env: &Env, now: Moment) {
         self.leave(state, now);
         // A file that is still asked for would take the place of this exhibition, PIN and all.
         self.opening = None;
@@ -32,7 +32,7 @@ impl ExhibitWork {
             notices.push(now, NoticeKind::ExhibitNotBegun);
             return;
         }
-        put_down(hand, notices);
+        stop_or_disarm(hand, notices);
         hand.take_over();
         let language = state.settings.language;
         state.exhibit = ExhibitState::begin(start, state.hands.shown(), language, env);
@@ -76,7 +76,7 @@ impl ExhibitWork {
         self.left = Some(exhibit.report);
         let hand = state.hands.shown_mut();
         hand.now = now;
-        put_down(hand, &mut state.notices);
+        stop_or_disarm(hand, &mut state.notices);
     }
 
     /// Lets the exhibition, its file and its report go on.
@@ -110,7 +110,7 @@ impl ExhibitWork {
 }
 
 /// Stops a hand that may move. One that rests is not armed later by what was asked before.
-fn put_down(hand: &mut HandState, notices: &mut Notices) {
+fn stop_or_disarm(hand: &mut HandState, notices: &mut Notices) {
     match hand.may_move() {
         true => hand.stop(notices),
         false => hand.disarm(),

@@ -1,11 +1,11 @@
 //! The file of an exhibition on disk, with the poses and the logo that it names. Read whole or not at all.
 
 use crate::app::env::Env;
-use crate::app::exhibit::{ExhibitStart, Logo};
+use crate::app::exhibit::{Exhibition, Logo};
 use crate::app::files::open;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
-use crate::exhibit::file::{self, NamedFile};
+use crate::exhibit::file::{self, ExhibitFile, NamedFile};
 use crate::poses::library::PoseLibrary;
 use crate::store::{BackgroundJob, FileCause, FileError, toml_file};
 use std::fs::File;
@@ -23,8 +23,8 @@ const FILE_NAME: &str = "handscope-exhibit.toml";
 
 /// What is shown without a file.
 #[must_use]
-pub fn built_in() -> Option<ExhibitStart> {
-    file::built_in().map(|plan| ExhibitStart {
+pub fn built_in() -> Option<Exhibition> {
+    file::built_in().map(|plan| Exhibition {
         plan: Arc::new(plan),
         logo: None,
         ends_program: false,
@@ -32,7 +32,7 @@ pub fn built_in() -> Option<ExhibitStart> {
 }
 
 /// Asks for a file and reads it.
-pub(crate) fn open(env: &Env) -> BackgroundJob<Result<ExhibitStart, NoticeKind>> {
+pub(crate) fn open(env: &Env) -> BackgroundJob<Result<Exhibition, NoticeKind>> {
     open::open(None, FILE_NAME, env, read)
 }
 
@@ -40,23 +40,24 @@ pub(crate) fn open(env: &Env) -> BackgroundJob<Result<ExhibitStart, NoticeKind>>
 ///
 /// # Errors
 /// [`FileError`]: what cannot be read, and where.
-pub fn read(path: &Path) -> Result<ExhibitStart, FileError> {
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+pub fn read(path: &Path) -> Result<Exhibition, FileError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
     toml_file::load(path, FILE_LEN_MAX, |text| {
-        let own = match file::poses_of(text, &folder)? {
+        let file = ExhibitFile::parse(text, folder)?;
+        let own = match file.poses() {
             Some(poses) => {
                 pose_file::read(&poses.path).map_err(|error| poses.refused(&said(&error)))?
             }
             None => PoseLibrary::default(),
         };
-        let plan = file::read(text, &folder, &own)?;
+        let plan = file.plan(&own)?;
         let picture = |named: NamedFile<'_>| {
             let picture = pixels(&named.path);
             picture.map_err(|why| named.refused(&why))
         };
-        Ok(ExhibitStart {
+        Ok(Exhibition {
             plan: Arc::new(plan),
-            logo: file::logo_of(text, &folder)?.map(picture).transpose()?,
+            logo: file.logo()?.map(picture).transpose()?,
             ends_program: false,
         })
     })

@@ -1,6 +1,6 @@
 //! `handscope exhibit`: looks at the file of an exhibition and shows it in place of the window.
 
-use crate::app::exhibit::ExhibitStart;
+use crate::app::exhibit::Exhibition;
 use crate::app::files::exhibit_file;
 use crate::cli::out::Out;
 use crate::cli::window::DrawnArgs;
@@ -35,7 +35,7 @@ pub(crate) fn run(out: &mut Out, args: ExhibitArgs) -> anyhow::Result<()> {
 }
 
 /// What a file holds, in one line.
-fn summary(start: &ExhibitStart) -> String {
+fn summary(start: &Exhibition) -> String {
     let plan = &start.plan;
     let names: Vec<&str> = plan
         .tiles
@@ -61,24 +61,24 @@ fn summary(start: &ExhibitStart) -> String {
 }
 
 #[cfg(feature = "desktop")]
-fn show(args: ExhibitArgs, start: ExhibitStart) -> anyhow::Result<()> {
+fn show(args: ExhibitArgs, start: Exhibition) -> anyhow::Result<()> {
     use crate::cli::window::{WindowShows, open};
+    let command = std::iter::once("exhibit".into());
     let shows = WindowShows {
         records: true,
         replay: None,
-        exhibit: Some(ExhibitStart {
+        exhibit: Some(Exhibition {
             ends_program: true,
             ..start
         }),
-        again: (
-            vec!["exhibit".into()],
-            args.file.into_iter().map(Into::into).collect(),
-        ),
+        words: command
+            .chain(args.file.into_iter().map(Into::into))
+            .collect(),
     };
     open(args.drawn, shows)
 }
 
 #[cfg(not(feature = "desktop"))]
-fn show(_args: ExhibitArgs, _start: ExhibitStart) -> anyhow::Result<()> {
+fn show(_args: ExhibitArgs, _start: Exhibition) -> anyhow::Result<()> {
     crate::cli::window::without_window()
 }

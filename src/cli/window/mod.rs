@@ -67,27 +67,27 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
         // Said where it was asked, and not in a window that opens without it.
         session_file::open(path)?;
     }
-    let mut again: Vec<OsString> = Vec::new();
-    if args.no_record {
-        again.push("--no-record".into());
-    }
-    again.extend(args.replay.iter().map(OsString::from));
+    let no_record = args.no_record.then(|| OsString::from("--no-record"));
+    let words = no_record
+        .into_iter()
+        .chain(args.replay.iter().map(OsString::from));
+    let words = words.collect();
     let shows = WindowShows {
         records: !args.no_record,
         replay: args.replay,
         exhibit: None,
-        again: (Vec::new(), again),
+        words,
     };
     open(args.drawn, shows)
 }
 
-/// What the window begins with, and what says so on a command line: before the options of drawing, and after them.
+/// What the window begins with, and the words of a command line that say so.
 #[cfg(feature = "desktop")]
 pub(crate) struct WindowShows {
     pub(crate) records: bool,
     pub(crate) replay: Option<std::path::PathBuf>,
-    pub(crate) exhibit: Option<crate::app::exhibit::ExhibitStart>,
-    pub(crate) again: (Vec<std::ffi::OsString>, Vec<std::ffi::OsString>),
+    pub(crate) exhibit: Option<crate::app::exhibit::Exhibition>,
+    pub(crate) words: Vec<std::ffi::OsString>,
 }
 
 /// Opens the window with this in it.
@@ -104,7 +104,7 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
         None if args.opengl || desktop::may_draw_with_a_card() => Drawing::OpenGl,
         None => Drawing::Software,
     };
-    let (mut again, rest) = shows.again;
+    let mut again = shows.words;
     if let Some(hand) = &args.hand {
         again.extend(["--hand".into(), hand.to_string().into()]);
     }
@@ -121,7 +121,6 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     match ended {
         Err(DesktopError::NoOpenGl { cause }) => {
             again.extend(["--software-because".into(), (&cause).into()]);
-            again.extend(rest);
             restart_without_opengl(&again, &cause)
         }
         ended => Ok(ended?),

@@ -1,6 +1,6 @@
 //! What the window starts with.
 
-use crate::app::exhibit::ExhibitStart;
+use crate::app::exhibit::Exhibition;
 use crate::app::files::settings_file::Loaded;
 use crate::shell::Snap;
 use crate::transport::Endpoint;
@@ -33,7 +33,7 @@ pub struct DesktopStart {
     /// Whether what happens at hands is recorded, as far as the settings say so.
     pub records: bool,
     /// An exhibition to show in place of the window.
-    pub exhibit: Option<ExhibitStart>,
+    pub exhibit: Option<Exhibition>,
     /// A recorded session to begin with.
     pub replay: Option<PathBuf>,
 }

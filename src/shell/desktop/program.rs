@@ -195,8 +195,10 @@ impl Program {
             }
             fills => {
                 let filling = fills.get_or_insert_default();
-                let by_hand = ctx.input(|input| filling.is_away(input.viewport(), now));
-                let Some(by_hand) = by_hand else { return };
+                let view = ctx.input(|input| input.viewport().clone());
+                if !filling.is_due(&view, now) {
+                    return;
+                }
                 let mut commands = vec![
                     ViewportCommand::Minimized(false),
                     ViewportCommand::Decorations(false),
@@ -204,7 +206,7 @@ impl Program {
                     level(WindowLevel::AlwaysOnTop),
                     ViewportCommand::Focus,
                 ];
-                if let Some(screen) = by_hand {
+                if let Some(screen) = view.monitor_size.filter(|_| filling.by_hand) {
                     commands.push(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
                     commands.push(ViewportCommand::InnerSize(screen));
                 }
@@ -285,28 +287,26 @@ struct Filling {
 }
 
 impl Filling {
-    /// Whether it is to be told now, and the size to set where nobody else does.
-    fn is_away(&mut self, view: &ViewportInfo, now: Moment) -> Option<Option<Vec2>> {
-        let Some(told) = self.told else {
-            self.told = Some(now);
-            return Some(None);
-        };
-        if now.since(told) < FILL_EACH {
-            return None;
+    /// Whether the window is to be told now: at first, and later where it does not fill its screen.
+    fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
+        let waits = |told| now.since(told) < FILL_EACH;
+        if self.told.is_some_and(waits) {
+            return false;
         }
-        let screen = view.monitor_size.zip(view.inner_rect);
+        let sizes = view.monitor_size.zip(view.inner_rect);
         let is_small =
-            screen.is_some_and(|(screen, inner)| (screen - inner.size()).max_elem() > 1.0);
-        self.by_hand |= is_small && view.fullscreen == Some(true);
+            sizes.is_some_and(|(screen, inner)| (screen - inner.size()).max_elem() > 1.0);
+        let was_told = self.told.is_some();
+        self.by_hand |= was_told && is_small && view.fullscreen == Some(true);
         let is_moved = view
             .inner_rect
             .is_some_and(|inner| inner.min != egui::Pos2::ZERO);
         let is_hidden = view.fullscreen == Some(false) || view.minimized == Some(true);
-        if !(is_small || is_hidden || self.by_hand && is_moved) {
-            return None;
+        let is_due = !was_told || is_small || is_hidden || self.by_hand && is_moved;
+        if is_due {
+            self.told = Some(now);
         }
-        self.told = Some(now);
-        Some(screen.filter(|_| self.by_hand).map(|(screen, _)| screen))
+        is_due
     }
 }
 

@@ -5,7 +5,7 @@ use crate::app::exhibit::ExhibitAction;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
-use crate::exhibit::run::Wish;
+use crate::exhibit::run::ExhibitWish;
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::shell::headless::driver::{ANSWER_WITHIN, Driver};
@@ -99,14 +99,14 @@ impl Driver {
 
     fn play_at_exhibit(&mut self) {
         let pin = || ExhibitAction::Pin("0000".into());
-        let (arm, press) = (Wish::Arm, Wish::Press(PLAYED_TILE));
+        let (arm, press) = (ExhibitWish::Arm, ExhibitWish::Press(PLAYED_TILE));
         for (action, millis) in [
             (ExhibitAction::Enter, 500),
             (pin(), 100),
             (pin(), 500),
             (ExhibitAction::Wish(arm), 6000),
             (ExhibitAction::Wish(press), 200),
-            (ExhibitAction::Wish(Wish::Release), 1400),
+            (ExhibitAction::Wish(ExhibitWish::Release), 1400),
         ] {
             self.act(Action::Exhibit(action));
             self.run_for(Duration::from_millis(millis));

@@ -1,7 +1,7 @@
 //! The hand of an exhibition's tests: the simulated hand's drives behind a link of a few rules, and somebody who looks at each
 //! write. Speaks no protocol, so that a day takes seconds.
 
-use crate::exhibit::plan::{ExhibitPlan, MotionLimits, Piece};
+use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan, MotionLimits};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, CurrentReading, Dof, Fault, Group, Groups, HandCommand,
     HandSample, Moment, PerDof, Setpoints, Setting, Span, Target, TemperatureReading, Timed,
@@ -64,7 +64,7 @@ pub(crate) struct BoothHand {
     pub(crate) clock: Clock,
 }
 
-fn targets_of(piece: &Piece) -> impl Iterator<Item = PerDof<Option<Angle>>> + '_ {
+fn targets_of(piece: &ExhibitPiece) -> impl Iterator<Item = PerDof<Option<Angle>>> + '_ {
     let cues = piece.plan.cues.iter();
     let touched = piece.plan.reaction.iter().map(|cue| &cue.touched);
     cues.chain(touched).map(|cue| cue.targets)

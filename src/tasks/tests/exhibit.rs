@@ -2,7 +2,10 @@
 
 use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{Calm, ExhibitEvent, ExhibitRun, ExhibitView, Order, Seen, Stage, Wish};
+use crate::exhibit::run::{
+    ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitStage, ExhibitView, ExhibitWish,
+    HaltReason,
+};
 use crate::hand::{
     Angle, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target, TemperatureReading,
     Timed,
@@ -30,7 +33,7 @@ fn plan() -> ExhibitPlan {
 /// An exhibition at a hand.
 struct Booth {
     hand: BoothHand,
-    wishes: mpsc::Sender<Wish>,
+    wishes: mpsc::Sender<ExhibitWish>,
     view: Arc<Mutex<ExhibitView>>,
     events: Arc<Mutex<BTreeMap<String, u64>>>,
     task: JoinHandle<()>,
@@ -76,14 +79,14 @@ impl Booth {
         }
     }
 
-    fn wish(&self, wish: Wish) {
+    fn wish(&self, wish: ExhibitWish) {
         self.wishes.try_send(wish).unwrap();
     }
 
     /// Staff arm it, with all that belongs to it.
     async fn arm(&self) {
         self.hand.facts().person_armed = true;
-        self.wish(Wish::Arm);
+        self.wish(ExhibitWish::Arm);
         sleep(Duration::from_secs(1)).await;
     }
 
@@ -96,19 +99,19 @@ impl Booth {
     }
 
     async fn press(&self, tile: usize) {
-        self.wish(Wish::Press(tile));
+        self.wish(ExhibitWish::Press(tile));
         sleep(Duration::from_millis(80)).await;
-        self.wish(Wish::Release);
+        self.wish(ExhibitWish::Release);
     }
 
     fn stop(&self) {
         use crate::tasks::Hand as _;
         self.hand.facts().person_armed = false;
         self.hand.stop();
-        self.wish(Wish::Stop);
+        self.wish(ExhibitWish::Stop);
     }
 
-    fn stage(&self) -> Stage {
+    fn stage(&self) -> ExhibitStage {
         self.view.lock().unwrap().stage
     }
 
@@ -146,10 +149,10 @@ async fn nothing_moves_before_staff_arm_whatever_is_pressed() {
     sleep(s(2)).await;
     for tile in 0..14 {
         booth.press(tile).await;
-        booth.wish(Wish::Touch);
+        booth.wish(ExhibitWish::Touch);
         sleep(s(20)).await;
     }
-    assert_eq!(booth.stage(), Stage::Calm(Calm::NotArmed));
+    assert_eq!(booth.stage(), ExhibitStage::Halted(HaltReason::NotArmed));
     assert_eq!(booth.moves(), 0);
     booth.all_well();
 }
@@ -157,11 +160,11 @@ async fn nothing_moves_before_staff_arm_whatever_is_pressed() {
 #[tokio::test(start_paused = true)]
 async fn a_visitor_has_a_moving_hand_at_once_and_it_opens_and_disarms_once_they_have_gone() {
     let booth = Booth::armed(plan()).await;
-    assert_eq!(booth.stage(), Stage::Idle);
+    assert_eq!(booth.stage(), ExhibitStage::Idle);
     assert!(!booth.is_armed(), "at rest nothing may move");
     booth.press(FIST).await;
     sleep(Duration::from_millis(500)).await;
-    assert!(matches!(booth.stage(), Stage::Visit { .. }));
+    assert!(matches!(booth.stage(), ExhibitStage::Visit { .. }));
     assert!(
         booth.hand.angle(Dof::Index) < 990.0,
         "{}",
@@ -170,7 +173,7 @@ async fn a_visitor_has_a_moving_hand_at_once_and_it_opens_and_disarms_once_they_
     sleep(s(6)).await;
     assert!(booth.hand.angle(Dof::Index) < 10.0);
     sleep(s(30)).await;
-    assert_eq!(booth.stage(), Stage::Idle);
+    assert_eq!(booth.stage(), ExhibitStage::Idle);
     assert!(booth.hand.angle(Dof::Index) > 990.0 && !booth.is_armed());
     assert_eq!((booth.count("Visit"), booth.count("piece")), (1, 1));
     booth.all_well();
@@ -182,13 +185,13 @@ async fn the_time_of_a_visitor_ends_and_the_next_one_plays() {
     booth.press(WAVE).await;
     sleep(s(100)).await;
     assert!(
-        matches!(booth.stage(), Stage::Visit { .. }),
+        matches!(booth.stage(), ExhibitStage::Visit { .. }),
         "it goes round and round"
     );
     assert!(booth.is_armed());
     sleep(s(21)).await;
     assert!(
-        matches!(booth.stage(), Stage::NextVisitor { .. }),
+        matches!(booth.stage(), ExhibitStage::NextVisitor { .. }),
         "{:?}",
         booth.stage()
     );
@@ -207,25 +210,34 @@ async fn the_time_of_a_visitor_ends_and_the_next_one_plays() {
 async fn the_attract_loop_begins_after_a_minute_and_rests() {
     let booth = Booth::armed(plan()).await;
     sleep(s(50)).await;
-    assert_eq!((booth.stage(), booth.is_armed()), (Stage::Idle, false));
+    assert_eq!(
+        (booth.stage(), booth.is_armed()),
+        (ExhibitStage::Idle, false)
+    );
     sleep(s(15)).await;
-    assert_eq!((booth.stage(), booth.is_armed()), (Stage::Attract, true));
+    assert_eq!(
+        (booth.stage(), booth.is_armed()),
+        (ExhibitStage::Attract, true)
+    );
     sleep(s(60)).await;
-    assert_eq!((booth.stage(), booth.is_armed()), (Stage::Idle, false));
+    assert_eq!(
+        (booth.stage(), booth.is_armed()),
+        (ExhibitStage::Idle, false)
+    );
     sleep(s(130)).await;
-    assert_eq!(booth.stage(), Stage::Attract);
+    assert_eq!(booth.stage(), ExhibitStage::Attract);
     booth.all_well();
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_touch_ends_the_attract_loop_with_a_hold_at_once_and_the_tile_follows() {
     let booth = Booth::armed(plan()).await;
-    while !(booth.stage() == Stage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
+    while !(booth.stage() == ExhibitStage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
         sleep(Duration::from_millis(20)).await;
     }
     let before = booth.hand.facts().sent.len();
     let at = booth.hand.clock.now();
-    booth.wish(Wish::Press(POINT));
+    booth.wish(ExhibitWish::Press(POINT));
     sleep(Duration::from_millis(200)).await;
     let sent = booth.hand.facts().sent.clone();
     let (held, hold) = &sent[before];
@@ -250,17 +262,17 @@ async fn a_touch_ends_the_attract_loop_with_a_hold_at_once_and_the_tile_follows(
             .any(|(_, to)| to.angle[Dof::Ring] == Some(Target::Go(Angle::MIN))),
         "{after:?}"
     );
-    assert!(matches!(booth.stage(), Stage::Visit { .. }));
+    assert!(matches!(booth.stage(), ExhibitStage::Visit { .. }));
     booth.all_well();
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_touch_beside_the_tiles_holds_the_attract_loop_and_it_opens_later() {
     let booth = Booth::armed(plan()).await;
-    while !(booth.stage() == Stage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
+    while !(booth.stage() == ExhibitStage::Attract && booth.hand.angle(Dof::Little) < 800.0) {
         sleep(Duration::from_millis(20)).await;
     }
-    booth.wish(Wish::Touch);
+    booth.wish(ExhibitWish::Touch);
     sleep(Duration::from_millis(300)).await;
     let held = booth.hand.angle(Dof::Little);
     sleep(s(20)).await;
@@ -273,14 +285,16 @@ async fn a_touch_beside_the_tiles_holds_the_attract_loop_and_it_opens_later() {
 #[tokio::test(start_paused = true)]
 async fn stop_a_lost_link_sleep_and_others_end_the_arming_until_staff_come() {
     type Ends = fn(&Booth);
-    let ends: [(Calm, Ends); 5] = [
-        (Calm::Stopped, Booth::stop),
-        (Calm::Slept, |booth| booth.hand.sleeps()),
-        (Calm::LinkLost, |booth| booth.hand.disarmed(Disarmed::Stale)),
-        (Calm::OtherController, |booth| {
+    let ends: [(HaltReason, Ends); 5] = [
+        (HaltReason::Stopped, Booth::stop),
+        (HaltReason::Slept, |booth| booth.hand.sleeps()),
+        (HaltReason::LinkLost, |booth| {
+            booth.hand.disarmed(Disarmed::Stale)
+        }),
+        (HaltReason::OtherController, |booth| {
             booth.hand.disarmed(Disarmed::OtherController);
         }),
-        (Calm::Fault, |booth| {
+        (HaltReason::Fault, |booth| {
             booth.hand.fails(Dof::Ring, Fault::OverTemperature);
         }),
     ];
@@ -295,28 +309,28 @@ async fn stop_a_lost_link_sleep_and_others_end_the_arming_until_staff_come() {
             booth.press(FIST).await;
             sleep(s(60)).await;
         }
-        assert_eq!(booth.stage(), Stage::Calm(why));
+        assert_eq!(booth.stage(), ExhibitStage::Halted(why));
         assert_eq!(booth.moves(), before, "{why:?}");
         booth.arm().await;
         sleep(s(5)).await;
-        assert_eq!(booth.stage(), Stage::Idle, "{why:?}");
+        assert_eq!(booth.stage(), ExhibitStage::Idle, "{why:?}");
         booth.all_well();
     }
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_pulled_cable_or_a_hand_off_and_on_comes_back_calm() {
+async fn a_pulled_cable_or_a_hand_off_and_on_comes_back_and_does_not_move() {
     let booth = Booth::armed(plan()).await;
     booth.press(WAVE).await;
     sleep(s(2)).await;
     booth.hand.plug(false);
     sleep(Duration::from_millis(200)).await;
-    assert_eq!(booth.stage(), Stage::Calm(Calm::NoHand));
+    assert_eq!(booth.stage(), ExhibitStage::Halted(HaltReason::NoHand));
     sleep(s(30)).await;
     booth.hand.plug(true);
     let moves = booth.moves();
     sleep(s(1)).await;
-    assert_eq!(booth.stage(), Stage::Calm(Calm::LinkLost));
+    assert_eq!(booth.stage(), ExhibitStage::Halted(HaltReason::LinkLost));
     sleep(s(300)).await;
     assert_eq!(booth.moves(), moves, "never by itself");
     booth.all_well();
@@ -330,7 +344,7 @@ async fn faults_that_can_be_cleared_are_at_most_three_times_in_ten_minutes() {
         sleep(s(1)).await;
         booth.hand.fails(Dof::Index, Fault::Stall);
         sleep(s(8)).await;
-        assert_eq!(booth.stage(), Stage::Idle);
+        assert_eq!(booth.stage(), ExhibitStage::Idle);
         assert_eq!(booth.hand.facts().clears, clears);
         assert!(booth.hand.angle(Dof::Index) > 990.0, "it opens then");
     }
@@ -341,7 +355,7 @@ async fn faults_that_can_be_cleared_are_at_most_three_times_in_ten_minutes() {
     sleep(s(700)).await;
     assert_eq!(
         booth.stage(),
-        Stage::Calm(Calm::Fault),
+        ExhibitStage::Halted(HaltReason::Fault),
         "the fourth needs a person"
     );
     assert_eq!(
@@ -350,7 +364,10 @@ async fn faults_that_can_be_cleared_are_at_most_three_times_in_ten_minutes() {
     );
     booth.arm().await;
     sleep(s(8)).await;
-    assert_eq!((booth.stage(), booth.hand.facts().clears), (Stage::Idle, 4));
+    assert_eq!(
+        (booth.stage(), booth.hand.facts().clears),
+        (ExhibitStage::Idle, 4)
+    );
     booth.all_well();
 }
 
@@ -362,24 +379,28 @@ async fn a_held_tile_arms_again_only_where_the_file_says_so_and_after_two_second
             ..plan()
         })
         .await;
-        booth.wish(Wish::Press(FIST));
+        booth.wish(ExhibitWish::Press(FIST));
         sleep(s(3)).await;
         booth.stop();
         sleep(s(30)).await;
         assert_eq!(
             booth.stage(),
-            Stage::Calm(Calm::Stopped),
+            ExhibitStage::Halted(HaltReason::Stopped),
             "held before does not count"
         );
         booth.press(FIST).await;
         sleep(s(5)).await;
-        assert_eq!(booth.stage(), Stage::Calm(Calm::Stopped), "too short");
-        booth.wish(Wish::Press(FIST));
+        assert_eq!(
+            booth.stage(),
+            ExhibitStage::Halted(HaltReason::Stopped),
+            "too short"
+        );
+        booth.wish(ExhibitWish::Press(FIST));
         sleep(Duration::from_millis(1900)).await;
         let moves = booth.moves();
         booth.hand.facts().person_armed = restart;
         sleep(s(8)).await;
-        let is_playing = matches!(booth.stage(), Stage::Visit { .. });
+        let is_playing = matches!(booth.stage(), ExhibitStage::Visit { .. });
         assert_eq!((is_playing, booth.moves() > moves), (restart, restart));
         booth.all_well();
     }
@@ -414,11 +435,11 @@ async fn nobody_who_leaves_the_exhibition_leaves_an_armed_hand() {
 #[tokio::test(start_paused = true)]
 async fn a_touch_while_the_attract_loop_is_arming_leaves_tiles_that_play() {
     let booth = Booth::armed(plan()).await;
-    while booth.stage() != Stage::Attract {
+    while booth.stage() != ExhibitStage::Attract {
         sleep(Duration::from_millis(10)).await;
     }
     assert!(!booth.is_armed(), "it is only asked for");
-    booth.wish(Wish::Touch);
+    booth.wish(ExhibitWish::Touch);
     sleep(s(3)).await;
     booth.press(FIST).await;
     sleep(s(6)).await;
@@ -433,14 +454,18 @@ async fn a_stop_while_it_is_arming_wins() {
     let booth = Booth::armed(plan()).await;
     for wait_ms in [0, 5, 20, 39, 41, 60] {
         let moves = booth.moves();
-        booth.wish(Wish::Press(FIST));
+        booth.wish(ExhibitWish::Press(FIST));
         sleep(Duration::from_millis(wait_ms)).await;
         booth.stop();
         sleep(Duration::from_millis(5)).await;
         assert!(booth.moves() <= moves + 1, "{wait_ms}");
         let moves = booth.moves();
         sleep(s(5)).await;
-        assert_eq!(booth.stage(), Stage::Calm(Calm::Stopped), "{wait_ms}");
+        assert_eq!(
+            booth.stage(),
+            ExhibitStage::Halted(HaltReason::Stopped),
+            "{wait_ms}"
+        );
         assert_eq!((booth.moves(), booth.is_armed()), (moves, false));
         booth.arm().await;
         sleep(s(5)).await;
@@ -457,7 +482,7 @@ fn order(
     run: &mut ExhibitRun,
     (state, armed): (LinkState, Option<u64>),
     second: u64,
-) -> Option<Order> {
+) -> Option<ExhibitOrder> {
     fn timed<T: Copy>(value: T, second: u64) -> Option<Timed<PerDof<T>>> {
         Some(Timed {
             value: PerDof::splat(value),
@@ -476,7 +501,7 @@ fn order(
         armed: armed.map(ArmEpoch),
         ..LinkStatus::default()
     };
-    let seen = Seen {
+    let seen = ExhibitInput {
         status: &status,
         sample: &sample,
     };
@@ -488,24 +513,27 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
     let free = (LinkState::Monitoring, None);
     let mut run = ExhibitRun::new(Arc::new(plan()), at(0));
     assert_eq!(order(&mut run, free, 1), None);
-    run.wish(Wish::Arm, at(1));
+    run.wish(ExhibitWish::Arm, at(1));
     for (second, epoch) in [(1, 1), (70, 2)] {
         let asked = order(&mut run, free, second);
-        assert!(matches!(asked, Some(Order::Arm(_))), "{asked:?}");
+        assert!(matches!(asked, Some(ExhibitOrder::Arm(_))), "{asked:?}");
         let armed = (LinkState::Armed, Some(epoch));
         let plays = order(&mut run, armed, second);
-        assert!(matches!(plays, Some(Order::Play(_))), "{plays:?}");
+        assert!(matches!(plays, Some(ExhibitOrder::Play(_))), "{plays:?}");
         if epoch == 1 {
             run.ended(at(5));
-            assert_eq!(order(&mut run, armed, 5), Some(Order::Disarm));
+            assert_eq!(order(&mut run, armed, 5), Some(ExhibitOrder::Disarm));
         }
     }
     // What plays is to be held for a visitor, and ends with the fault before it can be.
-    run.wish(Wish::Touch, at(71));
+    run.wish(ExhibitWish::Touch, at(71));
     let faulty = (LinkState::Fault, None);
-    assert_eq!(order(&mut run, faulty, 71), Some(Order::Clear));
+    assert_eq!(order(&mut run, faulty, 71), Some(ExhibitOrder::Clear));
     let asked = order(&mut run, free, 72);
-    assert!(matches!(asked, Some(Order::Arm(_))), "to open: {asked:?}");
+    assert!(
+        matches!(asked, Some(ExhibitOrder::Arm(_))),
+        "to open: {asked:?}"
+    );
 }
 
 #[tokio::test(start_paused = true)]
@@ -522,7 +550,7 @@ async fn a_stall_of_a_hot_hand_is_cleared_once_and_then_the_hand_rests() {
     booth.hand.fails(Dof::Index, Fault::Stall);
     sleep(s(8)).await;
     assert!(
-        matches!(booth.stage(), Stage::Cooling { .. }),
+        matches!(booth.stage(), ExhibitStage::Cooling { .. }),
         "{:?}",
         booth.stage()
     );
@@ -539,7 +567,7 @@ async fn a_fault_that_lasts_is_counted_once() {
     booth.hand.facts().drives[Dof::Ring].warm(80.0);
     booth.hand.fails(Dof::Ring, Fault::OverTemperature);
     sleep(s(5)).await;
-    assert_eq!(booth.stage(), Stage::Calm(Calm::Fault));
+    assert_eq!(booth.stage(), ExhibitStage::Halted(HaltReason::Fault));
     booth.stop();
     sleep(s(5)).await;
     assert_eq!(booth.count("Fault(OverTemperature)"), 1);
@@ -563,14 +591,14 @@ async fn a_visitor_who_arms_again_does_not_begin_the_count_of_faults_anew() {
     booth.stop();
     sleep(s(2)).await;
     booth.hand.facts().person_armed = true;
-    booth.wish(Wish::Press(FIST));
+    booth.wish(ExhibitWish::Press(FIST));
     sleep(s(3)).await;
-    booth.wish(Wish::Release);
+    booth.wish(ExhibitWish::Release);
     assert!(booth.is_armed());
     booth.hand.facts().person_armed = false;
     booth.hand.fails(Dof::Index, Fault::Stall);
     sleep(s(8)).await;
-    assert_eq!(booth.stage(), Stage::Calm(Calm::Fault));
+    assert_eq!(booth.stage(), ExhibitStage::Halted(HaltReason::Fault));
     assert_eq!(booth.hand.facts().clears, 3);
     booth.all_well();
 }
@@ -584,7 +612,7 @@ async fn crowd(hours: u64, heating: f64) -> (f64, u64, u64) {
     }
     let mut chance = fastrand::Rng::with_seed(7);
     for _ in 0..hours * 900 {
-        if matches!(booth.stage(), Stage::Calm(_)) {
+        if matches!(booth.stage(), ExhibitStage::Halted(_)) {
             booth.arm().await;
         }
         let dof = *chance.choice(&Dof::ALL).unwrap();
@@ -667,8 +695,8 @@ async fn a_day() {
     let mut chance = fastrand::Rng::with_seed(14);
     let day = s(24 * 3600);
     let start = booth.hand.clock.now();
-    let mut longest_calm = Duration::ZERO;
-    let mut calm_since = None;
+    let mut longest_halt = Duration::ZERO;
+    let mut halted_since = None;
     let mut early_kib = None;
     while booth.hand.clock.now().since(start) < day {
         let now = booth.hand.clock.now();
@@ -676,18 +704,18 @@ async fn a_day() {
             early_kib = resident_kib();
         }
         match booth.stage() {
-            Stage::Calm(_) => {
-                let since = *calm_since.get_or_insert(now);
-                longest_calm = longest_calm.max(now.since(since));
+            ExhibitStage::Halted(_) => {
+                let since = *halted_since.get_or_insert(now);
+                longest_halt = longest_halt.max(now.since(since));
             }
-            _ => calm_since = None,
+            _ => halted_since = None,
         }
         step(&booth, &mut chance).await;
     }
     let facts = booth.hand.facts();
     assert_eq!(facts.wrong, Vec::<String>::new());
     println!(
-        "{} moves, {} clears, longest calm {longest_calm:?}",
+        "{} moves, {} clears, longest halt {longest_halt:?}",
         facts.moves, facts.clears
     );
     assert!(facts.moves > 5000 && facts.clears > 5);
@@ -702,7 +730,7 @@ async fn a_day() {
     ] {
         assert!(booth.count(event) > 5, "{event}: {:?}", booth.events);
     }
-    assert!(longest_calm < s(3 * 3600), "{longest_calm:?}");
+    assert!(longest_halt < s(3 * 3600), "{longest_halt:?}");
     if let Some((early, late)) = early_kib.zip(resident_kib()) {
         println!("after 2 h {early} KiB, after 24 h {late} KiB");
         assert!(late < early + 2048, "{early} {late}");
@@ -731,7 +759,7 @@ async fn step(booth: &Booth, chance: &mut fastrand::Rng) {
             booth.hand.fails(dof, Fault::Stall);
             sleep(s(1)).await;
             // More than three of them need a person.
-            if matches!(booth.stage(), Stage::Calm(_)) {
+            if matches!(booth.stage(), ExhibitStage::Halted(_)) {
                 booth.hand.facts().person_armed = false;
             }
         }
@@ -741,23 +769,23 @@ async fn step(booth: &Booth, chance: &mut fastrand::Rng) {
             sleep(s(2)).await;
             booth.hand.facts().drives[dof].warm(30.0);
         }
-        73..=120 => booth.wish(Wish::Touch),
+        73..=120 => booth.wish(ExhibitWish::Touch),
         121..=180 => hold_a_tile(booth, chance).await,
-        181..=220 if matches!(booth.stage(), Stage::Calm(_)) => booth.arm().await,
+        181..=220 if matches!(booth.stage(), ExhibitStage::Halted(_)) => booth.arm().await,
         _ => booth.press(chance.usize(0..14)).await,
     }
 }
 
-/// Somebody holds a tile: where everything is calm, that arms.
+/// Somebody holds a tile: where nothing moves, that arms.
 async fn hold_a_tile(booth: &Booth, chance: &mut fastrand::Rng) {
-    let is_calm = matches!(booth.stage(), Stage::Calm(why) if why != Calm::NoHand);
+    let is_halted = matches!(booth.stage(), ExhibitStage::Halted(why) if why != HaltReason::NoHand);
     let tile = chance.usize(0..10);
-    booth.wish(Wish::Press(tile));
+    booth.wish(ExhibitWish::Press(tile));
     sleep(Duration::from_millis(1950)).await;
     let may = booth.hand.facts().status.state == LinkState::Monitoring;
-    if is_calm && may {
+    if is_halted && may {
         booth.hand.facts().person_armed = true;
     }
     sleep(Duration::from_millis(chance.u64(100..3000))).await;
-    booth.wish(Wish::Release);
+    booth.wish(ExhibitWish::Release);
 }

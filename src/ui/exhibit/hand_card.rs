@@ -25,10 +25,7 @@ impl HandCard {
         places: &PagePlaces,
     ) {
         let (unit, rect) = (places.unit, places.hand);
-        let page = PageLook {
-            look: pane.look,
-            unit,
-        };
+        let page = PageLook::of(pane, places);
         let tips = heat::tips(pane);
         page.card(ui, rect);
         let inner = rect.shrink(20.0 * unit);

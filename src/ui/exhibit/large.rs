@@ -1,6 +1,7 @@
 //! Texts and buttons that are read from two metres away: as large as the screen allows.
 
-use crate::ui::kit::{self, Label, Look, Weight};
+use crate::ui::exhibit::places::PagePlaces;
+use crate::ui::kit::{self, Label, Look, Pane, Weight};
 use crate::ui::theme::{self, Icon};
 use egui::{
     Align2, Color32, FontId, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo,
@@ -27,6 +28,14 @@ pub(crate) struct PageLook {
 }
 
 impl PageLook {
+    /// On a screen on which everything stands there.
+    pub(crate) fn of(pane: &Pane<'_>, places: &PagePlaces) -> Self {
+        Self {
+            look: pane.look,
+            unit: places.unit,
+        }
+    }
+
     /// A font of this size in units.
     pub(crate) fn font(self, size: f32) -> FontId {
         FontId::proportional((size * self.unit).max(FONT_LEAST))

@@ -13,7 +13,7 @@ use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState, Logo, StaffPanel};
 use crate::app::settings::{Language, Zoom};
 use crate::app::state::State;
-use crate::exhibit::run::{Stage, Wish};
+use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::hand_card::HandCard;
 use crate::ui::exhibit::large::{LargeButton, PageLook};
 use crate::ui::exhibit::places::PagePlaces;
@@ -88,10 +88,10 @@ impl ExhibitPage {
         let is_pressed = std::mem::replace(&mut self.is_held, false);
         self.is_held = (is_pressed || taken.inner) && !touches.ends_up;
         if touches.went_down && is_free && !taken.inner {
-            actions.push(wish(Wish::Touch));
+            actions.push(wish(ExhibitWish::Touch));
         }
         if (is_pressed || taken.inner) && !self.is_held {
-            actions.push(wish(Wish::Release));
+            actions.push(wish(ExhibitWish::Release));
         }
         repaint(ui, exhibit);
         ui.ctx().set_cursor_icon(CursorIcon::None);
@@ -106,10 +106,7 @@ impl ExhibitPage {
         exhibit: &ExhibitState,
         places: &PagePlaces,
     ) -> bool {
-        let page = PageLook {
-            look: pane.look,
-            unit: places.unit,
-        };
+        let page = PageLook::of(pane, places);
         self.title_ui(ui, page, places.title, exhibit);
         let lock = LargeButton {
             icon: Some(theme::LOCKED),
@@ -178,16 +175,13 @@ fn load(ctx: &Context, logo: &Logo) -> Option<TextureHandle> {
     Some(ctx.load_texture("exhibit logo", image, TextureOptions::LINEAR))
 }
 
-const fn wish(wish: Wish) -> Action {
+const fn wish(wish: ExhibitWish) -> Action {
     Action::Exhibit(ExhibitAction::Wish(wish))
 }
 
 /// STOP, over all else.
 fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, places: &PagePlaces) {
-    let page = PageLook {
-        look: pane.look,
-        unit: places.unit,
-    };
+    let page = PageLook::of(pane, places);
     let stop = LargeButton {
         note: page.look.say(exhibit::STOP_NOTE),
         size: 60.0,
@@ -201,10 +195,7 @@ fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, places: &PagePlaces) {
 
 /// The other language, in its own words.
 fn language_ui(ui: &Ui, pane: &mut Pane<'_>, places: &PagePlaces) {
-    let page = PageLook {
-        look: pane.look,
-        unit: places.unit,
-    };
+    let page = PageLook::of(pane, places);
     let words = match page.look.language {
         Language::En => "中文",
         Language::Zh => "English",
@@ -275,7 +266,7 @@ fn repaint(ui: &Ui, exhibit: &ExhibitState) {
         || exhibit.staff != StaffPanel::Closed
         || matches!(
             exhibit.view.stage,
-            Stage::Visit { .. } | Stage::Cooling { .. }
+            ExhibitStage::Visit { .. } | ExhibitStage::Cooling { .. }
         );
     if goes_on {
         ui.ctx().request_repaint_after(FRAME);
@@ -286,7 +277,7 @@ fn repaint(ui: &Ui, exhibit: &ExhibitState) {
 fn stop_first(mut actions: Vec<Action>, keys: &[Key]) -> Vec<Action> {
     let is_stop = |key: &Key| matches!(key, Key::Space | Key::Escape);
     if keys.iter().any(is_stop) || actions.contains(&Action::Stop) {
-        actions.retain(|action| *action == wish(Wish::Release));
+        actions.retain(|action| *action == wish(ExhibitWish::Release));
         actions.insert(0, Action::Stop);
     }
     actions

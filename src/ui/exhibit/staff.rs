@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
 use crate::exhibit::pin::PinAnswer;
-use crate::exhibit::run::{Stage, Wish};
+use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::keypad::Keypad;
 use crate::ui::exhibit::large::{LargeButton, PageLook};
 use crate::ui::exhibit::places::{PagePlaces, above};
@@ -48,10 +48,7 @@ impl StaffView {
         }
         let veil = pane.look.palette.window.gamma_multiply(VEIL);
         ui.painter().rect_filled(places.whole, 0.0, veil);
-        let page = PageLook {
-            look: pane.look,
-            unit: places.unit,
-        };
+        let page = PageLook::of(pane, places);
         match pad_words(pane, exhibit) {
             Some(words) => {
                 let room = card_rect(places, vec2(620.0, 860.0));
@@ -179,7 +176,7 @@ fn open_ui(
         right.with_min_x(right.left() + 2.0 * gap),
         exhibit,
     );
-    let is_calm = matches!(exhibit.view.stage, Stage::Calm(_));
+    let is_halted = matches!(exhibit.view.stage, ExhibitStage::Halted(_));
     let no_hand = !pane.state.hand().link.state.is_live();
     let arm = LargeButton {
         note: look.say(exhibit::ARM_NOTE),
@@ -189,7 +186,7 @@ fn open_ui(
         ..LargeButton::new(look.say(exhibit::ARM))
     };
     let disarm = LargeButton {
-        disabled: is_calm.then(|| look.say(exhibit::DISARM_NOTHING)),
+        disabled: is_halted.then(|| look.say(exhibit::DISARM_NOTHING)),
         ..LargeButton::new(look.say(exhibit::DISARM))
     };
     let leave = LargeButton {
@@ -199,8 +196,8 @@ fn open_ui(
     let close = LargeButton::new(look.say(exhibit::CLOSE));
     let (large, small) = split(left, gap);
     let all = [
-        (arm, large, ExhibitAction::Wish(Wish::Arm)),
-        (disarm, small[0], ExhibitAction::Wish(Wish::Disarm)),
+        (arm, large, ExhibitAction::Wish(ExhibitWish::Arm)),
+        (disarm, small[0], ExhibitAction::Wish(ExhibitWish::Disarm)),
         (leave, small[1], ExhibitAction::Leave),
         (close, small[2], ExhibitAction::CloseStaff),
     ];

@@ -3,7 +3,7 @@
 use crate::app::exhibit::ExhibitState;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
-use crate::exhibit::run::{Calm, Stage};
+use crate::exhibit::run::{ExhibitStage, HaltReason};
 use crate::record::{Hold, LinkState};
 use crate::ui::exhibit::large::PageLook;
 use crate::ui::kit::{Look, Pane};
@@ -25,7 +25,7 @@ struct StageWords {
 
 /// Whether a tile that is held arms again now.
 pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
-    matches!(exhibit.view.stage, Stage::Calm(_))
+    matches!(exhibit.view.stage, ExhibitStage::Halted(_))
         && exhibit.plan.visitor_restart
         && state.hand().link.state == LinkState::Monitoring
 }
@@ -34,13 +34,13 @@ pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
 pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) -> Option<String> {
     let said = |text| Some(look.say(text).to_owned());
     match exhibit.view.stage {
-        Stage::Calm(_) if restarts(state, exhibit) => None,
-        Stage::Calm(why) => said(exhibit::calm(why)),
-        Stage::Idle | Stage::Attract | Stage::Visit { .. } => None,
-        Stage::NextVisitor { .. } => said(exhibit::NEXT_NOTE),
-        Stage::Cooling { .. } => said(exhibit::COOLING_NOTE),
-        Stage::HeatUnknown => said(exhibit::HEAT_UNKNOWN),
-        Stage::Clearing => said(exhibit::CLEARING),
+        ExhibitStage::Halted(_) if restarts(state, exhibit) => None,
+        ExhibitStage::Halted(why) => said(exhibit::halted(why)),
+        ExhibitStage::Idle | ExhibitStage::Attract | ExhibitStage::Visit { .. } => None,
+        ExhibitStage::NextVisitor { .. } => said(exhibit::NEXT_NOTE),
+        ExhibitStage::Cooling { .. } => said(exhibit::COOLING_NOTE),
+        ExhibitStage::HeatUnknown => said(exhibit::HEAT_UNKNOWN),
+        ExhibitStage::Clearing => said(exhibit::CLEARING),
     }
 }
 
@@ -116,28 +116,28 @@ fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords 
         left: None,
     };
     match exhibit.view.stage {
-        Stage::Calm(why) => {
+        ExhibitStage::Halted(why) => {
             let title = match restarts(state, exhibit) {
                 true => exhibit::HOLD,
                 false => exhibit::MOMENT,
             };
             let color = match why {
-                Calm::NotArmed => accent,
+                HaltReason::NotArmed => accent,
                 _ => warn,
             };
-            said((title, exhibit::calm(why)), color)
+            said((title, exhibit::halted(why)), color)
         }
-        Stage::Idle => said((exhibit::IDLE, exhibit::IDLE_NOTE), accent),
-        Stage::Attract => said((exhibit::ATTRACT, exhibit::ATTRACT_NOTE), accent),
-        Stage::Visit { until } => {
+        ExhibitStage::Idle => said((exhibit::IDLE, exhibit::IDLE_NOTE), accent),
+        ExhibitStage::Attract => said((exhibit::ATTRACT, exhibit::ATTRACT_NOTE), accent),
+        ExhibitStage::Visit { until } => {
             let (left, all) = (until.since(state.now), exhibit.plan.visit);
             StageWords {
                 left: Some(left.as_secs_f32() / all.as_secs_f32().max(1.0)),
                 ..said((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok)
             }
         }
-        Stage::NextVisitor { .. } => said((exhibit::NEXT, exhibit::NEXT_NOTE), accent),
-        Stage::Cooling { until } => {
+        ExhibitStage::NextVisitor { .. } => said((exhibit::NEXT, exhibit::NEXT_NOTE), accent),
+        ExhibitStage::Cooling { until } => {
             let left = until.since(state.now).as_millis();
             let minutes = left.div_ceil(MINUTE.as_millis()).max(1);
             StageWords {
@@ -145,7 +145,9 @@ fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords 
                 ..said((exhibit::COOLING, exhibit::COOLING_NOTE), warn)
             }
         }
-        Stage::HeatUnknown => said((exhibit::HEAT_UNKNOWN, exhibit::HEAT_UNKNOWN_NOTE), warn),
-        Stage::Clearing => said((exhibit::CLEARING, exhibit::CLEARING_NOTE), warn),
+        ExhibitStage::HeatUnknown => {
+            said((exhibit::HEAT_UNKNOWN, exhibit::HEAT_UNKNOWN_NOTE), warn)
+        }
+        ExhibitStage::Clearing => said((exhibit::CLEARING, exhibit::CLEARING_NOTE), warn),
     }
 }

@@ -3,8 +3,8 @@
 use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState};
 use crate::app::settings::Language;
-use crate::exhibit::plan::{BothWords, Piece};
-use crate::exhibit::run::{HELD_FOR, Wish};
+use crate::exhibit::plan::{BothWords, ExhibitPiece};
+use crate::exhibit::run::{ExhibitWish, HELD_FOR};
 use crate::hand::Angle;
 use crate::ui::exhibit::large::PageLook;
 use crate::ui::exhibit::places::{NAME, PagePlaces};
@@ -27,9 +27,9 @@ pub(crate) fn words_of(words: &BothWords, language: Language) -> &str {
 }
 
 /// A tile and what it shows.
-struct Tile<'a> {
+struct PieceTile<'a> {
     index: usize,
-    piece: &'a Piece,
+    piece: &'a ExhibitPiece,
     rect: Rect,
     refusal: Option<&'a str>,
     /// How long it was held, as a part of what is wanted, where that does something.
@@ -44,10 +44,7 @@ pub(crate) fn tiles_ui(
     exhibit: &ExhibitState,
     places: &PagePlaces,
 ) -> bool {
-    let page = PageLook {
-        look: pane.look,
-        unit: places.unit,
-    };
+    let page = PageLook::of(pane, places);
     let refusal = stage::tile_refusal(pane.look, pane.state, exhibit);
     let restarts = stage::restarts(pane.state, exhibit);
     let tiles = &exhibit.plan.tiles;
@@ -58,7 +55,7 @@ pub(crate) fn tiles_ui(
             .held
             .filter(|(held, _)| *held == index && restarts);
         let part = |since| pane.state.now.since(since).as_secs_f32() / HELD_FOR.as_secs_f32();
-        let tile = Tile {
+        let tile = PieceTile {
             index,
             piece,
             rect,
@@ -75,10 +72,10 @@ pub(crate) fn tiles_ui(
 }
 
 fn press(tile: usize) -> Action {
-    Action::Exhibit(ExhibitAction::Wish(Wish::Press(tile)))
+    Action::Exhibit(ExhibitAction::Wish(ExhibitWish::Press(tile)))
 }
 
-impl Tile<'_> {
+impl PieceTile<'_> {
     /// Draws it; true in the frame in which it is pressed.
     fn ui(&self, ui: &mut Ui, page: PageLook) -> bool {
         let Self { rect, .. } = *self;

@@ -1,6 +1,6 @@
 //! Sentences of an exhibition: what visitors read from two metres away, and what staff do.
 
-use crate::exhibit::run::Calm;
+use crate::exhibit::run::HaltReason;
 use crate::ui::text::phrase::texts;
 
 texts! {
@@ -59,13 +59,13 @@ texts! {
     STOPS: "STOP pressed", "按下停止";
 
     /// What staff do before the hand moves again.
-    fn calm(Calm) {
-        Calm::NotArmed => "Staff: check that nobody is near the hand, then unlock and arm.", "工作人员：确认无人靠近灵巧手后，解锁并使能。";
-        Calm::NoHand => "Staff: the hand does not answer. Check its power and its cable.", "工作人员：灵巧手没有应答。请检查电源和线缆。";
-        Calm::LinkLost => "Staff: the hand was away and is back. Check it, then unlock and arm.", "工作人员：灵巧手曾断开，现已恢复。检查后解锁并使能。";
-        Calm::Stopped => "Staff: STOP was pressed. See that all is well, then unlock and arm.", "工作人员：有人按下了停止。确认一切正常后，解锁并使能。";
-        Calm::Fault => "Staff: a drive reports a fault. Check the hand, then unlock and arm.", "工作人员：驱动器报告故障。检查灵巧手后，解锁并使能。";
-        Calm::OtherController => "Staff: another program talks to the hand. Close it, then unlock and arm.", "工作人员：另有程序正在控制灵巧手。关闭后解锁并使能。";
-        Calm::Slept => "Staff: this computer slept. Check the hand, then unlock and arm.", "工作人员：电脑曾进入睡眠。检查灵巧手后，解锁并使能。";
+    fn halted(HaltReason) {
+        HaltReason::NotArmed => "Staff: check that nobody is near the hand, then unlock and arm.", "工作人员：确认无人靠近灵巧手后，解锁并使能。";
+        HaltReason::NoHand => "Staff: the hand does not answer. Check its power and its cable.", "工作人员：灵巧手没有应答。请检查电源和线缆。";
+        HaltReason::LinkLost => "Staff: the hand was away and is back. Check it, then unlock and arm.", "工作人员：灵巧手曾断开，现已恢复。检查后解锁并使能。";
+        HaltReason::Stopped => "Staff: STOP was pressed. See that all is well, then unlock and arm.", "工作人员：有人按下了停止。确认一切正常后，解锁并使能。";
+        HaltReason::Fault => "Staff: a drive reports a fault. Check the hand, then unlock and arm.", "工作人员：驱动器报告故障。检查灵巧手后，解锁并使能。";
+        HaltReason::OtherController => "Staff: another program talks to the hand. Close it, then unlock and arm.", "工作人员：另有程序正在控制灵巧手。关闭后解锁并使能。";
+        HaltReason::Slept => "Staff: this computer slept. Check the hand, then unlock and arm.", "工作人员：电脑曾进入睡眠。检查灵巧手后，解锁并使能。";
     }
 }

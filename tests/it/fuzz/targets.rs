@@ -16,6 +16,7 @@ use handscope::codec::slcan::{
 use handscope::codec::usbcan::{self, PacketContent, PacketDecoder};
 use handscope::codec::{pdu, rs485};
 use handscope::exhibit;
+use handscope::exhibit::file::ExhibitFile;
 use handscope::exhibit::plan::TILES;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::BytePacking;
@@ -475,8 +476,10 @@ fn pose_file(state: &mut State, bytes: &[u8]) {
 fn exhibit_file(state: &mut State, bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let (folder, own) = (Path::new("booth"), PoseLibrary::default());
-    let plan = match exhibit::file::read(&text, folder, &own) {
-        Ok(plan) => plan,
+    let file = ExhibitFile::parse(&text, folder);
+    let read = file.and_then(|file| Ok((file.plan(&own)?, file.poses(), file.logo()?)));
+    let (plan, poses, logo) = match read {
+        Ok(read) => read,
         Err(why) => return assert!(!why.to_string().is_empty()),
     };
     state.accepted += 1;
@@ -489,9 +492,9 @@ fn exhibit_file(state: &mut State, bytes: &[u8]) {
             assert!(cue.speed <= limits.speed && cue.force <= limits.force);
         }
     }
-    let named = exhibit::file::logo_of(&text, folder).unwrap();
-    assert_eq!(named.map(|named| named.path), plan.logo);
-    assert!(exhibit::file::poses_of(&text, folder).is_ok());
+    for named in poses.into_iter().chain(logo) {
+        assert!(!named.refused(&"why").to_string().is_empty(), "{text}");
+    }
 }
 
 /// Any file is the report of a day or says what is wrong; what is taken is read back as it was, and has a page.

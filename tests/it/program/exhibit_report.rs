@@ -5,7 +5,7 @@ use handscope::app::action::Action;
 use handscope::app::exhibit::{ExhibitAction, StaffPanel};
 use handscope::app::notices::NoticeKind;
 use handscope::exhibit::report::{DayReport, file};
-use handscope::exhibit::run::{Stage, Wish};
+use handscope::exhibit::run::{ExhibitStage, ExhibitWish};
 use handscope::store::calendar;
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ impl Bench {
         self.act(Action::Exhibit(action));
     }
 
-    fn stage(&self) -> Option<Stage> {
+    fn stage(&self) -> Option<ExhibitStage> {
         let exhibit = self.state().exhibit.as_ref();
         exhibit.map(|exhibit| exhibit.view.stage)
     }
@@ -24,8 +24,8 @@ impl Bench {
         self.exhibit(ExhibitAction::Enter);
         self.exhibit(ExhibitAction::Pin("4711".into()));
         self.exhibit(ExhibitAction::Pin("4711".into()));
-        self.exhibit(ExhibitAction::Wish(Wish::Arm));
-        let is_idle = |stage| stage == Some(Stage::Idle);
+        self.exhibit(ExhibitAction::Wish(ExhibitWish::Arm));
+        let is_idle = |stage| stage == Some(ExhibitStage::Idle);
         for _ in 0..100 {
             self.run(100).await;
             if is_idle(self.stage()) && !self.hand().is_armed() {
@@ -33,8 +33,8 @@ impl Bench {
             }
         }
         assert!(is_idle(self.stage()), "{:?}", self.stage());
-        self.exhibit(ExhibitAction::Wish(Wish::Press(1)));
-        self.exhibit(ExhibitAction::Wish(Wish::Release));
+        self.exhibit(ExhibitAction::Wish(ExhibitWish::Press(1)));
+        self.exhibit(ExhibitAction::Wish(ExhibitWish::Release));
         self.run(3000).await;
         self.act(Action::Stop);
         self.run(1000).await;

@@ -2,11 +2,13 @@
 
 use crate::session::display::SIZE;
 use handscope::app::action::Action;
+use handscope::app::files::exhibit_file;
 use handscope::app::sessions::SessionAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::driver::{Driver, Scene};
 use handscope::ui::View;
+use std::path::Path;
 use std::time::Duration;
 
 /// Pixels that differ by more than this in a channel count as different; edges of letters differ by less.
@@ -55,6 +57,20 @@ impl Twin {
 
     pub(crate) fn picture(&mut self, view: View) -> Picture {
         self.driver.picture(view)
+    }
+
+    /// Shows the exhibition of a file in place of the window.
+    pub(crate) fn exhibit(&mut self, file: &Path) {
+        let exhibition = exhibit_file::read(file).unwrap();
+        let now = self.driver.now();
+        self.driver.cockpit().app().enter_exhibit(exhibition, now);
+        self.pass(Duration::from_secs(1));
+    }
+
+    /// Share of these pixels in which they differ from what it draws.
+    pub(crate) fn differs(&mut self, pixels: &[[u8; 3]]) -> f64 {
+        let view = self.view;
+        difference(&self.picture(view), pixels)
     }
 
     /// Where each control stands. Some change their names.

@@ -5,7 +5,7 @@ use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
-use handscope::app::exhibit::ExhibitStart;
+use handscope::app::exhibit::Exhibition;
 use handscope::app::files::choose::{ChooseFile, NoChoice};
 use handscope::app::files::reveal::no_reveal;
 use handscope::app::program::App;
@@ -90,7 +90,7 @@ impl Program {
     }
 
     /// Shows an exhibition, as the command line does.
-    pub(crate) fn exhibit(&mut self, start: ExhibitStart) {
+    pub(crate) fn exhibit(&mut self, start: Exhibition) {
         let _inside = self.runtime.enter();
         let now = self.clock.now();
         self.cockpit.app().enter_exhibit(start, now);

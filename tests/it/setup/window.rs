@@ -11,7 +11,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::exhibit::ExhibitStart;
+use handscope::app::exhibit::Exhibition;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::exhibit::plan::ExhibitPlan;
@@ -284,7 +284,7 @@ impl Bench {
     /// Shows an exhibition as the command line does, and waits until it knows its hand.
     pub(crate) fn exhibit(&mut self, plan: ExhibitPlan) {
         let room = self.harness.state_mut();
-        room.program.exhibit(ExhibitStart {
+        room.program.exhibit(Exhibition {
             plan: Arc::new(plan),
             logo: None,
             ends_program: false,

@@ -10,7 +10,7 @@ use handscope::app::settings::{Language, Settings, Zoom};
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::ExhibitPlan;
-use handscope::exhibit::run::{Calm, Stage, Wish};
+use handscope::exhibit::run::{ExhibitStage, ExhibitWish, HaltReason};
 use handscope::hand::{Dof, Gesture};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::transport::Endpoint;
@@ -58,11 +58,11 @@ fn armed_with(plan: ExhibitPlan) -> Bench {
     unlock(&mut bench);
     bench.click_button("Arm");
     bench.wait(6000);
-    assert_eq!(stage(&bench), Stage::Idle);
+    assert_eq!(stage(&bench), ExhibitStage::Idle);
     bench
 }
 
-fn stage(bench: &Bench) -> Stage {
+fn stage(bench: &Bench) -> ExhibitStage {
     bench.state().exhibit.as_ref().unwrap().view.stage
 }
 
@@ -70,7 +70,7 @@ fn staff(bench: &Bench) -> &StaffPanel {
     &bench.state().exhibit.as_ref().unwrap().staff
 }
 
-fn wish(bench: &mut Bench, wish: Wish) {
+fn wish(bench: &mut Bench, wish: ExhibitWish) {
     bench.act(Action::Exhibit(ExhibitAction::Wish(wish)));
 }
 
@@ -177,8 +177,8 @@ fn nothing_moves_before_staff_arm_and_then_within_the_limits() {
     );
     assert!(bench.is_disabled(Role::Button, "Fist"));
     press(&mut bench, "Fist");
-    wish(&mut bench, Wish::Press(1));
-    wish(&mut bench, Wish::Arm);
+    wish(&mut bench, ExhibitWish::Press(1));
+    wish(&mut bench, ExhibitWish::Arm);
     bench.wait(5000);
     assert_eq!(bench.writes(), []);
     unlock(&mut bench);
@@ -225,12 +225,16 @@ fn stop_ends_everything_until_staff_arm_again_even_under_what_staff_see() {
         assert!(bench.state().hand().is_armed(), "{index}");
         stop(&mut bench);
         bench.run(1500);
-        assert_eq!(stage(&bench), Stage::Calm(Calm::Stopped), "{index}");
+        assert_eq!(
+            stage(&bench),
+            ExhibitStage::Halted(HaltReason::Stopped),
+            "{index}"
+        );
         assert!(!bench.state().hand().is_armed(), "{index}");
         let at = bench.angle(Dof::Index);
         assert!((50..990).contains(&at), "{index}: on its way: {at}");
         let count = bench.writes().len();
-        wish(&mut bench, Wish::Press(1));
+        wish(&mut bench, ExhibitWish::Press(1));
         bench.wait(5000);
         assert!((bench.angle(Dof::Index) - at).abs() <= 5, "{index}");
         assert_eq!(bench.writes().len(), count, "{index}");
@@ -329,7 +333,7 @@ fn arming_that_was_asked_for_before_does_not_arm_the_exhibition() {
     unlock(&mut bench);
     bench.click_button("Arm");
     bench.wait(6000);
-    assert_eq!(stage(&bench), Stage::Idle);
+    assert_eq!(stage(&bench), ExhibitStage::Idle);
     press(&mut bench, "Fist");
     bench.wait(5000);
     assert!(bench.angle(Dof::Index) < 100);
@@ -379,8 +383,8 @@ fn one_touch_changes_the_language_also_before_the_pin() {
 fn after_a_quiet_minute_the_hand_shows_what_it_can_do_and_a_touch_holds_it() {
     let mut bench = armed_with(plan());
     bench.wait(50_000);
-    assert_eq!(stage(&bench), Stage::Idle);
-    bench.until(15_000, |bench| stage(bench) == Stage::Attract);
+    assert_eq!(stage(&bench), ExhibitStage::Idle);
+    bench.until(15_000, |bench| stage(bench) == ExhibitStage::Attract);
     assert!(bench.shows("Touch anywhere to play"));
     let open = bench.angle(Dof::Index);
     bench.until(8_000, |bench| (bench.angle(Dof::Index) - open).abs() > 150);
@@ -390,11 +394,22 @@ fn after_a_quiet_minute_the_hand_shows_what_it_can_do_and_a_touch_holds_it() {
     bench.run(100);
     let writes = bench.writes().split_off(before);
     assert!(!told(&writes, ANGLE_SET).is_empty(), "a hold: {writes:?}");
-    assert!(matches!(stage(&bench), Stage::Visit { .. }));
+    assert!(matches!(stage(&bench), ExhibitStage::Visit { .. }));
     bench.run(600);
     let held = bench.angle(Dof::Index);
     bench.run(1500);
     assert!((bench.angle(Dof::Index) - held).abs() <= 5);
+}
+
+#[test]
+fn somebody_who_only_changed_the_language_leaves_the_page_as_it_was() {
+    let mut bench = armed_with(plan());
+    bench.press("中文");
+    bench.run(60);
+    assert_eq!(bench.state().settings.language, Language::Zh);
+    bench.until(70_000, |bench| stage(bench) == ExhibitStage::Attract);
+    bench.run(60);
+    assert_eq!(bench.state().settings.language, Language::En);
 }
 
 #[test]
@@ -406,7 +421,7 @@ fn a_warm_hand_goes_slowly_a_hot_one_rests_open_and_comes_back() {
         bench.hand(|hand, _| hand.warm(dof, 58.0));
     }
     bench.until(10_000, |bench| {
-        matches!(stage(bench), Stage::Cooling { .. })
+        matches!(stage(bench), ExhibitStage::Cooling { .. })
     });
     bench.run(60);
     assert!(
@@ -426,7 +441,7 @@ fn a_warm_hand_goes_slowly_a_hot_one_rests_open_and_comes_back() {
     }
     bench.wait(120_000);
     assert!(
-        matches!(stage(&bench), Stage::Idle | Stage::Attract),
+        matches!(stage(&bench), ExhibitStage::Idle | ExhibitStage::Attract),
         "{:?}",
         stage(&bench)
     );
@@ -461,7 +476,7 @@ fn a_tile_that_is_held_for_two_seconds_arms_again_where_visitors_may() {
     assert_eq!(bench.writes(), [], "the finger went away");
     bench.press_at(at);
     bench.run(2500);
-    assert!(matches!(stage(&bench), Stage::Visit { .. }));
+    assert!(matches!(stage(&bench), ExhibitStage::Visit { .. }));
     bench.release_at(at);
     bench.wait(6000);
     assert!(bench.angle(Dof::Index) < 100);
@@ -508,10 +523,12 @@ fn a_lost_hand_is_told_and_needs_staff_when_it_is_back() {
     bench.run(500);
     bench.unplug();
     bench.run(1500);
-    assert_eq!(stage(&bench), Stage::Calm(Calm::NoHand));
+    assert_eq!(stage(&bench), ExhibitStage::Halted(HaltReason::NoHand));
     assert_eq!(bench.texts_with("the hand does not answer").len(), 1);
     bench.plug();
-    bench.until(20_000, |bench| stage(bench) == Stage::Calm(Calm::LinkLost));
+    bench.until(20_000, |bench| {
+        stage(bench) == ExhibitStage::Halted(HaltReason::LinkLost)
+    });
     bench.run(60);
     let count = bench.writes().len();
     press(&mut bench, "Open");
