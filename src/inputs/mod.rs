@@ -1,0 +1,5 @@
+//! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
+
+pub mod offer;
+
+pub use offer::Offer;

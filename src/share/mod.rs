@@ -1,0 +1,1 @@
+//! One hand for several programs: what is given to them, and what they may write.
