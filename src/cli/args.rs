@@ -1,6 +1,7 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
+use crate::cli::follow::FollowArgs;
 use crate::cli::help::{self, HelpArgs};
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
@@ -80,6 +81,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nThis moves the hand, and only with --arm: keep everything but the object out of its way. The joints go to --start gently, rest for half a second, close, hold for --dwell after they have stopped, and go back. No joint closes before the hand confirms the speed and the threshold that were set. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials done; 1 ended early, or no setting qualifies for --best; 2 wrong usage."
     )]
     Trial(TrialArgs),
+    /// Let a hand follow another program: hand tracking, a glove, a script
+    #[command(
+        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream').\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
+    )]
+    Follow(FollowArgs),
     /// Record everything a hand reports into a session file
     #[command(
         after_help = "Examples:\n  handscope record --hand rs485:/dev/ttyUSB0\n  handscope record --hand tcp:192.168.11.210 --for 60 --out grasp.mcap\n\nIt only reads. Ctrl-C ends the recording and closes the file; the last line on standard output is one JSON object of statistics. No file is overwritten. After a crash the file still opens: 'handscope info' says what is missing.\n\nThe file is MCAP with ROS 2 messages ('handscope help sessions')."

@@ -2,6 +2,7 @@
 
 mod args;
 mod doctor;
+mod follow;
 mod help;
 mod interrupt;
 mod out;
@@ -67,6 +68,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Follow(args) => wait_for(follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),
         Command::Export(args) => recordings::export::run(&mut out, &args),

@@ -311,7 +311,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
         }
     }
     assert!(
-        aims > 500_000 && halts > 5_000 && ends > 500,
+        aims > 500_000 && halts > 5_000 && ends > 200,
         "{aims} {halts} {ends}"
     );
 }

@@ -60,6 +60,24 @@ pub enum LineFault {
     OtherSender,
 }
 
+impl LineFault {
+    /// The word for it in JSON.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::TooLong => "too_long",
+            Self::NotFinite => "not_finite",
+            Self::Malformed => "malformed",
+            Self::Version => "version",
+            Self::OtherSide => "other_side",
+            Self::Length { .. } => "length",
+            Self::Range => "range",
+            Self::Late => "late",
+            Self::OtherSender => "other_sender",
+        }
+    }
+}
+
 #[derive(serde::Deserialize)]
 struct Raw {
     v: Option<u64>,

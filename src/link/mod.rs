@@ -21,6 +21,9 @@ pub mod status;
 pub mod tap;
 pub mod traffic;
 mod wanted;
+#[cfg(test)]
+#[allow(clippy::indexing_slicing, clippy::expect_used, reason = "a test may")]
+mod wanted_tests;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};

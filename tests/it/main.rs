@@ -11,6 +11,7 @@
 
 mod cli;
 mod fuzz;
+mod inputs;
 #[cfg(unix)]
 mod journal;
 mod layers;

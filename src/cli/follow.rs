@@ -1,0 +1,363 @@
+//! `follow`: a hand follows the lines of JSON that another program sends, once a person lets it.
+
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::cli::parse::{self, number};
+use crate::cli::session;
+use crate::cli::wires::address;
+use crate::hand::kinematics::Side;
+use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
+use crate::inputs::follow::{FollowLimits, FollowPhase, HOLDS_AFTER};
+use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
+use crate::record::{Disarmed, Record};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowStep, FollowView, follow};
+use crate::tasks::series::{self, Stop};
+use crate::transport::Endpoint;
+use anyhow::{anyhow, bail};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep, timeout};
+
+/// How often it is told how it goes.
+const TELL_EACH: Duration = Duration::from_secs(1);
+/// How often it is looked whether somebody sends.
+const LOOK_EACH: Duration = Duration::from_millis(20);
+/// How long the hand may take to say where it is.
+const READY_WITHIN: Duration = Duration::from_secs(5);
+
+#[derive(Debug, clap::Args)]
+#[group(id = "place", required = true, multiple = false, args = ["udp", "tcp"])]
+pub(crate) struct FollowArgs {
+    /// The hand that follows
+    #[arg(long, value_name = "URL")]
+    hand: Endpoint,
+    /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
+    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    udp: Option<SocketAddr>,
+    /// Take lines over TCP connections here
+    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    tcp: Option<SocketAddr>,
+    /// Move the hand: nothing is in its way, and the 24 V switch is in reach. Without, what arrives is only shown
+    #[arg(long)]
+    arm: bool,
+    /// Which values of a line are for this hand: right or left
+    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
+    side: Side,
+    /// How far a target may be ahead of its joint, 20 to 500 counts of 1000
+    #[arg(long, value_name = "COUNTS", default_value_t = FollowLimits::default().lead, value_parser = lead)]
+    lead: u16,
+    /// How fast a target may go, 50 to 1700 counts a second
+    #[arg(long, value_name = "COUNTS", default_value_t = FollowLimits::default().rate, value_parser = rate)]
+    rate: u16,
+    /// Speed of the drives, 1 to 1000 [default: a quarter more than --rate needs]
+    #[arg(long, value_parser = parse::speed)]
+    speed: Option<Speed>,
+    /// Force threshold of all joints, g [default: gentle]
+    #[arg(long, value_parser = parse::force)]
+    force: Option<Force>,
+    /// Print JSON: an object a second, and one at each change
+    #[arg(long)]
+    json: bool,
+}
+
+fn side(text: &str) -> Result<Side, String> {
+    match text {
+        "right" => Ok(Side::Right),
+        "left" => Ok(Side::Left),
+        _ => Err("write right or left".into()),
+    }
+}
+
+fn lead(text: &str) -> Result<u16, String> {
+    let (least, most) = FollowLimits::LEAD;
+    number(text, least..=most, "counts of lead")
+}
+
+fn rate(text: &str) -> Result<u16, String> {
+    let (least, most) = FollowLimits::RATE;
+    number(text, least..=most, "counts a second")
+}
+
+impl FollowArgs {
+    fn place(&self) -> anyhow::Result<StreamPlace> {
+        let udp = self.udp.map(StreamPlace::Udp);
+        udp.or(self.tcp.map(StreamPlace::Tcp))
+            .ok_or_else(|| anyhow!("say where lines come in: --udp or --tcp"))
+    }
+
+    fn limits(&self) -> FollowLimits {
+        FollowLimits {
+            lead: self.lead,
+            rate: self.rate,
+        }
+    }
+
+    fn arm_request(&self) -> ArmRequest {
+        // 1000 is the full stroke in 600 ms (manual 2.6.13).
+        let needed = Speed::nearest(i64::from(self.rate) * 6 / 10 * 5 / 4);
+        ArmRequest {
+            speed: PerDof::splat(self.speed.unwrap_or(needed)),
+            force: PerDof::splat(self.force.unwrap_or(Force::GENTLE)),
+        }
+    }
+}
+
+/// Follows until a person ends it.
+pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> {
+    let mut interrupt = Interrupt::listen()?;
+    let clock = Clock::start();
+    let (link, mut records) = session::open_with_records(&args.hand, PollRates::default(), clock);
+    let seen = tokio::select! {
+        biased;
+        () = interrupt.wished() => return Ok(()),
+        seen = known(&link, &mut records, &args.hand) => seen?,
+    };
+    let source = listen(&link, args, clock)?;
+    out.line(&ready(args, &source))?;
+    out.flush()?;
+    let mut at = AtHand {
+        link,
+        seen,
+        clock,
+        args,
+        source: &source,
+        teller: Teller {
+            out,
+            json: args.json,
+            told: None,
+        },
+    };
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => {}
+        ended = at.go_on() => ended?,
+    }
+    match args.arm {
+        true => stopped(&at.link, &mut records).await,
+        false => Ok(()),
+    }
+}
+
+fn ready(args: &FollowArgs, source: &StreamSource) -> String {
+    let kind = if args.udp.is_some() { "udp" } else { "tcp" };
+    format!("ready {kind} {}", source.local())
+}
+
+/// Waits until the hand says where it is.
+async fn known(
+    link: &LinkHandle,
+    records: &mut Records,
+    hand: &Endpoint,
+) -> anyhow::Result<HandSample> {
+    session::answered(link, hand).await?;
+    let until = Instant::now() + READY_WITHIN;
+    while Instant::now() < until {
+        if let Ok(Some(Record::Reading { sample, .. })) = timeout(LOOK_EACH, records.next()).await
+            && sample.angle.is_some()
+            && sample.faults.is_some()
+        {
+            return Ok(*sample);
+        }
+    }
+    bail!("the hand at {hand} does not tell its angles and faults")
+}
+
+fn listen(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<StreamSource> {
+    let place = args.place()?;
+    let stops = link.clone();
+    let config = StreamConfig {
+        place,
+        side: args.side,
+        clock,
+        stop: Arc::new(move || stops.stop()),
+        wake: Arc::new(|| ()),
+    };
+    let source = StreamSource::open(config, &Handle::current()).map_err(|error| {
+        let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
+        anyhow!("cannot listen on {at}: {error}; choose another address or port")
+    })?;
+    if !source.local().ip().is_loopback() {
+        let at = source.local();
+        say(&format!(
+            "warning: anyone in the network can send to {at}; 127.0.0.1 keeps it to this computer"
+        ));
+    }
+    Ok(source)
+}
+
+/// Does not leave before the hand is seen to rest.
+async fn stopped(link: &LinkHandle, records: &mut Records) -> anyhow::Result<()> {
+    match series::hold(link, records).await {
+        Stop::Confirmed { .. } => Ok(()),
+        Stop::NotConfirmed => {
+            bail!("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply")
+        }
+        Stop::LinkLost => bail!(
+            "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves"
+        ),
+    }
+}
+
+struct AtHand<'a> {
+    link: LinkHandle,
+    seen: HandSample,
+    clock: Clock,
+    args: &'a FollowArgs,
+    source: &'a StreamSource,
+    teller: Teller<'a>,
+}
+
+impl AtHand<'_> {
+    /// Follows whoever sends, each time that a person lets it.
+    async fn go_on(&mut self) -> anyhow::Result<()> {
+        let mut entered = entered_lines();
+        loop {
+            let sender = self.sender().await?;
+            let (offers, lease) = (self.source.follow(), self.link.grant(Owner::Stream(sender)));
+            let start = FollowStart {
+                lease,
+                limits: self.args.limits(),
+                arm: self.args.arm_request(),
+                locked: PerDof::splat(false),
+                seen: self.seen,
+                clock: self.clock,
+            };
+            let (_limits, commands) = mpsc::channel(1);
+            let (source, teller, clock) = (self.source, &mut self.teller, self.clock);
+            let mut trouble = None;
+            let tell = |step| {
+                if let FollowStep::View(view) = step {
+                    let told = teller.tell(&source.view(), Some(view), clock.now());
+                    trouble = trouble.take().or(told.err());
+                }
+            };
+            let end = follow(&self.link, start, offers, commands, tell).await;
+            if let Some(trouble) = trouble {
+                return Err(trouble);
+            }
+            let why = match end {
+                FollowEnd::Silent | FollowEnd::Gone => format!("{sender} fell silent"),
+                FollowEnd::Lease(_) => self.lease_end(),
+            };
+            say(&format!(
+                "{why}: the hand was stopped; press Enter to let it move again, Ctrl-C to leave"
+            ));
+            self.teller.tell(&self.source.view(), None, clock.now())?;
+            if entered.recv().await.is_none() {
+                bail!("{why}, and nobody can press Enter here");
+            }
+        }
+    }
+
+    fn lease_end(&self) -> String {
+        let why = match self.link.status().disarmed {
+            Some(Disarmed::Stop) => "it was told to stop",
+            Some(Disarmed::Fault) => "a drive reports a fault",
+            Some(Disarmed::LinkLost) => "the link was lost",
+            Some(Disarmed::Stale) => "feedback grew old",
+            Some(Disarmed::Resume) => "this computer slept",
+            Some(Disarmed::OtherController) => "another controller talks to the hand",
+            _ => "it may not be moved any more",
+        };
+        why.to_owned()
+    }
+
+    /// Waits until somebody sends; for ever if the hand is not to move.
+    async fn sender(&mut self) -> anyhow::Result<SocketAddr> {
+        loop {
+            let (view, now) = (self.source.view(), self.clock.now());
+            self.teller.tell(&view, None, now)?;
+            if let Some((sender, last)) = view.intake.sender
+                && now.since(last) < HOLDS_AFTER
+                && self.args.arm
+            {
+                return Ok(sender);
+            }
+            sleep(LOOK_EACH).await;
+        }
+    }
+}
+
+/// A message for each line that a person enters, until there can be no more.
+fn entered_lines() -> mpsc::Receiver<()> {
+    let (entered, lines) = mpsc::channel(1);
+    // Reading a terminal blocks, and ends with the program.
+    std::thread::spawn(move || {
+        let mut line = String::new();
+        while matches!(std::io::stdin().read_line(&mut line), Ok(1..)) {
+            line.clear();
+            if entered.blocking_send(()).is_err() {
+                return;
+            }
+        }
+    });
+    lines
+}
+
+/// Prints how it goes: at each change, and each second.
+struct Teller<'a> {
+    out: &'a mut Out,
+    json: bool,
+    told: Option<(Option<FollowPhase>, Moment)>,
+}
+
+impl Teller<'_> {
+    fn tell(
+        &mut self,
+        stream: &StreamView,
+        follow: Option<FollowView>,
+        now: Moment,
+    ) -> anyhow::Result<()> {
+        let phase = follow.map(|view| view.phase);
+        let is_due = |(told, at): (_, Moment)| told != phase || now.since(at) >= TELL_EACH;
+        if !self.told.is_none_or(is_due) {
+            return Ok(());
+        }
+        self.told = Some((phase, now));
+        let words = phase.map_or("waiting", phase_word);
+        match self.json {
+            true => self.out.object(&view_json(stream, follow, now))?,
+            false => self.out.line(&format!(
+                "{words:<9} {:6.1} lines/s  {} taken  {} refused",
+                stream.intake.rate_hz,
+                stream.intake.taken,
+                stream.intake.refused.values().sum::<u64>()
+            ))?,
+        }
+        self.out.flush()
+    }
+}
+
+const fn phase_word(phase: FollowPhase) -> &'static str {
+    match phase {
+        FollowPhase::Waiting => "arming",
+        FollowPhase::Following => "following",
+        FollowPhase::Frozen => "frozen",
+        FollowPhase::Silent => "silent",
+        FollowPhase::Released => "released",
+    }
+}
+
+fn view_json(stream: &StreamView, follow: Option<FollowView>, now: Moment) -> Value {
+    let refused = stream.intake.refused.iter();
+    let refused: BTreeMap<String, u64> = refused
+        .map(|(fault, count)| (fault.name().to_owned(), *count))
+        .collect();
+    json!({
+        "t_s": now.since(Moment::ZERO).as_secs_f64(),
+        "phase": follow.map_or("waiting", |view| phase_word(view.phase)),
+        "sender": stream.intake.sender.map(|(sender, _)| sender.to_string()),
+        "rate_hz": stream.intake.rate_hz,
+        "taken": stream.intake.taken,
+        "refused": refused,
+        "not_granted": stream.not_granted,
+        "lead": follow.map(|view| view.lead),
+        "delay_p99_ms": follow.and_then(|view| view.delay_p99).map(|delay| delay.as_secs_f64() * 1e3),
+    })
+}

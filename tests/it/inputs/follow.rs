@@ -1,0 +1,295 @@
+//! A source that starts, freezes, falls silent and starts again, at a simulated hand behind a real link, in virtual time: what goes
+//! over the wire, and under whose lease.
+
+use crate::setup::hand;
+use crate::setup::link::{gentle, to_hand};
+use crate::setup::time::in_virtual_time;
+use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
+use handscope::inputs::Offer;
+use handscope::inputs::follow::{FollowLimits, FollowPhase};
+use handscope::link::{self, Clock, Lease, LinkHandle, Owner, Records};
+use handscope::record::{Disarmed, Record, WriteCause};
+use handscope::sim::SimConfig;
+use handscope::tasks::follow::{FollowEnd, FollowStart, FollowStep, follow};
+use std::time::Duration;
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
+use tokio::time::sleep;
+
+const LIMITS: FollowLimits = FollowLimits {
+    lead: 120,
+    rate: 600,
+};
+/// Targets come at 100 Hz, as xr_teleoperate sends them.
+const EACH: Duration = Duration::from_millis(10);
+
+/// A hand, its link, and all that was told of it.
+struct Stage {
+    link: LinkHandle,
+    records: Records,
+    clock: Clock,
+    seen: Vec<Record>,
+}
+
+/// What is sent and where the joint was, in order.
+#[derive(Debug, Clone, Copy)]
+struct Sent {
+    at: Moment,
+    to: i16,
+    actual: i16,
+    cause: WriteCause,
+}
+
+impl Stage {
+    async fn begin() -> Self {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        let config = crate::setup::link::config("rs485:x", to_hand(hand));
+        let clock = config.clock;
+        let (link, records) = link::open(config, &Handle::current());
+        let mut stage = Self {
+            link,
+            records,
+            clock,
+            seen: Vec::new(),
+        };
+        stage.pass(1000).await;
+        stage
+    }
+
+    /// Time passes, and what is told is taken in.
+    async fn pass(&mut self, ms: u64) {
+        sleep(Duration::from_millis(ms)).await;
+        self.seen
+            .extend(std::iter::from_fn(|| self.records.try_next()));
+    }
+
+    fn sample(&self) -> HandSample {
+        let mut all = self.seen.iter().rev();
+        let newest = all.find_map(|record| match record {
+            Record::Reading { sample, .. } => Some(**sample),
+            _ => None,
+        });
+        newest.expect("the hand was read")
+    }
+
+    /// A person lets this source move the hand.
+    fn start(
+        &self,
+        lease: Lease,
+    ) -> (
+        mpsc::Sender<Offer>,
+        JoinHandle<(FollowEnd, Vec<FollowPhase>)>,
+    ) {
+        let (offers, taken) = mpsc::channel(64);
+        let (_none, commands) = mpsc::channel(1);
+        let (link, start) = (
+            self.link.clone(),
+            FollowStart {
+                lease,
+                limits: LIMITS,
+                arm: gentle(),
+                locked: PerDof::splat(false),
+                seen: self.sample(),
+                clock: self.clock,
+            },
+        );
+        let task = tokio::spawn(async move {
+            let mut phases = Vec::new();
+            let tell = |step| {
+                if let FollowStep::View(view) = step
+                    && phases.last() != Some(&view.phase)
+                {
+                    phases.push(view.phase);
+                }
+            };
+            let end = follow(&link, start, taken, commands, tell).await;
+            (end, phases)
+        });
+        (offers, task)
+    }
+
+    /// Sends this for a while, a hundred times a second.
+    async fn send(&mut self, offers: &mpsc::Sender<Offer>, aims: impl Fn(u64) -> i16, ms: u64) {
+        for n in 0..ms / 10 {
+            let aim = aims(n);
+            let _sent = offers.try_send(Offer {
+                at: self.clock.now(),
+                aims: PerDof::splat(Some(Angle::nearest(aim))),
+                held: None,
+                mark: Some(aim.unsigned_abs().into()),
+            });
+            self.pass(u64::try_from(EACH.as_millis()).unwrap()).await;
+        }
+    }
+
+    /// Every target of the index that went out.
+    fn index(&self) -> Vec<Sent> {
+        let mut actual = 0;
+        let mut all = Vec::new();
+        for record in &self.seen {
+            match record {
+                Record::Reading { sample, .. } => {
+                    if let Some(angle) = sample.angle {
+                        actual = angle.value[Dof::Index].raw();
+                    }
+                }
+                Record::Sent {
+                    at, cause, write, ..
+                } => {
+                    if let Some(to) = write.angle_targets()[Dof::Index] {
+                        all.push(Sent {
+                            at: *at,
+                            to: to.get(),
+                            actual,
+                            cause: *cause,
+                        });
+                    }
+                }
+                _ => {}
+            }
+        }
+        all
+    }
+}
+
+/// No target of a source goes further than its limits let it in the time since the one before, or is ahead by more than the lead
+/// and what the joint moved since it was read.
+fn check(all: &[Sent]) {
+    let mut before: Option<Sent> = None;
+    for sent in all.iter().filter(|sent| sent.cause == WriteCause::Setpoint) {
+        let is_entry = sent.to.abs_diff(sent.actual) <= 25;
+        if let Some(before) = before.filter(|_| !is_entry) {
+            let may = f64::from(LIMITS.rate) * sent.at.since(before.at).as_secs_f64() + 25.0;
+            let step = f64::from(sent.to.abs_diff(before.to));
+            assert!(step <= may, "{step} of {may}: {before:?} {sent:?}");
+        } else {
+            assert!(is_entry, "begun with a jump: {sent:?}");
+        }
+        assert!(
+            sent.to.abs_diff(sent.actual) <= LIMITS.lead + 25,
+            "{sent:?}"
+        );
+        before = Some(*sent);
+    }
+}
+
+#[test]
+fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let open = stage.sample().angle.unwrap().value[Dof::Index].raw();
+        // It asks for a fist in its first message.
+        let (offers, task) = stage.start(stage.link.grant(Owner::Dds));
+        stage
+            .send(&offers, |n| i16::try_from(n % 7).unwrap(), 700)
+            .await;
+        let first = stage.index()[0];
+        assert!(first.to.abs_diff(open) <= 2, "{first:?}");
+        // Tracking is lost: the same pose for two seconds, and then one far away.
+        stage.send(&offers, |_| 640, 2000).await;
+        stage
+            .send(&offers, |n| 300 + i16::try_from(n % 5).unwrap(), 800)
+            .await;
+        // It is killed.
+        drop(offers);
+        stage.pass(600).await;
+        let (end, phases) = task.await.unwrap();
+        assert_eq!(end, FollowEnd::Gone);
+        assert!(phases.contains(&FollowPhase::Frozen), "{phases:?}");
+        let status = stage.link.status();
+        assert_eq!((status.armed, status.holder), (None, None));
+        let moved = stage.index();
+        assert!(moved.len() > 100, "{}", moved.len());
+        // Started again, it moves nothing before a person lets it.
+        let before = moved.len();
+        stage.pass(1000).await;
+        assert_eq!(stage.index().len(), before);
+        let (offers, task) = stage.start(stage.link.grant(Owner::Dds));
+        stage
+            .send(&offers, |n| 900 + i16::try_from(n % 3).unwrap(), 1000)
+            .await;
+        // It falls silent, but is not gone.
+        stage.pass(1500).await;
+        let (end, phases) = task.await.unwrap();
+        assert_eq!(end, FollowEnd::Silent);
+        assert!(phases.contains(&FollowPhase::Silent), "{phases:?}");
+        assert_eq!(stage.link.status().disarmed, Some(Disarmed::Silent));
+        check(&stage.index());
+    });
+}
+
+#[test]
+fn whoever_moved_the_hand_before_is_refused_and_a_stop_ends_all() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let lease = stage.link.grant(Owner::Gamepad);
+        let (offers, task) = stage.start(lease);
+        stage
+            .send(&offers, |n| 500 + i16::try_from(n % 3).unwrap(), 300)
+            .await;
+        assert!(stage.link.status().armed.is_some());
+        // A person takes over.
+        let person = stage.link.grant(Owner::Person);
+        let here = stage.index().len();
+        stage.send(&offers, |_| 0, 300).await;
+        assert!(matches!(task.await.unwrap().0, FollowEnd::Lease(_)));
+        assert_eq!(stage.index().len(), here, "nothing of the one before");
+        let mut setpoints = Setpoints::none(stage.link.status().armed.unwrap());
+        setpoints.angle[Dof::Index] = Some(Target::Go(Angle::MAX));
+        assert!(stage.link.set(lease, &setpoints).is_err());
+        assert!(stage.link.set(person, &setpoints).is_ok());
+        stage.pass(50).await;
+        assert_eq!(stage.index().last().unwrap().to, 1000);
+        stage.link.stop();
+        stage.pass(1000).await;
+        assert!(stage.link.set(person, &setpoints).is_err());
+        assert!(stage.link.arm(person, gentle()).is_err());
+        let holds = stage.index();
+        stage.pass(1000).await;
+        let after = stage.index();
+        assert_eq!(after.len(), holds.len());
+        assert_eq!(after.last().unwrap().cause, WriteCause::Hold);
+    });
+}
+
+#[test]
+fn motion_ends_with_the_time_that_a_person_holds_what_has_to_be_held() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let lease = stage.link.grant(Owner::Person);
+        let until = |stage: &Stage| stage.clock.now().plus(Duration::from_millis(300));
+        stage.link.run_until(lease, until(&stage)).unwrap();
+        stage.link.arm(lease, gentle()).unwrap();
+        stage.pass(200).await;
+        assert!(stage.link.status().armed.is_some());
+        // Put off while it is held.
+        stage.link.run_until(lease, until(&stage)).unwrap();
+        stage.pass(250).await;
+        assert!(stage.link.status().armed.is_some());
+        // The window hangs: nobody puts it off any more.
+        stage.pass(100).await;
+        let status = stage.link.status();
+        assert_eq!(
+            (status.armed, status.disarmed),
+            (None, Some(Disarmed::Released))
+        );
+        stage.pass(500).await;
+        assert_eq!(stage.index().last().unwrap().cause, WriteCause::Hold);
+        // Held again, it goes on under the same lease; let go, the stop is the next thing on the wire.
+        stage.link.run_until(lease, until(&stage)).unwrap();
+        stage.link.arm(lease, gentle()).unwrap();
+        stage.pass(200).await;
+        assert!(stage.link.status().armed.is_some());
+        let let_go = stage.clock.now();
+        stage.link.halt(lease).unwrap();
+        stage.pass(50).await;
+        let hold = *stage.index().last().unwrap();
+        assert_eq!(hold.cause, WriteCause::Hold);
+        assert!(
+            hold.at.since(let_go) <= Duration::from_millis(50),
+            "{hold:?}"
+        );
+        assert!(stage.link.check(lease).is_ok());
+    });
+}

@@ -1,0 +1,4 @@
+//! A hand that follows what another program sends.
+
+mod follow;
+mod stream;

@@ -1,0 +1,116 @@
+//! Lines over real sockets of this computer: who is taken, what is refused, when nobody listens.
+
+use handscope::hand::Dof;
+use handscope::hand::kinematics::Side;
+use handscope::inputs::line::LineFault;
+use handscope::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use handscope::link::Clock;
+use std::io::Write as _;
+use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use tokio::runtime::Handle;
+
+fn free() -> SocketAddr {
+    "127.0.0.1:0".parse().unwrap()
+}
+
+fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
+    let stops = Arc::clone(stops);
+    let config = StreamConfig {
+        place,
+        side: Side::Right,
+        clock: Clock::start(),
+        stop: Arc::new(move || {
+            stops.fetch_add(1, Ordering::Relaxed);
+        }),
+        wake: Arc::new(|| ()),
+    };
+    StreamSource::open(config, &Handle::current()).unwrap()
+}
+
+/// Waits until what came in is as wanted.
+async fn until(source: &StreamSource, wanted: impl Fn(&StreamView) -> bool) -> StreamView {
+    let patience = Instant::now() + Duration::from_secs(10);
+    loop {
+        let view = source.view();
+        if wanted(&view) {
+            return view;
+        }
+        assert!(Instant::now() < patience, "{view:?}");
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_them() {
+    let stops = Arc::default();
+    let source = open(StreamPlace::Udp(free()), &stops);
+    let sender = UdpSocket::bind(free()).unwrap();
+    let send = |line: &str| sender.send_to(line.as_bytes(), source.local()).unwrap();
+    send(r#"{"seq":1,"right":[1,1,1,0.25,null,1]}"#);
+    send(r#"{"seq":1,"right":[1,1,1,0.25,null,1]}"#);
+    send(r#"{"seq":2,"right":[1,1,1,NaN,null,1]}"#);
+    send(r#"{"seq":3,"right":[1,1,1,7,null,1]}"#);
+    send(r#"{"stop":true}"#);
+    send(&"x".repeat(5000));
+    let view = until(&source, |view| view.intake.refused.len() == 4).await;
+    assert_eq!((view.intake.taken, view.not_granted), (2, 1));
+    assert_eq!(stops.load(Ordering::Relaxed), 1);
+    let faults: Vec<LineFault> = view.intake.refused.keys().copied().collect();
+    for fault in [
+        LineFault::Late,
+        LineFault::NotFinite,
+        LineFault::Range,
+        LineFault::TooLong,
+    ] {
+        assert!(faults.contains(&fault), "{fault:?}: {faults:?}");
+    }
+    let mut offers = source.follow();
+    send(r#"{"seq":9,"right":[1,1,1,0.5,null,1]}"#);
+    let offer = offers.recv().await.unwrap();
+    let index = offer.aims[Dof::Index].unwrap().get();
+    assert_eq!((index, offer.aims[Dof::ThumbBend]), (500, None));
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out() {
+    let source = open(StreamPlace::Tcp(free()), &Arc::default());
+    let mut bad = TcpStream::connect(source.local()).unwrap();
+    bad.write_all(&[b'x'; 6000]).unwrap();
+    until(&source, |view| {
+        view.intake.refused.contains_key(&LineFault::TooLong)
+    })
+    .await;
+    let mut good = TcpStream::connect(source.local()).unwrap();
+    // Lines need not come in pieces of their own.
+    good.write_all(b"{\"right\":[1,1,1,1,1,1]}\n{\"rig")
+        .unwrap();
+    until(&source, |view| view.intake.taken == 1).await;
+    good.write_all(b"ht\":[1,1,1,1,1,1]}\r\n").unwrap();
+    until(&source, |view| view.intake.taken == 2).await;
+    let idle: Vec<TcpStream> = (0..30)
+        .map(|_| TcpStream::connect(source.local()).unwrap())
+        .collect();
+    good.write_all(b"{\"right\":[1,1,1,1,1,1]}\n").unwrap();
+    let view = until(&source, |view| {
+        view.intake.taken == 3 && view.connections > 1
+    })
+    .await;
+    assert!(view.connections <= 8, "{}", view.connections);
+    drop(idle);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn nobody_listens_before_it_is_opened_or_after_it_is_closed() {
+    let source = open(StreamPlace::Tcp(free()), &Arc::default());
+    let at = source.local();
+    assert!(TcpStream::connect(at).is_ok());
+    drop(source);
+    let patience = Instant::now() + Duration::from_secs(10);
+    while TcpStream::connect(at).is_ok() {
+        assert!(Instant::now() < patience, "somebody listens at {at}");
+        tokio::time::sleep(Duration::from_millis(10)).await;
+    }
+}
