@@ -1,6 +1,7 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
 use crate::hand::Setpoints;
+use crate::link::image::RegisterImage;
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::Request;
 use crate::link::stats::LinkStats;
@@ -52,5 +53,6 @@ pub(crate) struct Ends {
     pub(crate) records: broadcast::Sender<Record>,
     pub(crate) status: watch::Sender<LinkStatus>,
     pub(crate) stats: watch::Sender<LinkStats>,
+    pub(crate) image: watch::Sender<RegisterImage>,
     pub(crate) tap: WireTap,
 }
