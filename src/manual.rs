@@ -35,6 +35,7 @@ topics! {
     files: "poses, parameters, backups and trial sessions on disk";
     sessions: "recordings of everything at a hand: files, exports, replay";
     exhibit: "a hand that visitors of a booth play with, and what staff do";
+    share: "one hand for several programs: reads, writes, who may move it";
     json: "what the commands print with --json";
     figures: "how fast it is, and what each wire can carry";
 }
