@@ -1,0 +1,5 @@
+//! One hand for several programs, as those programs meet it.
+
+mod clients;
+mod place;
+mod reads;
