@@ -2,12 +2,17 @@
 
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
+use crate::cli::parse::number;
 use crate::cli::session;
 use crate::cli::wires::address;
-use crate::link::{Clock, LinkHandle, LinkTrouble, PollRates};
-use crate::share::gateway::Gateway;
+use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
+use crate::record::{Disarmed, LinkState};
+use crate::share::gateway::{
+    ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
+};
+use crate::tasks::series::{self, Stop};
 use crate::transport::Endpoint;
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -24,6 +29,12 @@ pub(crate) struct ShareArgs {
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
     tcp: SocketAddr,
+    /// Let the first client that writes move the hand, until it disconnects or falls silent
+    #[arg(long)]
+    writers: bool,
+    /// With --writers: after so many seconds without a request the client may no longer move the hand [default: 10]
+    #[arg(long, value_name = "SECONDS", requires = "writers", value_parser = silence)]
+    silence: Option<Duration>,
     /// Read as fast as the wire allows, instead of 100 states and 30 touch sweeps a second
     #[arg(long)]
     full_rate: bool,
@@ -50,18 +61,47 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => {}
         () = tell(&link, &gateway, &args.hand) => {}
     }
-    Ok(())
+    end(&link, gateway).await
+}
+
+/// Closes, and does not leave before a hand that a client could move is seen to rest.
+async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
+    let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
+    let moved = gateway.clients().iter().any(is_held);
+    drop(gateway);
+    if !moved && link.status().state != LinkState::Holding {
+        return Ok(());
+    }
+    let mut records = link.records();
+    match series::hold(link, &mut records).await {
+        Stop::Confirmed { .. } => Ok(()),
+        Stop::NotConfirmed => {
+            bail!("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply")
+        }
+        Stop::LinkLost => bail!(
+            "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves"
+        ),
+    }
 }
 
 fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
     let address = args.tcp;
-    let gateway = Gateway::open(link.clone(), address, &Handle::current()).map_err(|error| {
+    let config = GatewayConfig {
+        address,
+        writers: match args.writers {
+            true => Writers::First,
+            false => Writers::Granted,
+        },
+        silence: args.silence.unwrap_or(SILENCE),
+    };
+    let gateway = Gateway::open(link.clone(), config, &Handle::current()).map_err(|error| {
         anyhow!("cannot serve on {address}: {error}; choose another address or port")
     })?;
     let bound = gateway.address();
     if !bound.ip().is_loopback() {
         say(&format!(
-            "warning: anyone in the network can reach {bound} and read this hand; 127.0.0.1 keeps it to this computer"
+            "warning: anyone in the network can reach {bound} and {} this hand; 127.0.0.1 keeps it to this computer",
+            if args.writers { "move" } else { "read" }
         ));
     }
     Ok(gateway)
@@ -75,6 +115,7 @@ async fn tell(link: &LinkHandle, gateway: &Gateway, hand: &Endpoint) {
         tick.tick().await;
         told.link(link, hand);
         told.turned_away(gateway);
+        told.leases(gateway);
     }
 }
 
@@ -83,6 +124,8 @@ async fn tell(link: &LinkHandle, gateway: &Gateway, hand: &Endpoint) {
 struct Told {
     trouble: Option<LinkTrouble>,
     turned_away: bool,
+    /// The client that may move the hand.
+    mover: Option<ClientId>,
 }
 
 impl Told {
@@ -105,4 +148,54 @@ impl Told {
             say("there are as many clients as there may be: more are turned away");
         }
     }
+
+    /// What moves the hand, and that it does no more.
+    fn leases(&mut self, gateway: &Gateway) {
+        let clients = gateway.clients();
+        if let Some(mover) = self.mover {
+            match clients.iter().find(|client| client.id == mover) {
+                None => {
+                    say("the client that could move the hand is gone: the hand is stopped");
+                    self.mover = None;
+                }
+                Some(client) if !matches!(client.lease, ClientLease::Held(_)) => {
+                    let address = client.address;
+                    say(&format!(
+                        "{address} may no longer move the hand: {}",
+                        ended(client.lease)
+                    ));
+                    self.mover = None;
+                }
+                Some(_) => {}
+            }
+        }
+        for client in clients {
+            let is_new = self.mover != Some(client.id);
+            if is_new && matches!(client.lease, ClientLease::Held(_)) {
+                say(&format!("{} may move the hand", client.address));
+                self.mover = Some(client.id);
+            }
+        }
+    }
+}
+
+fn ended(lease: ClientLease) -> &'static str {
+    match lease {
+        ClientLease::Ended(LeaseRefusal::Ended(why)) => match why {
+            Disarmed::Silent => "it asked nothing for too long, and the hand is stopped",
+            Disarmed::Fault => "a drive reports a fault, and the hand is stopped",
+            Disarmed::LinkLost | Disarmed::Resume => "the link was lost",
+            Disarmed::Stale => "feedback grew old, and the hand is stopped",
+            Disarmed::OtherController => {
+                "another controller talks to the hand, and the hand is stopped"
+            }
+            _ => "the hand was stopped",
+        },
+        _ => "another may now",
+    }
+}
+
+fn silence(text: &str) -> Result<Duration, String> {
+    let what = "a time between 1 and 3600 seconds";
+    number(text, 1.0..=3600.0, what).map(Duration::from_secs_f64)
 }

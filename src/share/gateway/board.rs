@@ -1,13 +1,20 @@
 //! Who is connected to a gateway, and what each of them did. Counts and remembers; sends nothing.
 
-use crate::hand::Moment;
+use crate::hand::{HandCommand, Moment};
+use crate::link::session::motion::SETPOINT_HZ_MAX;
+use crate::link::{Lease, LeaseRefusal};
 use crate::share::gateway::refusal::WriteRefusal;
+use std::mem::Discriminant;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use tokio::sync::Notify;
+use tokio::time::Instant;
 
 /// Clients at one time; more are turned away at once.
 pub const CLIENTS_MAX: usize = 16;
+/// Commands of one kind are so far apart, as the setpoints of a slider are.
+const WRITE_EACH: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
 /// Requests are counted over this time.
 const RATE_OVER: Duration = Duration::from_secs(1);
 
@@ -34,8 +41,19 @@ pub struct GatewayClient {
     pub refused: u64,
     /// Why the last of them was.
     pub refusal: Option<WriteRefusal>,
-    /// It may move the hand.
-    pub has_lease: bool,
+    /// Whether it may move the hand.
+    pub lease: ClientLease,
+}
+
+/// Whether a client may move the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClientLease {
+    /// It never could.
+    Never,
+    /// It can now.
+    Held(Lease),
+    /// It could, until this.
+    Ended(LeaseRefusal),
 }
 
 /// The clients of one gateway, for all who serve them. Locks last for one call.
@@ -55,6 +73,18 @@ pub(crate) struct Board {
     rows: Vec<Row>,
     last_id: u64,
     pub(crate) turned_away: u64,
+    /// Who is about to get the right to move the hand.
+    taking: Option<ClientId>,
+    /// When each kind of command went out last.
+    turns: Vec<(Discriminant<HandCommand>, Instant)>,
+}
+
+/// The client that may move the hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Holder {
+    pub(crate) client: ClientId,
+    pub(crate) lease: Lease,
+    pub(crate) heard: Moment,
 }
 
 /// One client.
@@ -62,12 +92,27 @@ pub(crate) struct Board {
 pub(crate) struct Row {
     shown: GatewayClient,
     pace: Pace,
+    /// When it asked something last.
+    heard: Moment,
+    /// A person grants it the right to move the hand.
+    pub(crate) granted: Arc<Notify>,
 }
 
 impl Row {
     /// A whole request came.
     pub(crate) fn asked(&mut self, now: Moment) {
+        self.heard = now;
         self.pace.hit(now);
+    }
+
+    /// What it may.
+    pub(crate) fn lease(&mut self) -> &mut ClientLease {
+        &mut self.shown.lease
+    }
+
+    /// A grant by a person came to nothing.
+    pub(crate) fn not_granted(&mut self, refusal: WriteRefusal) {
+        self.shown.refusal = Some(refusal);
     }
 
     /// A read was answered.
@@ -106,17 +151,56 @@ impl Board {
                 writes: 0,
                 refused: 0,
                 refusal: None,
-                has_lease: false,
+                lease: ClientLease::Never,
             },
             pace: Pace::default(),
+            heard: now,
+            granted: Arc::default(),
         });
         Some(id)
     }
 
     /// A client is gone.
-    pub(crate) fn disconnect(&mut self, id: ClientId) -> Option<Row> {
-        let at = self.rows.iter().position(|row| row.shown.id == id)?;
-        Some(self.rows.remove(at))
+    pub(crate) fn disconnect(&mut self, id: ClientId) {
+        self.taking.take_if(|taking| *taking == id);
+        self.rows.retain(|row| row.shown.id != id);
+    }
+
+    /// Who may move the hand, and when it asked something last.
+    pub(crate) fn holder(&self) -> Option<Holder> {
+        self.rows.iter().find_map(|row| match row.shown.lease {
+            ClientLease::Held(lease) => Some(Holder {
+                client: row.shown.id,
+                lease,
+                heard: row.heard,
+            }),
+            _ => None,
+        })
+    }
+
+    /// One begins to take the right to move the hand, and is the only one who does. Gives its address.
+    pub(crate) fn begin_taking(&mut self, id: ClientId) -> Option<SocketAddr> {
+        let row = self.rows.iter().find(|row| row.shown.id == id)?;
+        if self.taking.is_some() {
+            return None;
+        }
+        self.taking = Some(id);
+        Some(row.shown.address)
+    }
+
+    /// It took it, or could not.
+    pub(crate) fn end_taking(&mut self) {
+        self.taking = None;
+    }
+
+    /// When a command of this kind may go out next: at most [`SETPOINT_HZ_MAX`] times a second.
+    pub(crate) fn turn(&mut self, command: &HandCommand, now: Instant) -> Instant {
+        let kind = std::mem::discriminant(command);
+        let before = self.turns.iter().find(|(own, _)| *own == kind);
+        let turn = before.map_or(now, |(_, before)| now.max(*before + WRITE_EACH));
+        self.turns.retain(|(own, _)| *own != kind);
+        self.turns.push((kind, turn));
+        turn
     }
 
     pub(crate) fn row(&mut self, id: ClientId) -> Option<&mut Row> {
@@ -197,7 +281,7 @@ mod tests {
             .collect();
         assert_eq!(board.connect(address(), Moment::ZERO), None);
         assert_eq!(board.turned_away, 1);
-        assert!(board.disconnect(ids[3]).is_some());
+        board.disconnect(ids[3]);
         let next = board.connect(address(), Moment::ZERO).unwrap();
         assert!(!ids.contains(&next));
     }

@@ -2,12 +2,14 @@
 //! protocol nor to the time. It holds at most two messages in memory.
 
 use crate::codec::mbap::{ADU_LEN_MAX, MbapSplitter};
-use crate::share::gateway::board::{ClientId, Row};
+use crate::share::gateway::board::{Board, ClientId};
 use crate::share::gateway::service::Service;
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
+use tokio::sync::Notify;
 use tokio::time::{Instant, timeout, timeout_at};
 
 /// From the first byte of a request to its last: on a network they come together.
@@ -21,11 +23,17 @@ pub const TAKES_WITHIN: Duration = Duration::from_secs(2);
 pub(crate) struct Connection {
     service: Service,
     id: ClientId,
+    granted: Arc<Notify>,
 }
 
 impl Connection {
-    pub(crate) const fn new(service: Service, id: ClientId) -> Self {
-        Self { service, id }
+    pub(crate) fn new(service: Service, id: ClientId) -> Self {
+        let row = |board: &mut Board| board.row(id).map(|row| Arc::clone(&row.granted));
+        Self {
+            granted: service.leases.board.with(row).unwrap_or_default(),
+            service,
+            id,
+        }
     }
 
     /// Answers until the client hangs up, talks nonsense or misses a deadline.
@@ -49,7 +57,14 @@ impl Connection {
                 begun.get_or_insert_with(Instant::now);
             }
             let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_WITHIN);
-            let len = timeout_at(deadline, stream.read(&mut chunk)).await??;
+            let len = tokio::select! {
+                biased;
+                () = self.granted.notified() => {
+                    self.service.leases.granted(self.id).await;
+                    continue;
+                }
+                read = timeout_at(deadline, stream.read(&mut chunk)) => read??,
+            };
             if len == 0 {
                 return Ok(());
             }
@@ -61,7 +76,6 @@ impl Connection {
 
 impl Drop for Connection {
     fn drop(&mut self) {
-        let gone: Option<Row> = self.service.board.with(|board| board.disconnect(self.id));
-        debug_assert!(gone.is_some(), "a client is connected once");
+        self.service.leases.disconnect(self.id);
     }
 }

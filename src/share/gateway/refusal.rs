@@ -2,6 +2,7 @@
 
 use crate::codec::pdu::ModbusException;
 use crate::link::RequestError;
+use crate::record::ArmRefusal;
 use tokio_modbus::ExceptionCode;
 
 /// Why a write of a client was not done.
@@ -17,11 +18,11 @@ pub enum WriteRefusal {
     #[error("this client could move the hand, and that ended: it has to connect again")]
     Over,
     /// The hand could not be armed.
-    #[error("the hand could not be armed: {reason}")]
-    NotArmed {
-        /// Why not.
-        reason: String,
-    },
+    #[error("the hand could not be armed: {0}")]
+    NotArmed(ArmRefusal),
+    /// The hand holds a speed or a force that cannot be set, so it cannot be armed with what it has.
+    #[error("the speeds and forces that the hand has now make no sense")]
+    Limits,
     /// Not a register that clients may write.
     #[error("clients may not write {words} words at address {address}")]
     Address {
@@ -45,7 +46,7 @@ impl WriteRefusal {
     /// What the client is told.
     pub(crate) fn exception(&self) -> ModbusException {
         match self {
-            Self::NotGranted | Self::Taken | Self::Over | Self::NotArmed { .. } => {
+            Self::NotGranted | Self::Taken | Self::Over | Self::NotArmed(_) | Self::Limits => {
                 ModbusException::Busy
             }
             Self::Address { .. } => ModbusException::IllegalAddress,

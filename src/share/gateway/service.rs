@@ -3,10 +3,10 @@
 use crate::codec::mbap::Adu;
 use crate::codec::modbus::READ_WORDS_MAX;
 use crate::codec::pdu::{self, ModbusException, ModbusRole, Pdu};
-use crate::hand::{HandCommand, Span};
-use crate::link::{LinkHandle, RecentReads};
+use crate::hand::Span;
 use crate::share::gateway::allowed;
-use crate::share::gateway::board::{ClientId, Row, SharedBoard};
+use crate::share::gateway::board::{ClientId, Row};
+use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::refusal::{WriteRefusal, exception};
 
 /// Addresses of the hand: twelve bits, as CAN ids have room for. Beyond them a hand on RS485 would only be silent.
@@ -17,23 +17,13 @@ const WRITE_WORDS_MAX: usize = 123;
 /// Serves all clients of one gateway.
 #[derive(Debug, Clone)]
 pub(crate) struct Service {
-    pub(crate) link: LinkHandle,
-    pub(crate) reads: RecentReads,
-    pub(crate) board: SharedBoard,
+    pub(crate) leases: ClientLeases,
 }
 
 impl Service {
-    pub(crate) fn new(link: LinkHandle) -> Self {
-        Self {
-            reads: RecentReads::of(&link),
-            link,
-            board: SharedBoard::default(),
-        }
-    }
-
     /// The whole message that answers a request. Whatever unit is asked answers: there is one hand.
     pub(crate) async fn answer(&self, client: ClientId, asked: &Adu) -> Vec<u8> {
-        let now = self.link.clock().now();
+        let now = self.leases.link.clock().now();
         self.note(client, |row| row.asked(now));
         let function = asked.function();
         let said = match self.obey(client, asked.pdu()).await {
@@ -83,7 +73,7 @@ impl Service {
         if span.end() > MEMORY_LEN {
             return Err(ModbusException::IllegalAddress);
         }
-        let bytes = self.reads.read(span).await;
+        let bytes = self.leases.reads.read(span).await;
         let bytes = bytes.map_err(|error| exception(&error))?;
         // Manual: 2.5 does not say how bytes become words; a word is byte[A] + 256 * byte[A + 1], high byte first.
         let (pairs, _) = bytes.as_chunks::<2>();
@@ -99,7 +89,7 @@ impl Service {
         words: &[u16],
     ) -> Result<(), ModbusException> {
         let written = match allowed::command(address, words) {
-            Ok(command) => self.write(client, command).await,
+            Ok(command) => self.leases.write(client, command).await,
             Err(ModbusException::IllegalValue) => Err(WriteRefusal::Value { address }),
             Err(_) => Err(WriteRefusal::Address {
                 address,
@@ -111,12 +101,7 @@ impl Service {
         told
     }
 
-    /// Done once the hand acknowledged it.
-    async fn write(&self, _client: ClientId, _command: HandCommand) -> Result<(), WriteRefusal> {
-        Err(WriteRefusal::NotGranted)
-    }
-
     fn note(&self, client: ClientId, what: impl FnOnce(&mut Row)) {
-        self.board.with(|board| board.row(client).map(what));
+        self.leases.board.with(|board| board.row(client).map(what));
     }
 }
