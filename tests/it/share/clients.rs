@@ -2,8 +2,8 @@
 
 use crate::share::place::{Place, share, until};
 use handscope::link::PollRates;
-use handscope::share::gateway::CLIENTS_MAX;
 use handscope::share::gateway::client::REQUEST_WITHIN;
+use handscope::share::gateway::{CLIENTS_MAX, ClientLease};
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
@@ -202,5 +202,6 @@ async fn clients_are_told_with_what_they_did() {
     let shown = place.gateway.clients();
     assert_eq!(shown.len(), 1);
     assert_eq!((shown[0].reads, shown[0].writes), (3, 0));
-    assert!(shown[0].address.ip().is_loopback() && !shown[0].has_lease);
+    assert!(shown[0].address.ip().is_loopback());
+    assert_eq!(shown[0].lease, ClientLease::Never);
 }

@@ -3,3 +3,4 @@
 mod clients;
 mod place;
 mod reads;
+mod writes;

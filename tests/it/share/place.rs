@@ -7,7 +7,7 @@ use handscope::codec::pdu::{self, ModbusRole, Pdu};
 use handscope::hand::Span;
 use handscope::link::{LinkHandle, PollRates, Records};
 use handscope::record::LinkState;
-use handscope::share::gateway::Gateway;
+use handscope::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use handscope::sim::SharedHand;
 use handscope::sim::serve::modbus_tcp;
 use handscope::transport::{Pipe, pair};
@@ -103,8 +103,22 @@ pub(crate) struct Place {
     _records: Records,
 }
 
-/// A live hand behind a gateway, read at these rates; each answer takes so long.
+/// A gateway at a free port that lets nobody write by itself.
+pub(crate) fn config() -> GatewayConfig {
+    GatewayConfig {
+        address: ([127, 0, 0, 1], 0).into(),
+        writers: Writers::Granted,
+        silence: SILENCE,
+    }
+}
+
+/// A live hand behind a gateway, read at these rates; each answer takes so long. Nobody may move it.
 pub(crate) async fn share(rates: PollRates, takes: Duration) -> Place {
+    share_as(config(), rates, takes).await
+}
+
+/// The same behind a gateway of this kind.
+pub(crate) async fn share_as(gateway: GatewayConfig, rates: PollRates, takes: Duration) -> Place {
     let (hand, wires) = (hand::plain(), Arc::new(Wires::default()));
     let behind = (hand.clone(), Arc::clone(&wires));
     let dial = link::dial(move |endpoint| {
@@ -121,8 +135,7 @@ pub(crate) async fn share(rates: PollRates, takes: Duration) -> Place {
     let mut config = link::config("tcp:hand", dial);
     config.rates = rates;
     let (link, records) = handscope::link::open(config, &Handle::current());
-    let here = ([127, 0, 0, 1], 0).into();
-    let gateway = Gateway::open(link.clone(), here, &Handle::current()).unwrap();
+    let gateway = Gateway::open(link.clone(), gateway, &Handle::current()).unwrap();
     let place = Place {
         hand,
         wires,
@@ -134,7 +147,22 @@ pub(crate) async fn share(rates: PollRates, takes: Duration) -> Place {
     place
 }
 
+/// What is left of a place without its gateway.
+pub(crate) struct Closed {
+    pub(crate) link: LinkHandle,
+    _records: Records,
+}
+
 impl Place {
+    /// Closes the gateway.
+    pub(crate) fn close(self) -> Closed {
+        drop(self.gateway);
+        Closed {
+            link: self.link,
+            _records: self._records,
+        }
+    }
+
     /// Waits until the hand is read.
     pub(crate) async fn live(&self) {
         until(|| self.link.status().state == LinkState::Monitoring).await;

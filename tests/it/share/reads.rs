@@ -1,8 +1,9 @@
 //! What clients of a gateway read, and what that costs the hand.
 
 use crate::setup::hand;
-use crate::share::place::{share, until};
+use crate::share::place::{config, share, until};
 use handscope::link::PollRates;
+use handscope::share::gateway::Gateway;
 use std::time::{Duration, Instant};
 use tokio::task::JoinSet;
 use tokio_modbus::ExceptionCode;
@@ -134,11 +135,10 @@ async fn what_the_hand_refuses_is_refused_and_never_made_up() {
     };
     let hand = hand::shared(hand::like(personality));
     let dial = crate::setup::link::to_hand(hand);
-    let config = crate::setup::link::config("tcp:hand", dial);
+    let link = crate::setup::link::config("tcp:hand", dial);
     let runtime = tokio::runtime::Handle::current();
-    let (link, _records) = handscope::link::open(config, &runtime);
-    let here = ([127, 0, 0, 1], 0).into();
-    let gateway = handscope::share::gateway::Gateway::open(link.clone(), here, &runtime).unwrap();
+    let (link, _records) = handscope::link::open(link, &runtime);
+    let gateway = Gateway::open(link.clone(), config(), &runtime).unwrap();
     until(|| link.stats().state_reads > 10).await;
     let mut client = tokio_modbus::client::tcp::connect(gateway.address())
         .await
