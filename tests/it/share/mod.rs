@@ -1,5 +1,7 @@
 //! One hand for several programs, as those programs meet it.
 
+#[cfg(unix)]
+mod cli;
 mod clients;
 mod place;
 mod reads;

@@ -14,6 +14,8 @@ const BUSY: Result<(), ExceptionCode> = Err(ExceptionCode::ServerDeviceBusy);
 /// The index finger's angle, and where it begins and is sent.
 const INDEX: u16 = 1486 + 6;
 const ARMING: [u16; 2] = [1522, 1498];
+/// A drive has its dead time behind it, and far to go.
+const MOVES_AFTER: Duration = Duration::from_millis(150);
 
 async fn first_may() -> Place {
     silent_after(Duration::from_secs(60)).await
@@ -175,7 +177,9 @@ async fn what_clients_may_not_write_never_reaches_the_wire() {
 #[tokio::test]
 async fn a_client_that_goes_leaves_a_stopped_hand_and_the_right_to_the_next() {
     let place = first_may().await;
-    drop(mover(&place).await);
+    let client = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    drop(client);
     is_stopped(&place).await;
     let mut next = place.client().await;
     let stopped = targets(&place).len();
@@ -215,7 +219,7 @@ async fn mover_again(place: &Place) -> Context {
 async fn a_fault_ends_the_right_and_stops_the_hand() {
     let place = first_may().await;
     let mut client = mover(&place).await;
-    sleep(Duration::from_millis(150)).await;
+    sleep(MOVES_AFTER).await;
     place
         .hand
         .with(|hand, _| hand.inject_fault(Dof::Ring, Fault::OverCurrent));
@@ -254,7 +258,7 @@ async fn a_lost_link_ends_the_right_and_nothing_goes_on_when_it_is_back() {
 async fn a_stop_by_a_person_ends_the_right() {
     let place = first_may().await;
     let mut client = mover(&place).await;
-    sleep(Duration::from_millis(150)).await;
+    sleep(MOVES_AFTER).await;
     place.link.stop();
     is_stopped(&place).await;
     assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY);
@@ -265,7 +269,7 @@ async fn a_stop_by_a_person_ends_the_right() {
 async fn a_gateway_that_closes_stops_what_a_client_moves() {
     let place = first_may().await;
     let _client = mover(&place).await;
-    sleep(Duration::from_millis(150)).await;
+    sleep(MOVES_AFTER).await;
     let Place { gateway, link, .. } = &place;
     assert_eq!(gateway.clients().len(), 1);
     assert!(link.status().armed.is_some());
