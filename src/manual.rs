@@ -36,6 +36,7 @@ topics! {
     sessions: "recordings of everything at a hand: files, exports, replay";
     exhibit: "a hand that visitors of a booth play with, and what staff do";
     stream: "a hand that follows another program, by lines of JSON";
+    share: "one hand for several programs: reads, writes, who may move it";
     json: "what the commands print with --json";
     figures: "how fast it is, and what each wire can carry";
 }

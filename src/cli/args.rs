@@ -12,6 +12,7 @@ use crate::cli::recordings::info::InfoArgs;
 use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
+use crate::cli::share::ShareArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::trial::TrialArgs;
 use crate::cli::watch::WatchArgs;
@@ -116,6 +117,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
     )]
     Replay(ReplayArgs),
+    /// Let several programs use one hand at a time, over Modbus TCP
+    #[command(
+        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n\nIt prints 'ready tcp ADDRESS' and runs until Ctrl-C. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
+    )]
+    Share(ShareArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()
@@ -182,6 +188,11 @@ mod tests {
             "handscope sim --tcp 6000",
             "handscope sim --tcp localhost:6000",
             "handscope sim --tcp 127.0.0.1:6000 --scenario party",
+            "handscope share --hand sim:",
+            "handscope share --tcp 127.0.0.1:6001",
+            "handscope share --hand sim: --tcp localhost:6001",
+            "handscope share --hand sim: --tcp 127.0.0.1:6001 --silence 5",
+            "handscope share --hand sim: --tcp 127.0.0.1:6001 --writers --silence 0",
             "handscope snapshot",
             "handscope snapshot --out x --view nowhere",
             "handscope snapshot --out x --scenario party",

@@ -14,6 +14,7 @@ mod recordings;
 mod registers;
 mod scan;
 mod session;
+mod share;
 mod sim;
 mod trial;
 mod value;
@@ -75,6 +76,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Recover(args) => recordings::export::recover(&mut out, &args),
         Command::Import(args) => recordings::import::run(&mut out, &args),
         Command::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
+        Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),

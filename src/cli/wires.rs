@@ -220,6 +220,7 @@ fn turnaround(text: &str) -> Result<Duration, String> {
     number(text, 0.0..=1000.0, what).map(|ms: f64| Duration::from_secs_f64(ms / 1000.0))
 }
 
+/// An address in numbers, with a port; 0 for any free one.
 pub(crate) fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_not_one| {
         "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()

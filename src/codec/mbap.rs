@@ -29,7 +29,21 @@ impl Adu {
     /// Function code; the top bit marks an exception.
     #[must_use]
     pub fn function(&self) -> u8 {
-        self.bytes.get(HEADER_LEN + 1).copied().unwrap_or_default()
+        self.pdu().first().copied().unwrap_or_default()
+    }
+
+    /// What it says: function code and data.
+    #[must_use]
+    pub fn pdu(&self) -> &[u8] {
+        self.bytes.get(HEADER_LEN + 1..).unwrap_or_default()
+    }
+
+    /// The message that answers this one as `unit`, saying `pdu`.
+    #[must_use]
+    pub fn reply(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
+        let len = u16::try_from(pdu.len() + 1).unwrap_or(u16::MAX);
+        let head = [self.transaction, 0, len].map(u16::to_be_bytes);
+        [head.as_flattened(), &[unit], pdu].concat()
     }
 }
 
@@ -148,6 +162,7 @@ mod tests {
                 .collect();
             assert_eq!(seen, [(7, 0xFF, 3), (8, 0xFF, 3), (7, 0xFF, 3)]);
             assert_eq!(adus[1].bytes.as_slice(), REPLY);
+            assert_eq!(adus[1].reply(0xFF, adus[1].pdu()), REPLY);
         }
     }
 

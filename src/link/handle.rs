@@ -1,7 +1,9 @@
 //! The program's end of a link: what may be said to it and what is heard. Only a request waits, for its answer.
 
 use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
+use crate::link::clock::Clock;
 use crate::link::config::LinkConfig;
+use crate::link::image::RegisterImage;
 use crate::link::lease::{Lease, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::{Answer, Request, RequestError};
@@ -32,6 +34,8 @@ struct LinkShared {
     records: broadcast::WeakSender<Record>,
     status: watch::Receiver<LinkStatus>,
     stats: watch::Receiver<LinkStats>,
+    image: watch::Receiver<RegisterImage>,
+    clock: Clock,
     tap: WireTap,
 }
 
@@ -50,6 +54,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
     let (told, records) = broadcast::channel(RECORDS_MAX);
     let (status_in, status) = watch::channel(LinkStatus::default());
     let (stats_in, stats) = watch::channel(LinkStats::default());
+    let (image_in, image) = watch::channel(RegisterImage::default());
     let tap = WireTap::default();
     let shared = LinkShared {
         wanted: Arc::clone(&wanted),
@@ -57,6 +62,8 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
         records: told.downgrade(),
         status,
         stats,
+        image,
+        clock: config.clock,
         tap: tap.clone(),
     };
     let ends = Ends {
@@ -65,6 +72,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
         records: told,
         status: status_in,
         stats: stats_in,
+        image: image_in,
         tap,
     };
     runtime.spawn(Session::new(config, ends).run());
@@ -310,6 +318,16 @@ impl LinkHandle {
             status: self.0.status.clone(),
             stats: self.0.stats.clone(),
         }
+    }
+
+    /// The memory as it was read last.
+    pub(crate) fn image(&self) -> watch::Receiver<RegisterImage> {
+        self.0.image.clone()
+    }
+
+    /// The clock of this link.
+    pub(crate) fn clock(&self) -> Clock {
+        self.0.clock
     }
 
     /// The recorded traffic; copies go on recording with the link.

@@ -1,6 +1,7 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
 use crate::hand::{Moment, Setpoints};
+use crate::link::image::RegisterImage;
 use crate::link::lease::{Lease, LeaseBook, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::Request;
@@ -115,5 +116,6 @@ pub(crate) struct Ends {
     pub(crate) records: broadcast::Sender<Record>,
     pub(crate) status: watch::Sender<LinkStatus>,
     pub(crate) stats: watch::Sender<LinkStats>,
+    pub(crate) image: watch::Sender<RegisterImage>,
     pub(crate) tap: WireTap,
 }

@@ -1,1 +1,3 @@
 //! One hand for several programs: what is given to them, and what they may write.
+
+pub mod gateway;

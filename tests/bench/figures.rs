@@ -5,6 +5,8 @@ mod clock;
 mod codec;
 mod cycles;
 mod frames;
+#[cfg(unix)]
+mod gateway;
 mod hand;
 mod idle;
 #[cfg(unix)]
@@ -36,13 +38,23 @@ mod line {
     }
 }
 
+#[cfg(not(unix))]
+mod gateway {
+    use crate::report::{Failure, Report};
+
+    pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+        report.absent("a shared serial line", "not on this system")
+    }
+}
+
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 11] = [
+const PARTS: [Part; 12] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
+    ("gateway", gateway::run),
     ("ui", frames::run),
     ("hand", hand::run),
     ("png", pictures::run),

@@ -100,6 +100,11 @@ fn line(report: &mut Report, protocol: Protocol, baud: u32) -> Result<(), Failur
     )
 }
 
+/// A hand of 6 ms on a line at this speed, in the maker's framing.
+pub(crate) fn rs485(path: &Path, baud: u32) -> Result<Server, Failure> {
+    serve(Protocol::Rs485, path, baud)
+}
+
 fn serve(protocol: Protocol, path: &Path, baud: u32) -> Result<Server, Failure> {
     let endpoint = format!("{}:{}?baud={baud}", protocol.name(), path.display()).parse()?;
     let pace = Some(LinePace {

@@ -24,6 +24,7 @@ mod record;
 #[cfg(unix)]
 mod session;
 mod setup;
+mod share;
 mod sim;
 mod trials;
 mod view;

@@ -149,6 +149,11 @@ impl PollPlan {
         }
     }
 
+    /// How far apart the reads of each part are meant to be.
+    pub(crate) fn periods(&self) -> impl Iterator<Item = (ReadPart, Duration)> {
+        self.parts.iter().map(|due| (due.part, due.period))
+    }
+
     /// What comes first from now on while something moves.
     pub(crate) const fn prefer(&mut self, priority: PollPriority) {
         self.priority = priority;

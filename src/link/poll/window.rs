@@ -16,7 +16,7 @@ const VARIED_MAX: usize = 14;
 /// Bytes that a form has more than its window at most. A fingertip more would cost more than it tells apart.
 const VARIED_BYTES_MAX: u16 = 24;
 /// Runs without registers, which a hand may refuse to be read through (manual 2.6 lists none there).
-const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
+pub(crate) const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
 /// Memory that holds registers, gaps included.
 const REGIONS: [Span; 2] = [Span::new(POS_SET.address, 1624 - POS_SET.address), TOUCH];
 /// Times that a window failed which led through a gap, before the gap is blamed: once may be chance.

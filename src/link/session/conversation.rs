@@ -6,6 +6,7 @@ use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, Bus, BusCounts, BusError};
 use crate::link::clock::SleepWatch;
 use crate::link::config::LinkConfig;
+use crate::link::image::RegisterImage;
 use crate::link::latency::Ticks;
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
@@ -215,6 +216,8 @@ impl Session {
         self.status.dialling = Dialling::Idle;
         self.status.trouble = None;
         self.status.hold = Hold::None;
+        let image = RegisterImage::live(self.plan.periods());
+        self.ends.image.send_replace(image);
         self.go(LinkState::Monitoring);
     }
 
@@ -231,6 +234,7 @@ impl Session {
         self.status.line_left = false;
         self.status.rest = Rest::Unknown;
         self.go(LinkState::Offline);
+        self.ends.image.send_replace(RegisterImage::default());
         if let Some(answer) = self.broken_off.take() {
             answer();
         }

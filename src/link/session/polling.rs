@@ -98,6 +98,7 @@ impl Session {
         let now = reply.received;
         self.plan
             .answered(reply.span, reply.asked, now.since(reply.asked));
+        self.ends.image.send_modify(|image| image.take(reply));
         let fresh = self.sample.take(reply);
         self.others.read(&self.sample, fresh);
         self.moving.take(&self.sample, fresh, now);

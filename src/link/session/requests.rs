@@ -1,7 +1,7 @@
 //! Commands and reads on their way: writes that go out one a step, and reads of any memory. Motion among them needs
 //! arming, like every other.
 
-use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
+use crate::hand::{HandCommand, Moment, RegisterWrite, Span, Writes};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
 use crate::link::lease::Lease;
@@ -136,14 +136,22 @@ impl Session {
                 let took = self.now().since(asked);
                 self.answered(took);
                 self.watch_ticks(span.len, took);
+                self.know(span, asked, Ok(bytes.to_vec()));
                 let _told = job.answer.send(Ok(bytes.to_vec()));
             }
             Err(error) => {
-                let _told = job.answer.send(Err(request_error(&error, span)));
+                let told = request_error(&error, span);
+                self.know(span, asked, Err(told.clone()));
+                let _told = job.answer.send(Err(told));
                 self.failed(bus, &error).await?;
             }
         }
         Ok(())
+    }
+
+    fn know(&self, span: Span, asked: Moment, read: Result<Vec<u8>, RequestError>) {
+        let image = &self.ends.image;
+        image.send_modify(|image| image.take_area(span, asked, read));
     }
 }
 

@@ -148,6 +148,10 @@ impl Session {
         if let Some(rates) = wishes.rates {
             self.config.rates = rates;
             self.plan.change_rates(rates, self.now());
+            let periods = self.plan.periods();
+            self.ends
+                .image
+                .send_modify(|image| image.change_periods(periods));
         }
         if let Some(setpoints) = wishes.setpoints {
             self.motion.want(&setpoints, self.status.armed);
@@ -367,6 +371,8 @@ impl Session {
         self.counters
             .line
             .wrote(self.plan.cost(), write.span(), took);
+        let span = write.span();
+        self.ends.image.send_modify(|image| image.forget(span));
         written?;
         self.answered(took);
         Ok(())

@@ -15,8 +15,6 @@ use tokio::time::sleep;
 pub const CLIENTS_MAX: usize = 16;
 /// Bytes taken at once: the longest request.
 const CHUNK: usize = 260;
-/// Bytes of a message before its function code.
-const HEADER_LEN: usize = 7;
 /// What a gateway says whose target is silent.
 const TARGET_SILENT: u8 = 11;
 
@@ -77,12 +75,11 @@ async fn answer_all(hands: SimHands, mut wire: impl Wire) -> io::Result<()> {
 }
 
 async fn answer(hands: &SimHands, wire: &mut impl Wire, asked: &Adu) -> io::Result<()> {
-    let request = asked.bytes.get(HEADER_LEN..).unwrap_or_default();
     let Some(hand) = hands.unit(asked.unit) else {
         let refused = [asked.function() | 0x80, TARGET_SILENT];
-        return wire.write_all(&message(asked, asked.unit, &refused)).await;
+        return wire.write_all(&asked.reply(asked.unit, &refused)).await;
     };
-    let Some(reply) = modbus::answer(hand, request) else {
+    let Some(reply) = modbus::answer(hand, asked.pdu()) else {
         return Ok(());
     };
     let (manner, unit) = hand.with(|hand, _| (hand.manner(), hand.personality().reply_unit));
@@ -95,13 +92,7 @@ async fn answer(hands: &SimHands, wire: &mut impl Wire, asked: &Adu) -> io::Resu
         sleep(manner.after).await;
     }
     for _ in 0..manner.copies {
-        wire.write_all(&message(asked, unit, &reply)).await?;
+        wire.write_all(&asked.reply(unit, &reply)).await?;
     }
     wire.flush().await
-}
-
-fn message(asked: &Adu, unit: u8, reply: &[u8]) -> Vec<u8> {
-    let len = u16::try_from(reply.len() + 1).unwrap_or(u16::MAX);
-    let head = [asked.transaction, 0, len].map(u16::to_be_bytes);
-    [head.as_flattened(), &[unit], reply].concat()
 }

@@ -1,0 +1,201 @@
+//! `share`: a Modbus TCP gateway, through which several programs use one hand, until a person ends it.
+
+use crate::cli::interrupt::Interrupt;
+use crate::cli::out::{Out, say};
+use crate::cli::parse::number;
+use crate::cli::session;
+use crate::cli::wires::address;
+use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
+use crate::record::{Disarmed, LinkState};
+use crate::share::gateway::{
+    ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
+};
+use crate::tasks::series::{self, Stop};
+use crate::transport::Endpoint;
+use anyhow::{anyhow, bail};
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::runtime::Handle;
+use tokio::time::interval;
+
+/// How often there may be something to tell.
+const LOOK_EACH: Duration = Duration::from_millis(100);
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ShareArgs {
+    /// The hand to share
+    #[arg(long, value_name = "URL")]
+    hand: Endpoint,
+    /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
+    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    tcp: SocketAddr,
+    /// Let the first client that writes move the hand, until it disconnects or falls silent
+    #[arg(long)]
+    writers: bool,
+    /// With --writers: after so many seconds without a request the client may no longer move the hand [default: 10]
+    #[arg(long, value_name = "SECONDS", requires = "writers", value_parser = silence)]
+    silence: Option<Duration>,
+    /// Read as fast as the wire allows, instead of 100 states and 30 touch sweeps a second
+    #[arg(long)]
+    full_rate: bool,
+}
+
+/// Shares the hand until a person ends it.
+pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
+    let mut interrupt = Interrupt::listen()?;
+    let rates = match args.full_rate {
+        true => PollRates::FULL,
+        false => PollRates::default(),
+    };
+    let link = session::open(&args.hand, rates, Clock::start());
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => return Ok(()),
+        answered = session::answered(&link, &args.hand) => answered?,
+    }
+    let gateway = open(&link, args)?;
+    out.line(&format!("ready tcp {}", gateway.address()))?;
+    out.flush()?;
+    tokio::select! {
+        biased;
+        () = interrupt.wished() => {}
+        () = tell(&link, &gateway, &args.hand) => {}
+    }
+    end(&link, gateway).await
+}
+
+/// Closes, and does not leave before a hand that a client could move is seen to rest.
+async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
+    let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
+    let moved = gateway.clients().iter().any(is_held);
+    drop(gateway);
+    if !moved && link.status().state != LinkState::Holding {
+        return Ok(());
+    }
+    let mut records = link.records();
+    match series::hold(link, &mut records).await {
+        Stop::Confirmed { .. } => Ok(()),
+        Stop::NotConfirmed => {
+            bail!("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply")
+        }
+        Stop::LinkLost => bail!(
+            "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves"
+        ),
+    }
+}
+
+fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
+    let address = args.tcp;
+    let config = GatewayConfig {
+        address,
+        writers: match args.writers {
+            true => Writers::First,
+            false => Writers::Granted,
+        },
+        silence: args.silence.unwrap_or(SILENCE),
+    };
+    let gateway = Gateway::open(link.clone(), config, &Handle::current()).map_err(|error| {
+        anyhow!("cannot serve on {address}: {error}; choose another address or port")
+    })?;
+    let bound = gateway.address();
+    if !bound.ip().is_loopback() {
+        say(&format!(
+            "warning: anyone in the network can reach {bound} and {} this hand; 127.0.0.1 keeps it to this computer",
+            if args.writers { "move" } else { "read" }
+        ));
+    }
+    Ok(gateway)
+}
+
+/// Tells what a person has to know, for as long as it is shared.
+async fn tell(link: &LinkHandle, gateway: &Gateway, hand: &Endpoint) {
+    let mut told = Told::default();
+    let mut tick = interval(LOOK_EACH);
+    loop {
+        tick.tick().await;
+        told.link(link, hand);
+        told.turned_away(gateway);
+        told.leases(gateway);
+    }
+}
+
+/// What was told already.
+#[derive(Default)]
+struct Told {
+    trouble: Option<LinkTrouble>,
+    turned_away: bool,
+    /// The client that may move the hand.
+    mover: Option<ClientId>,
+}
+
+impl Told {
+    fn link(&mut self, link: &LinkHandle, hand: &Endpoint) {
+        let status = link.status();
+        match session::trouble(&status) {
+            Some(trouble) if self.trouble.as_ref() != Some(trouble) => {
+                say(&format!("link to {hand} lost: {trouble}; trying again"));
+                self.trouble = Some(trouble.clone());
+            }
+            None if status.state.is_live() && self.trouble.take().is_some() => {
+                say("the hand answers again");
+            }
+            _ => {}
+        }
+    }
+
+    fn turned_away(&mut self, gateway: &Gateway) {
+        if gateway.turned_away() > 0 && !std::mem::replace(&mut self.turned_away, true) {
+            say("there are as many clients as there may be: more are turned away");
+        }
+    }
+
+    /// What moves the hand, and that it does no more.
+    fn leases(&mut self, gateway: &Gateway) {
+        let clients = gateway.clients();
+        if let Some(mover) = self.mover {
+            match clients.iter().find(|client| client.id == mover) {
+                None => {
+                    say("the client that could move the hand is gone: the hand is stopped");
+                    self.mover = None;
+                }
+                Some(client) if !matches!(client.lease, ClientLease::Held(_)) => {
+                    let address = client.address;
+                    say(&format!(
+                        "{address} may no longer move the hand: {}",
+                        ended(client.lease)
+                    ));
+                    self.mover = None;
+                }
+                Some(_) => {}
+            }
+        }
+        for client in clients {
+            let is_new = self.mover != Some(client.id);
+            if is_new && matches!(client.lease, ClientLease::Held(_)) {
+                say(&format!("{} may move the hand", client.address));
+                self.mover = Some(client.id);
+            }
+        }
+    }
+}
+
+fn ended(lease: ClientLease) -> &'static str {
+    match lease {
+        ClientLease::Ended(LeaseRefusal::Ended(why)) => match why {
+            Disarmed::Silent => "it asked nothing for too long, and the hand is stopped",
+            Disarmed::Fault => "a drive reports a fault, and the hand is stopped",
+            Disarmed::LinkLost | Disarmed::Resume => "the link was lost",
+            Disarmed::Stale => "feedback grew old, and the hand is stopped",
+            Disarmed::OtherController => {
+                "another controller talks to the hand, and the hand is stopped"
+            }
+            _ => "the hand was stopped",
+        },
+        _ => "another may now",
+    }
+}
+
+fn silence(text: &str) -> Result<Duration, String> {
+    let what = "a time between 1 and 3600 seconds";
+    number(text, 1.0..=3600.0, what).map(Duration::from_secs_f64)
+}

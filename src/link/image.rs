@@ -1,0 +1,355 @@
+//! The hand's memory as it was read last, with the time of each stretch, for those who share one hand. Pure: replies, writes
+//! and failures come in, bytes with an age go out. What was not read is not there.
+
+use crate::hand::{Moment, Reply, Span};
+use crate::link::poll::window::{GAPS, ReadPart, TIP};
+use crate::link::request::RequestError;
+use arrayvec::ArrayVec;
+use std::time::Duration;
+
+/// What was read because somebody asked serves others so long: as long as the slowest part that is read by itself.
+const AREA_FRESH: Duration = Duration::from_millis(500);
+/// However seldom a part is read, nothing older than this is given.
+const OLDEST: Duration = Duration::from_secs(1);
+/// What is read by itself and does not come within this is asked for.
+const JOIN_WITHIN: Duration = Duration::from_millis(250);
+/// Stretches that were asked for which are remembered; the oldest makes room. Clients of one hand ask for the same few.
+const AREAS_MAX: usize = 16;
+/// Stretches that are read as a whole.
+const BLOCKS: usize = ReadPart::ALL.len() + GAPS.len();
+
+/// What the image says to whoever wants a stretch of memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Seen {
+    /// The bytes.
+    Bytes(Vec<u8>),
+    /// A part of it is to be read soon: look again when the image changes, or then.
+    Soon(Moment),
+    /// This must be asked for.
+    Missing(Span),
+    /// This was asked for a moment ago, and failed.
+    Failed(RequestError),
+    /// There is no live hand.
+    Offline,
+}
+
+/// The memory of one hand. Empty while there is no live one.
+#[derive(Debug, Default)]
+pub(crate) struct RegisterImage {
+    is_live: bool,
+    blocks: ArrayVec<Block, BLOCKS>,
+    areas: ArrayVec<Area, AREAS_MAX>,
+}
+
+/// A stretch that the session reads by itself, always as a whole.
+#[derive(Debug)]
+struct Block {
+    span: Span,
+    /// How often it is wanted.
+    period: Duration,
+    came: Option<Came>,
+}
+
+#[derive(Debug)]
+struct Came {
+    asked: Moment,
+    /// After the one before.
+    after: Duration,
+    bytes: ArrayVec<u8, { TIP as usize }>,
+}
+
+/// A stretch that somebody asked for, and what became of that.
+#[derive(Debug)]
+struct Area {
+    span: Span,
+    asked: Moment,
+    read: Result<Vec<u8>, RequestError>,
+}
+
+impl RegisterImage {
+    /// Of a hand that answers from now on, whose parts are read with these periods.
+    pub(crate) fn live(periods: impl Iterator<Item = (ReadPart, Duration)>) -> Self {
+        let parts = periods.map(|(part, period)| (part.span(), period));
+        // Gaps come along with their neighbours where the hand allows it.
+        let all = parts.chain(GAPS.map(|gap| (gap, AREA_FRESH)));
+        let block = |(span, period)| Block {
+            span,
+            period,
+            came: None,
+        };
+        Self {
+            is_live: true,
+            blocks: all.map(block).take(BLOCKS).collect(),
+            areas: ArrayVec::new(),
+        }
+    }
+
+    /// The parts are read at other rates from now on.
+    pub(crate) fn change_periods(&mut self, periods: impl Iterator<Item = (ReadPart, Duration)>) {
+        for (part, period) in periods {
+            let mut blocks = self.blocks.iter_mut();
+            if let Some(block) = blocks.find(|block| block.span == part.span()) {
+                block.period = period;
+            }
+        }
+    }
+
+    /// Takes every block that a reply holds whole.
+    pub(crate) fn take(&mut self, reply: &Reply<'_>) {
+        let held = self
+            .blocks
+            .iter_mut()
+            .filter(|block| reply.span.covers(block.span));
+        for block in held {
+            let Some(bytes) = reply.span.slice(reply.bytes, block.span) else {
+                continue;
+            };
+            let before = block.came.as_ref().map(|came| came.asked);
+            block.came = Some(Came {
+                asked: reply.asked,
+                after: before.map_or(block.period, |before| reply.asked.since(before)),
+                bytes: bytes.iter().copied().collect(),
+            });
+        }
+    }
+
+    /// What became of a stretch that somebody asked for.
+    pub(crate) fn take_area(
+        &mut self,
+        span: Span,
+        asked: Moment,
+        read: Result<Vec<u8>, RequestError>,
+    ) {
+        self.areas.retain(|area| area.span != span);
+        if self.areas.is_full() {
+            self.areas.remove(0);
+        }
+        self.areas.push(Area { span, asked, read });
+    }
+
+    /// A write went out: what was read there before tells nothing any more.
+    pub(crate) fn forget(&mut self, written: Span) {
+        for block in &mut self.blocks {
+            if overlap(block.span, written) {
+                block.came = None;
+            }
+        }
+        self.areas.retain(|area| !overlap(area.span, written));
+    }
+
+    /// What is known of a stretch at `now`, for one who waits since `since`.
+    pub(crate) fn look(&self, span: Span, since: Moment, now: Moment) -> Seen {
+        if !self.is_live {
+            return Seen::Offline;
+        }
+        let mut bytes = Vec::with_capacity(usize::from(span.len));
+        let mut soon = None;
+        let mut at = u32::from(span.address);
+        while at < span.end() {
+            let run = self.run(at, span.end());
+            match self.look_at(run, since, now) {
+                Seen::Bytes(more) => bytes.extend(more),
+                Seen::Soon(until) => {
+                    soon = Some(soon.map_or(until, |soon: Moment| soon.min(until)))
+                }
+                other => return other,
+            }
+            at = run.end();
+        }
+        soon.map_or(Seen::Bytes(bytes), Seen::Soon)
+    }
+
+    /// The stretch from `at` that lies in one block, or in none.
+    fn run(&self, at: u32, end: u32) -> Span {
+        let starts = self
+            .blocks
+            .iter()
+            .map(|block| u32::from(block.span.address));
+        let edges = starts.chain(self.blocks.iter().map(|block| block.span.end()));
+        let until = edges.filter(|edge| *edge > at).fold(end, u32::min);
+        let part = |bytes: u32| u16::try_from(bytes).unwrap_or(u16::MAX);
+        Span::new(part(at), part(until - at))
+    }
+
+    fn look_at(&self, run: Span, since: Moment, now: Moment) -> Seen {
+        let block = self.blocks.iter().find(|block| block.span.covers(run));
+        if let Some(bytes) = block.and_then(|block| block.fresh(run, now)) {
+            return Seen::Bytes(bytes);
+        }
+        let mut areas = self.areas.iter().rev();
+        let is_fresh = |area: &&Area| area.span.covers(run) && now.since(area.asked) <= AREA_FRESH;
+        if let Some(area) = areas.find(is_fresh) {
+            return match &area.read {
+                Ok(bytes) => {
+                    let bytes = area.span.slice(bytes, run).unwrap_or_default();
+                    Seen::Bytes(bytes.to_vec())
+                }
+                Err(error) => Seen::Failed(error.clone()),
+            };
+        }
+        match block {
+            // Asked for as a whole, so that it serves all who want something of it.
+            Some(block) => match block.comes_by(since) {
+                Some(until) if until > now => Seen::Soon(until),
+                _ => Seen::Missing(block.span),
+            },
+            None => Seen::Missing(run),
+        }
+    }
+}
+
+impl Block {
+    /// The bytes of a run inside, unless they are older than this block's turns are apart.
+    fn fresh(&self, run: Span, now: Moment) -> Option<Vec<u8>> {
+        let came = self.came.as_ref()?;
+        let is_fresh = now.since(came.asked) <= self.lasts(came);
+        let bytes = self.span.slice(&came.bytes, run)?;
+        is_fresh.then(|| bytes.to_vec())
+    }
+
+    fn lasts(&self, came: &Came) -> Duration {
+        self.period.max(came.after).min(OLDEST)
+    }
+
+    /// Until when it is worth waiting for its next turn; none if that is far off.
+    fn comes_by(&self, since: Moment) -> Option<Moment> {
+        match &self.came {
+            Some(came) => Some(came.asked.plus(self.lasts(came) + JOIN_WITHIN)),
+            None => (self.period < JOIN_WITHIN).then(|| since.plus(JOIN_WITHIN)),
+        }
+    }
+}
+
+fn overlap(a: Span, b: Span) -> bool {
+    u32::from(a.address) < b.end() && u32::from(b.address) < a.end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+    const ANGLES: Span = Span::new(1546, 12);
+    const SET: Span = Span::new(1486, 12);
+
+    fn image() -> RegisterImage {
+        let period = |part: ReadPart| if part.is_motion() { 10 } else { 500 };
+        RegisterImage::live(
+            ReadPart::ALL
+                .map(|part| (part, MS * period(part)))
+                .into_iter(),
+        )
+    }
+
+    fn at(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    fn take(image: &mut RegisterImage, span: Span, ms: u64, fill: u8) {
+        image.take(&Reply {
+            span,
+            bytes: &vec![fill; usize::from(span.len)],
+            asked: at(ms),
+            received: at(ms + 2),
+        });
+    }
+
+    fn seen(image: &RegisterImage, span: Span, ms: u64) -> Seen {
+        image.look(span, at(ms), at(ms))
+    }
+
+    #[test]
+    fn bytes_are_given_for_one_period_and_then_the_next_read_is_waited_for() {
+        let mut image = image();
+        assert_eq!(seen(&image, ANGLES, 5), Seen::Soon(at(255)));
+        take(&mut image, Span::new(1546, 24), 10, 7);
+        assert_eq!(seen(&image, ANGLES, 20), Seen::Bytes(vec![7; 12]));
+        assert_eq!(
+            seen(&image, Span::new(1549, 3), 20),
+            Seen::Bytes(vec![7; 3])
+        );
+        assert_eq!(seen(&image, ANGLES, 21), Seen::Soon(at(270)));
+        // Who reads as fast as it can, every 30 ms, gives each reply for so long.
+        take(&mut image, ANGLES, 40, 8);
+        assert_eq!(seen(&image, ANGLES, 70), Seen::Bytes(vec![8; 12]));
+        assert_eq!(seen(&image, ANGLES, 71), Seen::Soon(at(320)));
+        assert_eq!(seen(&image, ANGLES, 320), Seen::Missing(ANGLES));
+    }
+
+    #[test]
+    fn a_part_of_a_block_is_never_mixed_into_it() {
+        let mut image = image();
+        take(&mut image, ANGLES, 10, 7);
+        take(&mut image, Span::new(1550, 8), 12, 8);
+        assert_eq!(seen(&image, ANGLES, 13), Seen::Bytes(vec![7; 12]));
+    }
+
+    #[test]
+    fn what_is_not_read_by_itself_is_asked_for_once_and_then_shared() {
+        let (mut image, id) = (image(), Span::new(1000, 2));
+        assert_eq!(seen(&image, id, 10), Seen::Missing(id));
+        image.take_area(id, at(10), Ok(vec![1, 0]));
+        assert_eq!(seen(&image, id, 510), Seen::Bytes(vec![1, 0]));
+        assert_eq!(seen(&image, id, 511), Seen::Missing(id));
+        let lost = RequestError::LinkLost;
+        image.take_area(id, at(600), Err(lost.clone()));
+        assert_eq!(seen(&image, id, 601), Seen::Failed(lost));
+        // Bytes of two reads are not put together.
+        image.take_area(Span::new(1002, 2), at(602), Ok(vec![3, 0]));
+        assert_eq!(
+            seen(&image, Span::new(1001, 2), 603),
+            Seen::Missing(Span::new(1001, 2))
+        );
+    }
+
+    #[test]
+    fn a_read_over_several_blocks_needs_all_of_them() {
+        let mut image = image();
+        let all = Span::new(1546, 48);
+        take(&mut image, all, 10, 7);
+        assert_eq!(
+            seen(&image, all, 11),
+            Seen::Bytes(vec![7; 48]),
+            "the gap came along"
+        );
+        image.forget(Span::new(1582, 2));
+        assert_eq!(seen(&image, all, 11), Seen::Soon(at(261)));
+    }
+
+    #[test]
+    fn what_was_written_is_asked_for_again() {
+        let mut image = image();
+        take(&mut image, Span::new(1486, 48), 10, 7);
+        assert_eq!(seen(&image, SET, 100), Seen::Bytes(vec![7; 12]));
+        image.forget(Span::new(1488, 2));
+        let block = Span::new(1486, 24);
+        assert_eq!(seen(&image, SET, 100), Seen::Missing(block));
+        image.take_area(block, at(100), Ok(vec![9; 24]));
+        assert_eq!(seen(&image, SET, 101), Seen::Bytes(vec![9; 12]));
+        image.forget(Span::new(1488, 2));
+        assert_eq!(seen(&image, SET, 101), Seen::Missing(block));
+    }
+
+    #[test]
+    fn without_a_live_hand_nothing_is_known() {
+        let image = RegisterImage::default();
+        assert_eq!(seen(&image, ANGLES, 1), Seen::Offline);
+    }
+
+    #[test]
+    fn the_oldest_areas_make_room() {
+        let mut image = image();
+        for nth in 0..20 {
+            image.take_area(Span::new(2000 + 2 * nth, 2), at(1), Ok(vec![0, 0]));
+        }
+        assert_eq!(image.areas.len(), AREAS_MAX);
+        assert_eq!(
+            seen(&image, Span::new(2000, 2), 2),
+            Seen::Missing(Span::new(2000, 2))
+        );
+        assert!(matches!(
+            seen(&image, Span::new(2038, 2), 2),
+            Seen::Bytes(_)
+        ));
+    }
+}

@@ -1,0 +1,98 @@
+//! Reads that many may ask for without asking the hand more often: what the session read just now serves all, and what it
+//! does not read by itself is asked for once, seldom, for all who wait.
+
+use crate::hand::Span;
+use crate::link::clock::Clock;
+use crate::link::handle::LinkHandle;
+use crate::link::image::{RegisterImage, Seen};
+use crate::link::request::RequestError;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{Mutex, watch};
+use tokio::time::{Instant, sleep_until, timeout};
+
+/// Whoever waits so long is told that the hand did not answer.
+pub const RECENT_WITHIN: Duration = Duration::from_secs(3);
+/// After a read that the session would not have made, so many times its length go by until the next: they take the link
+/// 4 of 100 parts of its time.
+const PAUSE_TIMES: u32 = 24;
+/// The longest such pause, so that one slow answer does not keep all others waiting.
+const PAUSE_MAX: Duration = Duration::from_millis(500);
+
+/// Recent reads of one hand. Copies share what they ask for.
+#[derive(Debug, Clone)]
+pub struct RecentReads {
+    link: LinkHandle,
+    image: watch::Receiver<RegisterImage>,
+    clock: Clock,
+    /// Who has the turn at asking the hand, and when the next may.
+    turn: Arc<Mutex<Option<Instant>>>,
+}
+
+impl RecentReads {
+    /// Of the hand at this link.
+    #[must_use]
+    pub fn of(link: &LinkHandle) -> Self {
+        Self {
+            image: link.image(),
+            clock: link.clock(),
+            link: link.clone(),
+            turn: Arc::default(),
+        }
+    }
+
+    /// Memory that is not older than the session's reads of it are apart, or that is read now.
+    ///
+    /// # Errors
+    /// As [`LinkHandle::read`], and [`RequestError::Timeout`] after [`RECENT_WITHIN`].
+    pub async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        let read = timeout(RECENT_WITHIN, self.wait_for(span)).await;
+        read.unwrap_or_else(|_late| {
+            Err(RequestError::Timeout {
+                address: span.address,
+                after_ms: u64::try_from(RECENT_WITHIN.as_millis()).unwrap_or(u64::MAX),
+            })
+        })
+    }
+
+    async fn wait_for(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        let since = self.clock.now();
+        let mut image = self.image.clone();
+        loop {
+            let seen = image
+                .borrow_and_update()
+                .look(span, since, self.clock.now());
+            match seen {
+                Seen::Bytes(bytes) => return Ok(bytes),
+                Seen::Failed(error) => return Err(error),
+                Seen::Offline => return Err(RequestError::NotConnected),
+                Seen::Missing(part) => self.ask(part).await?,
+                Seen::Soon(until) => {
+                    let over = sleep_until(self.clock.instant(until));
+                    tokio::select! {
+                        biased;
+                        changed = image.changed() => changed.map_err(|_gone| RequestError::NotConnected)?,
+                        () = over => {}
+                    }
+                }
+            }
+        }
+    }
+
+    /// Asks the hand, one at a time and seldom, unless somebody else did meanwhile. The session puts the answer into the image.
+    async fn ask(&self, span: Span) -> Result<(), RequestError> {
+        let mut turn = self.turn.lock().await;
+        if let Some(next) = *turn {
+            sleep_until(next).await;
+        }
+        let now = self.clock.now();
+        if !matches!(self.image.borrow().look(span, now, now), Seen::Missing(_)) {
+            return Ok(());
+        }
+        let asked = Instant::now();
+        let read = self.link.read(span).await;
+        let pause = (asked.elapsed() * PAUSE_TIMES).min(PAUSE_MAX);
+        *turn = Some(Instant::now() + pause);
+        read.map(drop)
+    }
+}

@@ -1,0 +1,163 @@
+//! What a client of the gateway may write: targets, and what belongs to moving. All else is refused here, whoever asks; nothing
+//! that outlasts the power or leads away from the hand can be expressed. Pure.
+
+use crate::codec::pdu::ModbusException;
+use crate::hand::register::{ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_NO_SET, SPEED_SET};
+use crate::hand::{
+    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, OutOfRange, PerDof, Register, Speed,
+    Target,
+};
+
+/// The command that words written at this address mean.
+///
+/// # Errors
+/// `IllegalAddress` for every register but ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and GESTURE_NO_SET, and for a
+/// write that leaves one of them; `IllegalValue` out of the manual's range.
+pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, ModbusException> {
+    let wrong = |_range: OutOfRange| ModbusException::IllegalValue;
+    if let Some(values) = joints(&ANGLE_SET, address, words) {
+        let target = |value: Option<i16>| match value {
+            // The manual's "no action" (2.6.11).
+            None | Some(-1) => Ok(Target::Leave),
+            Some(angle) => Angle::new(angle).map(Target::Go),
+        };
+        return checked(values, target)
+            .map(HandCommand::Angles)
+            .map_err(wrong);
+    }
+    if let Some(values) = joints(&FORCE_SET, address, words) {
+        let force = |value: Option<i16>| value.map(Force::new).transpose();
+        return checked(values, force)
+            .map(HandCommand::Forces)
+            .map_err(wrong);
+    }
+    if let Some(values) = joints(&SPEED_SET, address, words) {
+        let speed = |value: Option<i16>| value.map(Speed::new).transpose();
+        return checked(values, speed)
+            .map(HandCommand::Speeds)
+            .map_err(wrong);
+    }
+    match (address, words) {
+        // Manual: single bytes side by side; one word there is one of them.
+        (at, [1]) if at == CLEAR_ERROR.address => Ok(HandCommand::ClearErrors),
+        (at, [_]) if at == CLEAR_ERROR.address => Err(ModbusException::IllegalValue),
+        (at, [number]) if at == GESTURE_NO_SET.address => Gesture::new(*number)
+            .map(|gesture| HandCommand::Gesture(gesture, GestureRoute::Register1008))
+            .map_err(wrong),
+        _ => Err(ModbusException::IllegalAddress),
+    }
+}
+
+/// The joints that words at this address set; `None` unless all of them lie in this register, whole.
+fn joints(register: &Register, address: u16, words: &[u16]) -> Option<PerDof<Option<i16>>> {
+    let offset = address.checked_sub(register.address)?;
+    let first = usize::from(offset / 2);
+    let is_inside = offset.is_multiple_of(2) && first + words.len() <= Dof::ALL.len();
+    if !is_inside || words.is_empty() {
+        return None;
+    }
+    let mut values = PerDof::splat(None);
+    for (dof, word) in Dof::ALL.into_iter().skip(first).zip(words) {
+        values[dof] = Some(word.cast_signed());
+    }
+    Some(values)
+}
+
+fn checked<T: Copy>(
+    values: PerDof<Option<i16>>,
+    check: impl Fn(Option<i16>) -> Result<T, OutOfRange>,
+) -> Result<PerDof<T>, OutOfRange> {
+    let mut all = PerDof::splat(check(None)?);
+    for (dof, value) in values.iter() {
+        all[dof] = check(*value)?;
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::RegisterWrite;
+    use crate::hand::register::REGISTERS;
+    use proptest::prelude::*;
+
+    #[test]
+    fn words_become_what_they_mean_for_the_joints_they_are_written_to() {
+        let mut angles = PerDof::splat(Target::Leave);
+        angles[Dof::Index] = Target::Go(Angle::nearest(500));
+        assert_eq!(command(1492, &[500]), Ok(HandCommand::Angles(angles)));
+        let all = [0xFFFF, 0xFFFF, 0xFFFF, 500, 0xFFFF, 0xFFFF];
+        assert_eq!(command(1486, &all), Ok(HandCommand::Angles(angles)));
+        let mut forces = PerDof::splat(None);
+        forces[Dof::Little] = Some(Force::MAX);
+        forces[Dof::Ring] = Some(Force::MIN);
+        assert_eq!(command(1498, &[3000, 0]), Ok(HandCommand::Forces(forces)));
+        let speeds = PerDof::splat(Some(Speed::MAX));
+        assert_eq!(command(1522, &[1000; 6]), Ok(HandCommand::Speeds(speeds)));
+        assert_eq!(command(1004, &[1]), Ok(HandCommand::ClearErrors));
+        let gesture = HandCommand::Gesture(Gesture::nearest(40), GestureRoute::Register1008);
+        assert_eq!(command(1008, &[40]), Ok(gesture));
+    }
+
+    #[test]
+    fn what_is_out_of_range_or_not_for_clients_is_refused() {
+        use ModbusException::{IllegalAddress, IllegalValue};
+        for (address, words, refused) in [
+            (1486, &[1001][..], IllegalValue),
+            (1486, &[0xFFFE], IllegalValue),
+            (1498, &[3001], IllegalValue),
+            (1498, &[0xFFFF], IllegalValue),
+            (1522, &[0xFFFF], IllegalValue),
+            (1004, &[0], IllegalValue),
+            (1004, &[0x0100], IllegalValue),
+            (1008, &[0], IllegalValue),
+            (1008, &[41], IllegalValue),
+            // Beyond the register, or into the middle of a joint.
+            (1486, &[500; 7], IllegalAddress),
+            (1496, &[500; 2], IllegalAddress),
+            (1487, &[500], IllegalAddress),
+            // CLEAR_ERROR and what stands beside it: SAVE, RESET_PARA.
+            (1004, &[1, 1], IllegalAddress),
+            (1000, &[1], IllegalAddress),
+            (1002, &[0], IllegalAddress),
+            (1005, &[1], IllegalAddress),
+            (1006, &[1], IllegalAddress),
+            (1009, &[1], IllegalAddress),
+            (1032, &[500], IllegalAddress),
+            (1044, &[500], IllegalAddress),
+            (1066, &[500], IllegalAddress),
+            (1474, &[500], IllegalAddress),
+            (1546, &[500], IllegalAddress),
+            (1700, &[0xA8C0, 0xD20B], IllegalAddress),
+            (2320, &[1], IllegalAddress),
+            (1020, &[500], IllegalAddress),
+        ] {
+            assert_eq!(command(address, words), Err(refused), "{address} {words:?}");
+        }
+    }
+
+    #[test]
+    fn every_register_that_clients_may_write_is_lost_with_the_power() {
+        use crate::hand::register::Persistence;
+        for row in REGISTERS {
+            if command(row.address, &[1]).is_ok() {
+                assert_eq!(row.persistence, Persistence::Volatile, "{row}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_allowed_writes_those_registers_and_no_other(
+            address in prop_oneof![any::<u16>(), 990..1720u16],
+            words in prop::collection::vec(prop_oneof![any::<u16>(), 0..50u16], 0..14),
+        ) {
+            let writes = command(address, &words).map(|command| command.writes());
+            for write in writes.iter().flatten() {
+                let known = [ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR, GESTURE_NO_SET];
+                let is_known = |write: &RegisterWrite| known.iter().any(|row| row.span().covers(write.span()));
+                prop_assert!(is_known(write), "{write:?}");
+            }
+        }
+    }
+}

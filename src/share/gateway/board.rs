@@ -1,0 +1,301 @@
+//! Who is connected to a gateway, and what each of them did. Counts and remembers; sends nothing.
+
+use crate::hand::{HandCommand, Moment};
+use crate::link::session::motion::SETPOINT_HZ_MAX;
+use crate::link::{Lease, LeaseRefusal};
+use crate::share::gateway::refusal::WriteRefusal;
+use std::mem::Discriminant;
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::sync::Notify;
+use tokio::time::Instant;
+
+/// Clients at one time; more are turned away at once.
+pub const CLIENTS_MAX: usize = 16;
+/// Commands of one kind are so far apart, as the setpoints of a slider are.
+const WRITE_EACH: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
+/// Requests are counted over this time.
+const RATE_OVER: Duration = Duration::from_secs(1);
+
+/// One connection to a gateway. None is ever given twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClientId(u64);
+
+/// One client as a person sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GatewayClient {
+    /// By which it is named.
+    pub id: ClientId,
+    /// Where it is.
+    pub address: SocketAddr,
+    /// When it connected, by the link's clock.
+    pub since: Moment,
+    /// Requests in the last whole second.
+    pub hz: u32,
+    /// Reads that were answered with values.
+    pub reads: u64,
+    /// Writes that the hand acknowledged.
+    pub writes: u64,
+    /// Writes that were refused.
+    pub refused: u64,
+    /// Why the last of them was.
+    pub refusal: Option<WriteRefusal>,
+    /// Whether it may move the hand.
+    pub lease: ClientLease,
+}
+
+/// Whether a client may move the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClientLease {
+    /// It never could.
+    Never,
+    /// It can now.
+    Held(Lease),
+    /// It could, until this.
+    Ended(LeaseRefusal),
+}
+
+/// The clients of one gateway, for all who serve them. Locks last for one call.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SharedBoard(Arc<Mutex<Board>>);
+
+impl SharedBoard {
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
+        // Each call leaves the board whole, also one that panicked.
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// The clients of one gateway.
+#[derive(Debug, Default)]
+pub(crate) struct Board {
+    rows: Vec<Row>,
+    last_id: u64,
+    pub(crate) turned_away: u64,
+    /// Who is about to get the right to move the hand.
+    taking: Option<ClientId>,
+    /// When each kind of command went out last.
+    turns: Vec<(Discriminant<HandCommand>, Instant)>,
+}
+
+/// The client that may move the hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Holder {
+    pub(crate) client: ClientId,
+    pub(crate) lease: Lease,
+    pub(crate) heard: Moment,
+}
+
+/// One client.
+#[derive(Debug)]
+pub(crate) struct Row {
+    shown: GatewayClient,
+    pace: Pace,
+    /// When it asked something last.
+    heard: Moment,
+    /// A person grants it the right to move the hand.
+    pub(crate) granted: Arc<Notify>,
+}
+
+impl Row {
+    /// A whole request came.
+    pub(crate) fn asked(&mut self, now: Moment) {
+        self.heard = now;
+        self.pace.hit(now);
+    }
+
+    /// What it may.
+    pub(crate) fn lease(&mut self) -> &mut ClientLease {
+        &mut self.shown.lease
+    }
+
+    /// A grant by a person came to nothing.
+    pub(crate) fn not_granted(&mut self, refusal: WriteRefusal) {
+        self.shown.refusal = Some(refusal);
+    }
+
+    /// A read was answered.
+    pub(crate) fn read(&mut self) {
+        self.shown.reads += 1;
+    }
+
+    /// A write ended so.
+    pub(crate) fn wrote(&mut self, written: Result<(), WriteRefusal>) {
+        match written {
+            Ok(()) => self.shown.writes += 1,
+            Err(refusal) => {
+                self.shown.refused += 1;
+                self.shown.refusal = Some(refusal);
+            }
+        }
+    }
+}
+
+impl Board {
+    /// Takes a new client, unless there are too many.
+    pub(crate) fn connect(&mut self, address: SocketAddr, now: Moment) -> Option<ClientId> {
+        if self.rows.len() >= CLIENTS_MAX {
+            self.turned_away += 1;
+            return None;
+        }
+        self.last_id += 1;
+        let id = ClientId(self.last_id);
+        self.rows.push(Row {
+            shown: GatewayClient {
+                id,
+                address,
+                since: now,
+                hz: 0,
+                reads: 0,
+                writes: 0,
+                refused: 0,
+                refusal: None,
+                lease: ClientLease::Never,
+            },
+            pace: Pace::default(),
+            heard: now,
+            granted: Arc::default(),
+        });
+        Some(id)
+    }
+
+    /// A client is gone.
+    pub(crate) fn disconnect(&mut self, id: ClientId) {
+        self.taking.take_if(|taking| *taking == id);
+        self.rows.retain(|row| row.shown.id != id);
+    }
+
+    /// Who may move the hand, and when it asked something last.
+    pub(crate) fn holder(&self) -> Option<Holder> {
+        self.rows.iter().find_map(|row| match row.shown.lease {
+            ClientLease::Held(lease) => Some(Holder {
+                client: row.shown.id,
+                lease,
+                heard: row.heard,
+            }),
+            _ => None,
+        })
+    }
+
+    /// One begins to take the right to move the hand, and is the only one who does. Gives its address.
+    pub(crate) fn begin_taking(&mut self, id: ClientId) -> Option<SocketAddr> {
+        let row = self.rows.iter().find(|row| row.shown.id == id)?;
+        if self.taking.is_some() {
+            return None;
+        }
+        self.taking = Some(id);
+        Some(row.shown.address)
+    }
+
+    /// It took it, or could not.
+    pub(crate) fn end_taking(&mut self) {
+        self.taking = None;
+    }
+
+    /// When a command of this kind may go out next: at most [`SETPOINT_HZ_MAX`] times a second.
+    pub(crate) fn turn(&mut self, command: &HandCommand, now: Instant) -> Instant {
+        let kind = std::mem::discriminant(command);
+        let before = self.turns.iter().find(|(own, _)| *own == kind);
+        let turn = before.map_or(now, |(_, before)| now.max(*before + WRITE_EACH));
+        self.turns.retain(|(own, _)| *own != kind);
+        self.turns.push((kind, turn));
+        turn
+    }
+
+    pub(crate) fn row(&mut self, id: ClientId) -> Option<&mut Row> {
+        self.rows.iter_mut().find(|row| row.shown.id == id)
+    }
+
+    /// All clients, the oldest first.
+    pub(crate) fn shown(&self, now: Moment) -> Vec<GatewayClient> {
+        let shown = |row: &Row| GatewayClient {
+            hz: row.pace.hz(now),
+            ..row.shown.clone()
+        };
+        self.rows.iter().map(shown).collect()
+    }
+}
+
+/// Counts in whole seconds.
+#[derive(Debug, Default)]
+struct Pace {
+    began: Moment,
+    now: u32,
+    before: u32,
+}
+
+impl Pace {
+    fn hit(&mut self, now: Moment) {
+        let passed = now.since(self.began);
+        if passed >= RATE_OVER {
+            self.before = match passed < 2 * RATE_OVER {
+                true => self.now,
+                false => 0,
+            };
+            self.now = 0;
+            self.began = Moment::from_micros(now.micros() / 1_000_000 * 1_000_000);
+        }
+        self.now = self.now.saturating_add(1);
+    }
+
+    fn hz(&self, now: Moment) -> u32 {
+        match now.since(self.began).as_secs() {
+            0 => self.before,
+            1 => self.now,
+            _ => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn board() -> Board {
+        Board::default()
+    }
+
+    fn address() -> SocketAddr {
+        ([127, 0, 0, 1], 4000).into()
+    }
+
+    #[test]
+    fn the_rate_is_that_of_the_last_whole_second_and_ends_with_the_requests() {
+        let (mut board, ms) = (board(), |ms: u64| Moment::from_micros(ms * 1000));
+        let id = board.connect(address(), ms(0)).unwrap();
+        for nth in 0..300 {
+            board.row(id).unwrap().asked(ms(10_000 + 10 * nth));
+        }
+        let hz = |board: &Board, at| board.shown(ms(at))[0].hz;
+        assert_eq!(hz(&board, 12_995), 100);
+        assert_eq!(hz(&board, 13_500), 100);
+        assert_eq!(hz(&board, 14_500), 0);
+    }
+
+    #[test]
+    fn clients_beyond_the_most_are_turned_away_and_counted() {
+        let mut board = board();
+        let ids: Vec<_> = (0..CLIENTS_MAX)
+            .map(|_| board.connect(address(), Moment::ZERO).unwrap())
+            .collect();
+        assert_eq!(board.connect(address(), Moment::ZERO), None);
+        assert_eq!(board.turned_away, 1);
+        board.disconnect(ids[3]);
+        let next = board.connect(address(), Moment::ZERO).unwrap();
+        assert!(!ids.contains(&next));
+    }
+
+    #[test]
+    fn the_newest_refusal_is_shown() {
+        let mut board = board();
+        let id = board.connect(address(), Moment::ZERO).unwrap();
+        let row = board.row(id).unwrap();
+        row.wrote(Err(WriteRefusal::NotGranted));
+        row.wrote(Err(WriteRefusal::Taken));
+        row.wrote(Ok(()));
+        let shown = &board.shown(Moment::ZERO)[0];
+        assert_eq!((shown.writes, shown.refused), (1, 2));
+        assert_eq!(shown.refusal, Some(WriteRefusal::Taken));
+    }
+}

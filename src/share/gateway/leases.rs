@@ -1,0 +1,246 @@
+//! Which client may move the hand, from the grant to its end, and its writes. Each end stops the hand, however it came: the
+//! hand is not left to go on to a target of a program that is gone.
+
+use crate::hand::register::{FORCE_SET, Register, SPEED_SET};
+use crate::hand::{Force, HandCommand, OutOfRange, PerDof, Speed};
+use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
+use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
+use crate::share::gateway::board::{ClientId, ClientLease, Holder, SharedBoard};
+use crate::share::gateway::refusal::WriteRefusal;
+use std::time::Duration;
+use tokio::time::{Instant, sleep_until, timeout};
+
+/// A hand acknowledges its limits long before, on any wire.
+const ARMS_WITHIN: Duration = Duration::from_secs(2);
+
+/// Which clients may move the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Writers {
+    /// Only the one to which a person grants it.
+    Granted,
+    /// The first that writes while nobody may: a person grants it to whoever comes.
+    First,
+}
+
+/// Why a client takes the right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Claim {
+    /// It wrote.
+    Wrote,
+    /// A person chose it.
+    Chosen,
+}
+
+/// The right to move the hand, among the clients of one gateway.
+#[derive(Debug, Clone)]
+pub(crate) struct ClientLeases {
+    pub(crate) link: LinkHandle,
+    pub(crate) reads: RecentReads,
+    pub(crate) board: SharedBoard,
+    writers: Writers,
+    silence: Duration,
+}
+
+impl ClientLeases {
+    pub(crate) fn new(link: LinkHandle, writers: Writers, silence: Duration) -> Self {
+        Self {
+            reads: RecentReads::of(&link),
+            link,
+            board: SharedBoard::default(),
+            writers,
+            silence,
+        }
+    }
+
+    /// Writes for a client that may, or may from now on. Done once the hand acknowledged it.
+    pub(crate) async fn write(
+        &self,
+        client: ClientId,
+        command: HandCommand,
+    ) -> Result<(), WriteRefusal> {
+        let lease = match self.lease(client) {
+            ClientLease::Held(lease) => lease,
+            // Moves nothing, and a fault has ended every lease before.
+            _ if command == HandCommand::ClearErrors && self.is_free() => {
+                return Ok(self.link.write(command).await?);
+            }
+            ClientLease::Never => self.take(client, Claim::Wrote).await?,
+            ClientLease::Ended(_) => return Err(WriteRefusal::Over),
+        };
+        let turn = self
+            .board
+            .with(|board| board.turn(&command, Instant::now()));
+        sleep_until(turn).await;
+        Ok(self.link.write_as(lease, command).await?)
+    }
+
+    /// A person grants the right to this client.
+    pub(crate) async fn granted(&self, client: ClientId) {
+        if let Err(refusal) = self.take(client, Claim::Chosen).await {
+            self.board
+                .with(|board| board.row(client).map(|row| row.not_granted(refusal)));
+        }
+    }
+
+    /// Ends what has to end: the lease of a client that is silent, or one that the link ended.
+    pub(crate) fn look_after(&self) {
+        let Some(holder) = self.board.with(|board| board.holder()) else {
+            return;
+        };
+        let is_silent = self.link.clock().now().since(holder.heard) > self.silence;
+        if is_silent || self.link.check(holder.lease).is_err() {
+            self.end(holder, Disarmed::Silent);
+        }
+    }
+
+    /// Ends a lease for this reason, unless it ended before for another. The hand is stopped, but not one that another moves
+    /// now, nor one that was stopped already.
+    fn end(&self, holder: Holder, why: Disarmed) {
+        let end = match self.link.give_back(holder.lease, why) {
+            Ok(()) => LeaseRefusal::Ended(why),
+            Err(end) => end,
+        };
+        // A link that was lost writes nothing by itself once it is back.
+        let is_over = [why, Disarmed::Stop, Disarmed::LinkLost, Disarmed::Resume]
+            .map(LeaseRefusal::Ended)
+            .contains(&end);
+        if !is_over && matches!(end, LeaseRefusal::Ended(_)) {
+            self.link.stop();
+        }
+        self.mark(holder.client, ClientLease::Ended(end));
+    }
+
+    /// A client is gone.
+    pub(crate) fn disconnect(&self, client: ClientId) {
+        self.let_go(|holder| holder == client);
+        self.board.with(|board| board.disconnect(client));
+    }
+
+    /// The gateway closes.
+    pub(crate) fn close(&self) {
+        self.let_go(|_| true);
+    }
+
+    fn let_go(&self, is_meant: impl Fn(ClientId) -> bool) {
+        let holder = self.board.with(|board| board.holder());
+        if let Some(holder) = holder.filter(|holder| is_meant(holder.client)) {
+            self.end(holder, Disarmed::Released);
+        }
+    }
+
+    fn lease(&self, client: ClientId) -> ClientLease {
+        let lease = self
+            .board
+            .with(|board| board.row(client).map(|row| *row.lease()));
+        lease.unwrap_or(ClientLease::Never)
+    }
+
+    fn mark(&self, client: ClientId, lease: ClientLease) {
+        self.board.with(|board| {
+            if let Some(row) = board.row(client) {
+                *row.lease() = lease;
+            }
+        });
+    }
+
+    /// Whether a client may take the right by writing.
+    fn is_free(&self) -> bool {
+        self.writers == Writers::First && self.link.status().holder.is_none()
+    }
+
+    async fn take(&self, client: ClientId, claim: Claim) -> Result<Lease, WriteRefusal> {
+        if claim == Claim::Wrote && self.writers != Writers::First {
+            return Err(WriteRefusal::NotGranted);
+        }
+        let begun = self.board.with(|board| board.begin_taking(client));
+        let owner = Owner::Gateway(begun.ok_or(WriteRefusal::Taken)?);
+        let taken = self.arm(client, owner, claim).await;
+        self.board.with(|board| board.end_taking());
+        taken
+    }
+
+    /// Arms the hand with the speeds and forces that it has, and grants it.
+    async fn arm(
+        &self,
+        client: ClientId,
+        owner: Owner,
+        claim: Claim,
+    ) -> Result<Lease, WriteRefusal> {
+        let refused = match self.link.status().state {
+            LinkState::Offline | LinkState::Identifying => Some(ArmRefusal::Offline),
+            LinkState::Holding => Some(ArmRefusal::Holding),
+            LinkState::Fault => Some(ArmRefusal::Fault),
+            // Armed for nobody: a stop is on its way.
+            LinkState::Armed if self.link.status().holder.is_none() => Some(ArmRefusal::Holding),
+            LinkState::Monitoring | LinkState::Armed => None,
+        };
+        if let Some(reason) = refused {
+            return Err(WriteRefusal::NotArmed(reason));
+        }
+        let request = self.limits().await?;
+        if claim == Claim::Wrote && !self.is_free() {
+            return Err(WriteRefusal::Taken);
+        }
+        // Whoever had it among the clients has it no more.
+        if let Some(before) = self.board.with(|board| board.holder()) {
+            let taken = LeaseRefusal::Taken(owner);
+            self.mark(before.client, ClientLease::Ended(taken));
+        }
+        let observer = self.link.observe();
+        let lease = self.link.grant(owner);
+        self.mark(client, ClientLease::Held(lease));
+        let asked = self.link.arm(lease, request);
+        let armed = match asked {
+            Ok(()) => timeout(ARMS_WITHIN, armed(observer)).await,
+            Err(_ended) => Ok(Err(ArmRefusal::Offline)),
+        };
+        if let Err(reason) = armed.unwrap_or(Err(ArmRefusal::NoAnswer)) {
+            // Nothing was moved, so nothing is stopped.
+            if self.link.check(lease).is_ok() {
+                self.link.disarm();
+            }
+            self.mark(client, ClientLease::Never);
+            return Err(WriteRefusal::NotArmed(reason));
+        }
+        Ok(lease)
+    }
+
+    async fn limits(&self) -> Result<ArmRequest, WriteRefusal> {
+        Ok(ArmRequest {
+            speed: self.values(&SPEED_SET, Speed::new).await?,
+            force: self.values(&FORCE_SET, Force::new).await?,
+        })
+    }
+
+    async fn values<T>(
+        &self,
+        register: &Register,
+        check: fn(i16) -> Result<T, OutOfRange>,
+    ) -> Result<PerDof<T>, WriteRefusal> {
+        let bytes = self.reads.read(register.span()).await?;
+        let (pairs, _) = bytes.as_chunks::<2>();
+        let values = pairs.iter().map(|pair| check(i16::from_le_bytes(*pair)));
+        let values: Result<Vec<T>, OutOfRange> = values.collect();
+        let values = values.map_err(|_range| WriteRefusal::Limits)?;
+        let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
+        Ok(PerDof::new(values))
+    }
+}
+
+/// Waits until the hand is armed, or the link says why not.
+async fn armed(mut observer: LinkObserver) -> Result<(), ArmRefusal> {
+    loop {
+        if observer.status.borrow_and_update().armed.is_some() {
+            return Ok(());
+        }
+        tokio::select! {
+            biased;
+            record = observer.records.next() => match record {
+                Some(Record::ArmRefused { reason, .. }) => return Err(reason),
+                Some(_) => {}
+                None => return Err(ArmRefusal::Offline),
+            },
+            changed = observer.status.changed() => changed.map_err(|_gone| ArmRefusal::Offline)?,
+        }
+    }
+}

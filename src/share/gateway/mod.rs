@@ -1,0 +1,147 @@
+//! A gateway: several Modbus TCP clients at one hand, at the addresses that the hand itself has. What they read comes from
+//! what the link reads anyway, so that many cost no more than one; one of them at a time may move the hand, if a person lets it.
+
+mod allowed;
+pub mod board;
+pub mod client;
+pub mod leases;
+pub mod refusal;
+mod service;
+
+pub use board::{CLIENTS_MAX, ClientId, ClientLease, GatewayClient};
+pub use leases::Writers;
+pub use refusal::WriteRefusal;
+
+use crate::link::LinkHandle;
+use crate::share::gateway::client::Connection;
+use crate::share::gateway::leases::ClientLeases;
+use crate::share::gateway::service::Service;
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime;
+use tokio::task::{AbortHandle, JoinSet};
+use tokio::time::{MissedTickBehavior, interval, sleep};
+
+/// A client that may move the hand and asks nothing for so long may no more, unless a person says otherwise.
+pub const SILENCE: Duration = Duration::from_secs(10);
+/// How often silence is looked for.
+const LOOK_EACH: Duration = Duration::from_millis(100);
+/// After the system refused a connection, for want of something, the next is looked for.
+const ACCEPT_AGAIN: Duration = Duration::from_millis(100);
+
+/// How a gateway is opened.
+#[derive(Debug, Clone, Copy)]
+pub struct GatewayConfig {
+    /// Where it listens. Port 0 means any free one.
+    pub address: SocketAddr,
+    /// Which clients may move the hand.
+    pub writers: Writers,
+    /// A client that may move the hand and asks nothing for so long may no more.
+    pub silence: Duration,
+}
+
+/// An open gateway. Dropping it closes its listener and all its connections, and stops the hand if a client may move it.
+#[derive(Debug)]
+pub struct Gateway {
+    address: SocketAddr,
+    leases: ClientLeases,
+    task: AbortHandle,
+}
+
+impl Gateway {
+    /// Listens for as long as it is kept.
+    ///
+    /// # Errors
+    /// The system's, if the address cannot be listened at.
+    pub fn open(
+        link: LinkHandle,
+        config: GatewayConfig,
+        runtime: &runtime::Handle,
+    ) -> io::Result<Self> {
+        let listener = std::net::TcpListener::bind(config.address)?;
+        listener.set_nonblocking(true)?;
+        let address = listener.local_addr()?;
+        let _inside = runtime.enter();
+        let listener = TcpListener::from_std(listener)?;
+        let leases = ClientLeases::new(link, config.writers, config.silence);
+        let task = runtime.spawn(serve(listener, leases.clone()));
+        Ok(Self {
+            address,
+            leases,
+            task: task.abort_handle(),
+        })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Who is connected, the oldest first.
+    #[must_use]
+    pub fn clients(&self) -> Vec<GatewayClient> {
+        let now = self.leases.link.clock().now();
+        self.leases.board.with(|board| board.shown(now))
+    }
+
+    /// Connections that were refused because there were [`CLIENTS_MAX`].
+    #[must_use]
+    pub fn turned_away(&self) -> u64 {
+        self.leases.board.with(|board| board.turned_away)
+    }
+
+    /// Lets this client move the hand: whoever may now may no more, and the hand is armed with the speeds and forces that it
+    /// has. A person must have asked for it. What came of it is the client's [`GatewayClient::lease`], or its refusal.
+    pub fn grant(&self, client: ClientId) {
+        let tell = |row: &mut board::Row| row.granted.notify_one();
+        self.leases.board.with(|board| board.row(client).map(tell));
+    }
+}
+
+impl Drop for Gateway {
+    fn drop(&mut self) {
+        self.leases.close();
+        self.task.abort();
+    }
+}
+
+async fn serve(listener: TcpListener, leases: ClientLeases) {
+    let mut clients = JoinSet::new();
+    let mut status = leases.link.observe().status;
+    let mut tick = interval(LOOK_EACH);
+    tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        tokio::select! {
+            biased;
+            changed = status.changed() => match changed {
+                Ok(()) => leases.look_after(),
+                Err(_gone) => return,
+            },
+            _ = tick.tick() => leases.look_after(),
+            Some(_ended) = clients.join_next() => {}
+            accepted = listener.accept() => match accepted {
+                Ok((stream, address)) => begin(&mut clients, &leases, stream, address),
+                Err(_refused) => sleep(ACCEPT_AGAIN).await,
+            },
+        }
+    }
+}
+
+/// Serves a new client, or turns it away.
+fn begin(clients: &mut JoinSet<()>, leases: &ClientLeases, stream: TcpStream, address: SocketAddr) {
+    let now = leases.link.clock().now();
+    let Some(id) = leases.board.with(|board| board.connect(address, now)) else {
+        return;
+    };
+    let service = Service {
+        leases: leases.clone(),
+    };
+    let connection = Connection::new(service, id);
+    // Without it answers would wait for the client's acknowledgement.
+    if stream.set_nodelay(true).is_ok() {
+        clients.spawn(connection.serve(stream));
+    }
+}

@@ -1,0 +1,109 @@
+//! Why a gateway does not do what a client asks, in words for a person and as a Modbus exception.
+
+use crate::codec::pdu::ModbusException;
+use crate::link::RequestError;
+use crate::record::ArmRefusal;
+use tokio_modbus::ExceptionCode;
+
+/// Why a write of a client was not done.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum WriteRefusal {
+    /// Nobody granted a client the right to move this hand.
+    #[error("no client may move the hand: a person has to grant it")]
+    NotGranted,
+    /// Another has the right.
+    #[error("another may move the hand now")]
+    Taken,
+    /// This connection had the right once.
+    #[error("this client could move the hand, and that ended: it has to connect again")]
+    Over,
+    /// The hand could not be armed.
+    #[error("the hand could not be armed: {0}")]
+    NotArmed(ArmRefusal),
+    /// The hand holds a speed or a force that cannot be set, so it cannot be armed with what it has.
+    #[error("the speeds and forces that the hand has now make no sense")]
+    Limits,
+    /// Not a register that clients may write.
+    #[error("clients may not write {words} words at address {address}")]
+    Address {
+        /// First byte.
+        address: u16,
+        /// Words.
+        words: usize,
+    },
+    /// Outside the manual's range.
+    #[error("a value for address {address} is outside the manual's range")]
+    Value {
+        /// First byte.
+        address: u16,
+    },
+    /// The link or the hand did not take it.
+    #[error(transparent)]
+    Request(#[from] RequestError),
+}
+
+impl WriteRefusal {
+    /// What the client is told.
+    pub(crate) fn exception(&self) -> ModbusException {
+        match self {
+            Self::NotGranted | Self::Taken | Self::Over | Self::NotArmed(_) | Self::Limits => {
+                ModbusException::Busy
+            }
+            Self::Address { .. } => ModbusException::IllegalAddress,
+            Self::Value { .. } => ModbusException::IllegalValue,
+            Self::Request(error) => exception(error),
+        }
+    }
+}
+
+/// What a client is told of a failed request.
+pub(crate) fn exception(error: &RequestError) -> ModbusException {
+    match error {
+        RequestError::NotConnected => ModbusException::NoPath,
+        RequestError::LinkLost | RequestError::Timeout { .. } | RequestError::Ambiguous { .. } => {
+            ModbusException::NoAnswer
+        }
+        RequestError::Refused { reason, .. } => refused(reason),
+        RequestError::NotArmed | RequestError::NotOwner(_) | RequestError::Full { .. } => {
+            ModbusException::Busy
+        }
+        RequestError::TooLong { .. } | RequestError::OutOfRange(_) => ModbusException::IllegalValue,
+        RequestError::WrongLength { .. } => ModbusException::Failure,
+    }
+}
+
+/// The hand's own refusal, where it came as an exception.
+fn refused(reason: &str) -> ModbusException {
+    use ModbusException::{Busy, Failure, IllegalAddress, IllegalFunction, IllegalValue};
+    let all = [IllegalFunction, IllegalAddress, IllegalValue, Failure, Busy];
+    let mut all = all.into_iter();
+    let is_it = |own: &ModbusException| ExceptionCode::new(*own as u8).to_string() == reason;
+    all.find(is_it).unwrap_or(Failure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hands_own_exception_reaches_the_client() {
+        for (code, told) in [
+            (
+                ExceptionCode::IllegalDataAddress,
+                ModbusException::IllegalAddress,
+            ),
+            (
+                ExceptionCode::IllegalDataValue,
+                ModbusException::IllegalValue,
+            ),
+            (ExceptionCode::ServerDeviceBusy, ModbusException::Busy),
+            (ExceptionCode::MemoryParityError, ModbusException::Failure),
+        ] {
+            let error = RequestError::Refused {
+                address: 1000,
+                reason: code.to_string(),
+            };
+            assert_eq!(exception(&error), told);
+        }
+    }
+}

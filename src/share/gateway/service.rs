@@ -1,0 +1,107 @@
+//! What a gateway answers to one request of a client: from what the link read last, or what the hand acknowledged.
+
+use crate::codec::mbap::Adu;
+use crate::codec::modbus::READ_WORDS_MAX;
+use crate::codec::pdu::{self, ModbusException, ModbusRole, Pdu};
+use crate::hand::Span;
+use crate::share::gateway::allowed;
+use crate::share::gateway::board::{ClientId, Row};
+use crate::share::gateway::leases::ClientLeases;
+use crate::share::gateway::refusal::{WriteRefusal, exception};
+
+/// Addresses of the hand: twelve bits, as CAN ids have room for. Beyond them a hand on RS485 would only be silent.
+const MEMORY_LEN: u32 = 4096;
+/// Most words of one write (manual 2.5, function 16).
+const WRITE_WORDS_MAX: usize = 123;
+
+/// Serves all clients of one gateway.
+#[derive(Debug, Clone)]
+pub(crate) struct Service {
+    pub(crate) leases: ClientLeases,
+}
+
+impl Service {
+    /// The whole message that answers a request. Whatever unit is asked answers: there is one hand.
+    pub(crate) async fn answer(&self, client: ClientId, asked: &Adu) -> Vec<u8> {
+        let now = self.leases.link.clock().now();
+        self.note(client, |row| row.asked(now));
+        let function = asked.function();
+        let said = match self.obey(client, asked.pdu()).await {
+            Ok(said) => [&[function], said.as_slice()].concat(),
+            Err(exception) => exception.reply(function).to_vec(),
+        };
+        asked.reply(asked.unit, &said)
+    }
+
+    /// The answer without its function code.
+    async fn obey(&self, client: ClientId, request: &[u8]) -> Result<Vec<u8>, ModbusException> {
+        match pdu::parse(ModbusRole::Client, request) {
+            Pdu::Read { address, count } => {
+                let words = self.read(address, count).await?;
+                self.note(client, Row::read);
+                Ok(words)
+            }
+            Pdu::WriteOne { address, value } => {
+                self.write_words(client, address, &[value]).await?;
+                Ok([address, value].map(u16::to_be_bytes).concat())
+            }
+            Pdu::Write {
+                address,
+                count,
+                words,
+            } => {
+                let (pairs, odd) = words.as_chunks::<2>();
+                let is_whole = odd.is_empty() && pairs.len() == usize::from(count);
+                if !is_whole || !(1..=WRITE_WORDS_MAX).contains(&pairs.len()) {
+                    return Err(ModbusException::IllegalValue);
+                }
+                let words: Vec<u16> = pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
+                self.write_words(client, address, &words).await?;
+                Ok([address, count].map(u16::to_be_bytes).concat())
+            }
+            // A known function of a wrong length.
+            _ if matches!(request, [3 | 6 | 16, ..]) => Err(ModbusException::IllegalValue),
+            _ => Err(ModbusException::IllegalFunction),
+        }
+    }
+
+    async fn read(&self, address: u16, count: u16) -> Result<Vec<u8>, ModbusException> {
+        if !(1..=READ_WORDS_MAX).contains(&count) {
+            return Err(ModbusException::IllegalValue);
+        }
+        let span = Span::new(address, 2 * count);
+        if span.end() > MEMORY_LEN {
+            return Err(ModbusException::IllegalAddress);
+        }
+        let bytes = self.leases.reads.read(span).await;
+        let bytes = bytes.map_err(|error| exception(&error))?;
+        // Manual: 2.5 does not say how bytes become words; a word is byte[A] + 256 * byte[A + 1], high byte first.
+        let (pairs, _) = bytes.as_chunks::<2>();
+        let words = pairs.iter().flat_map(|[low, high]| [*high, *low]);
+        let len = u8::try_from(bytes.len()).unwrap_or(u8::MAX);
+        Ok([len].into_iter().chain(words).collect())
+    }
+
+    async fn write_words(
+        &self,
+        client: ClientId,
+        address: u16,
+        words: &[u16],
+    ) -> Result<(), ModbusException> {
+        let written = match allowed::command(address, words) {
+            Ok(command) => self.leases.write(client, command).await,
+            Err(ModbusException::IllegalValue) => Err(WriteRefusal::Value { address }),
+            Err(_) => Err(WriteRefusal::Address {
+                address,
+                words: words.len(),
+            }),
+        };
+        let told = written.as_ref().map_err(WriteRefusal::exception).copied();
+        self.note(client, |row| row.wrote(written));
+        told
+    }
+
+    fn note(&self, client: ClientId, what: impl FnOnce(&mut Row)) {
+        self.leases.board.with(|board| board.row(client).map(what));
+    }
+}

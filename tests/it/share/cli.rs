@@ -1,0 +1,213 @@
+//! `handscope share` as a process of its own, at hands behind other wires, with clients that speak bytes.
+
+use crate::setup::process::{Running, listen, run, sim_on_link, sim_on_tcp, start};
+use crate::setup::skipped::skipped;
+use nix::sys::signal::Signal;
+use std::io::{Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// The index finger's place in ANGLE_SET.
+const INDEX: u16 = 1492;
+const BUSY: u8 = 6;
+
+/// A shared hand, and where.
+fn share(args: &[&str]) -> (Running, String) {
+    let mut share = start(&[&["share", "--tcp", "127.0.0.1:0"], args].concat());
+    let ready = share.line();
+    let address = ready.strip_prefix("ready tcp ").expect(&ready).to_owned();
+    (share, address)
+}
+
+/// What is said to a request, without its envelope.
+fn ask(client: &mut TcpStream, pdu: &[u8]) -> Vec<u8> {
+    let len = u8::try_from(pdu.len() + 1).unwrap();
+    let head = [0, 9, 0, 0, 0, len, 1];
+    client.write_all(&[&head, pdu].concat()).unwrap();
+    let mut head = [0; 7];
+    client.read_exact(&mut head).unwrap();
+    assert_eq!((&head[..4], head[6]), (&[0, 9, 0, 0][..], 1));
+    let mut said = vec![0; usize::from(head[5]) - 1];
+    client.read_exact(&mut said).unwrap();
+    said
+}
+
+fn read(client: &mut TcpStream, address: u16) -> u16 {
+    let [high, low] = address.to_be_bytes();
+    match ask(client, &[3, high, low, 0, 1])[..] {
+        [3, 2, high, low] => u16::from_be_bytes([high, low]),
+        ref other => panic!("{other:?}"),
+    }
+}
+
+/// Function 06: the exception, if there is one.
+fn write(client: &mut TcpStream, address: u16, value: u16) -> Option<u8> {
+    let [[a, b], [c, d]] = [address, value].map(u16::to_be_bytes);
+    let asked = [6, a, b, c, d];
+    match ask(client, &asked)[..] {
+        [0x86, exception] => Some(exception),
+        ref echo => {
+            assert_eq!(echo, asked);
+            None
+        }
+    }
+}
+
+#[test]
+fn without_writers_several_clients_read_and_nobody_writes() {
+    let (share, address) = share(&["--hand", "sim:"]);
+    let mut clients: Vec<TcpStream> = (0..3)
+        .map(|_| TcpStream::connect(&address).unwrap())
+        .collect();
+    for client in &mut clients {
+        assert_eq!(read(client, 1000), 1);
+        assert_eq!(read(client, 1546), 1000);
+        assert_eq!(write(client, INDEX, 0), Some(BUSY));
+        assert_eq!(write(client, 1005, 1), Some(2));
+        assert_eq!(read(client, INDEX), 1000);
+    }
+    share.signal(Signal::SIGINT);
+    let ended = share.end().ok();
+    assert_eq!(ended.err, "", "nothing moved");
+}
+
+#[test]
+fn the_first_writer_moves_the_hand_and_ctrl_c_stops_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("hand");
+    let (sim, hand) = sim_on_link(&link, &[]);
+    let (mut share, address) = share(&["--hand", &hand, "--writers"]);
+    let mut client = TcpStream::connect(&address).unwrap();
+    let mut other = TcpStream::connect(&address).unwrap();
+    assert_eq!(write(&mut client, INDEX, 0), None);
+    assert_eq!(write(&mut other, INDEX, 900), Some(BUSY));
+    assert_eq!(read(&mut other, INDEX), 0);
+    let told = share.complaint();
+    let mover = client.local_addr().unwrap();
+    assert!(
+        told.contains(&format!("{mover} may move the hand")),
+        "{told}"
+    );
+    // A drive needs its dead time before it moves.
+    while read(&mut other, 1552) > 950 {}
+    share.signal(Signal::SIGINT);
+    share.end().ok();
+    let ours = run(&["read", "ANGLE_SET", "ANGLE_ACT", "--json", "--hand", &hand]);
+    let ours = ours.ok().lines().remove(0);
+    let held = ours["ANGLE_SET"][3].as_i64().unwrap();
+    assert!((1..990).contains(&held), "{ours}");
+    drop(sim);
+}
+
+#[test]
+fn the_end_of_a_client_is_told_and_the_next_may() {
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let (mut share, address) = share(&["--hand", &hand, "--writers", "--silence", "1"]);
+    let mut client = TcpStream::connect(&address).unwrap();
+    assert_eq!(write(&mut client, INDEX, 500), None);
+    assert!(share.complaint().contains("may move the hand"));
+    let told = share.complaint();
+    assert!(told.contains("asked nothing for too long"), "{told}");
+    assert_eq!(write(&mut client, INDEX, 500), Some(BUSY));
+    let mut next = TcpStream::connect(&address).unwrap();
+    while write(&mut next, INDEX, 500) == Some(BUSY) {
+        sleep(Duration::from_millis(20));
+    }
+    assert!(share.complaint().contains("may move the hand"));
+    drop(next);
+    assert!(share.complaint().contains("is gone: the hand is stopped"));
+}
+
+#[test]
+fn a_hand_that_goes_away_is_told_once_and_is_answered_for_as_gone() {
+    let (sim, hand) = sim_on_tcp(&[]);
+    let (mut share, address) = share(&["--hand", &hand]);
+    let mut client = TcpStream::connect(&address).unwrap();
+    assert_eq!(read(&mut client, 1546), 1000);
+    sim.kill();
+    assert!(share.complaint().contains("lost"));
+    assert_eq!(ask(&mut client, &[3, 6, 10, 0, 1]), [0x83, 0x0A]);
+    let mut sim = start(&["sim", "--tcp", hand.strip_prefix("tcp:").unwrap()]);
+    sim.line();
+    while !share.complaint().contains("answers again") {}
+    assert_eq!(read(&mut client, 1546), 1000);
+}
+
+#[test]
+fn what_cannot_be_shared_is_told_in_one_sentence() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let taken = listener.local_addr().unwrap().to_string();
+    for (args, code, words) in [
+        (&["--hand", "sim:"][..], 2, "--tcp"),
+        (&["--tcp", "127.0.0.1:0"], 2, "--hand"),
+        (
+            &["--hand", "sim:", "--tcp", "localhost:6001"],
+            2,
+            "127.0.0.1:6000",
+        ),
+        (
+            &["--hand", "sim:", "--tcp", "127.0.0.1:0", "--silence", "5"],
+            2,
+            "--writers",
+        ),
+        (
+            &["--hand", "rs485:/nowhere/hand", "--tcp", "127.0.0.1:0"],
+            1,
+            "is not there",
+        ),
+    ] {
+        let ended = run(&[&["share"], args].concat());
+        assert_eq!(ended.code, Some(code), "{args:?}: {}", ended.err);
+        assert!(ended.err.contains(words), "{args:?}: {}", ended.err);
+        assert_eq!(ended.out, "", "{args:?}");
+    }
+    let ended = run(&["share", "--hand", "sim:", "--tcp", &taken]);
+    assert_eq!(ended.code, Some(1));
+    assert!(
+        ended.err.contains("Address already in use"),
+        "{}",
+        ended.err
+    );
+    assert_eq!(ended.err.lines().count(), 1);
+}
+
+/// Reads, is refused what is not for clients, moves the index finger, and reads back what it was told.
+const CLIENT: &str = r#"
+import sys
+from pymodbus.client import ModbusTcpClient
+host, port = sys.argv[1].rsplit(":", 1)
+client = ModbusTcpClient(host, port=int(port), timeout=5)
+assert client.connect()
+def whole(reply):
+    assert not reply.isError(), reply
+    return reply
+print(whole(client.read_holding_registers(1546, count=6, device_id=255)).registers)
+print(len(whole(client.read_holding_registers(1534, count=45, device_id=1)).registers))
+print(client.write_register(1005, 1, device_id=255).exception_code)
+print(client.write_register(1486, 1001, device_id=255).exception_code)
+whole(client.write_registers(1486, [0xFFFF, 0xFFFF, 0xFFFF, 500, 0xFFFF, 0xFFFF], device_id=255))
+print(whole(client.read_holding_registers(1492, count=1, device_id=255)).registers)
+print(client.read_holding_registers(9000, count=2, device_id=255).exception_code)
+client.close()
+"#;
+
+#[test]
+fn pymodbus_reads_and_moves_a_shared_hand() {
+    let asked = Command::new("python3")
+        .args(["-c", "from pymodbus.client import ModbusTcpClient"])
+        .stderr(Stdio::null())
+        .status();
+    if !asked.is_ok_and(|status| status.success()) {
+        return skipped("pymodbus", "python3 has no pymodbus");
+    }
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let (_share, address) = share(&["--hand", &hand, "--writers"]);
+    let mut command = Command::new("python3");
+    command.args(["-c", CLIENT, &address]).stdin(Stdio::null());
+    let out = listen(command).end().ok().out;
+    let lines: Vec<&str> = out.lines().collect();
+    let angles = "[1000, 1000, 1000, 1000, 1000, 1000]";
+    assert_eq!(lines, [angles, "45", "2", "3", "[500]", "2"]);
+}

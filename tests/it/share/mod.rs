@@ -1,0 +1,8 @@
+//! One hand for several programs, as those programs meet it.
+
+#[cfg(unix)]
+mod cli;
+mod clients;
+mod place;
+mod reads;
+mod writes;

@@ -1,0 +1,328 @@
+//! What clients of a gateway may write, which of them may, and how that ends: always with a stop.
+
+use crate::share::place::{Place, config, share_as, until};
+use handscope::hand::{Dof, Fault};
+use handscope::link::{LeaseRefusal, Owner, PollRates};
+use handscope::record::{Disarmed, Hold, LinkState};
+use handscope::share::gateway::{ClientLease, GatewayClient, GatewayConfig, WriteRefusal, Writers};
+use std::time::Duration;
+use tokio::time::sleep;
+use tokio_modbus::ExceptionCode;
+use tokio_modbus::client::{Context, Reader as _, Writer as _};
+
+const BUSY: Result<(), ExceptionCode> = Err(ExceptionCode::ServerDeviceBusy);
+/// The index finger's angle, and where it begins and is sent.
+const INDEX: u16 = 1486 + 6;
+const ARMING: [u16; 2] = [1522, 1498];
+/// A drive has its dead time behind it, and far to go.
+const MOVES_AFTER: Duration = Duration::from_millis(150);
+
+async fn first_may() -> Place {
+    silent_after(Duration::from_secs(60)).await
+}
+
+async fn silent_after(silence: Duration) -> Place {
+    let first = GatewayConfig {
+        writers: Writers::First,
+        silence,
+        ..config()
+    };
+    let place = share_as(first, PollRates::default(), Duration::ZERO).await;
+    // Until the link has read what it arms with.
+    until(|| place.link.stats().state_reads > 20).await;
+    place
+}
+
+async fn put(client: &mut Context, address: u16, words: &[u16]) -> Result<(), ExceptionCode> {
+    match words {
+        [value] => client.write_single_register(address, *value).await,
+        words => client.write_multiple_registers(address, words).await,
+    }
+    .unwrap()
+}
+
+async fn read(client: &mut Context, address: u16, count: u16) -> Vec<u16> {
+    let read = client.read_holding_registers(address, count).await;
+    read.unwrap().unwrap()
+}
+
+fn newest(place: &Place) -> GatewayClient {
+    place.gateway.clients().pop().unwrap()
+}
+
+/// The targets that reached the hand for the index finger.
+fn targets(place: &Place) -> Vec<i16> {
+    place.hand.with(|hand, _| {
+        let all = hand.journal().iter();
+        let angles = all.filter(|write| write.address == 1486);
+        let index = angles.map(|write| i16::from_le_bytes([write.bytes[6], write.bytes[7]]));
+        index.collect()
+    })
+}
+
+/// A client that moves the index finger.
+async fn mover(place: &Place) -> Context {
+    let mut client = place.client().await;
+    assert_eq!(put(&mut client, INDEX, &[0]).await, Ok(()));
+    assert_eq!(targets(place), [0]);
+    let owner = Owner::Gateway(newest(place).address);
+    assert_eq!(place.link.status().holder.unwrap().owner, owner);
+    client
+}
+
+/// The hand was stopped on its way, and nobody may move it.
+async fn is_stopped(place: &Place) {
+    until(|| matches!(place.link.status().hold, Hold::Confirmed { .. })).await;
+    let status = place.link.status();
+    assert_eq!((status.armed, status.holder), (None, None));
+    let last = *targets(place).last().unwrap();
+    assert!((1..1000).contains(&last), "held where it was: {last}");
+}
+
+#[tokio::test]
+async fn nobody_moves_the_hand_unless_a_person_grants_it() {
+    let place = share_as(config(), PollRates::default(), Duration::ZERO).await;
+    let mut client = place.client().await;
+    for (address, words) in [
+        (INDEX, &[0][..]),
+        (1486, &[0; 6]),
+        (1498, &[500; 6]),
+        (1522, &[500]),
+        (1004, &[1]),
+        (1008, &[8]),
+    ] {
+        assert_eq!(put(&mut client, address, words).await, BUSY, "{address}");
+    }
+    let shown = newest(&place);
+    assert_eq!((shown.writes, shown.refused), (0, 6));
+    assert_eq!(shown.refusal, Some(WriteRefusal::NotGranted));
+    assert_eq!(place.wires.writes(), Vec::<u16>::new());
+    assert_eq!(place.link.status().state, LinkState::Monitoring);
+}
+
+#[tokio::test]
+async fn two_clients_at_once_one_moves_the_hand_and_the_other_looks_on() {
+    let place = first_may().await;
+    let (mut mover, mut other) = (place.client().await, place.client().await);
+    assert_eq!(put(&mut mover, INDEX, &[300]).await, Ok(()));
+    assert_eq!(place.wires.writes(), [1522, 1498, 1486]);
+    assert_eq!(put(&mut other, INDEX, &[700]).await, BUSY);
+    assert_eq!(put(&mut other, 1522, &[700]).await, BUSY);
+    // What the hand holds is seen by both from then on.
+    for client in [&mut mover, &mut other] {
+        assert_eq!(read(client, INDEX, 1).await, [300]);
+    }
+    let speeds = [100, 200, 300, 400, 500, 600];
+    assert_eq!(put(&mut mover, 1522, &speeds).await, Ok(()));
+    assert_eq!(read(&mut other, 1522, 6).await, speeds);
+    let all = [0xFFFF, 0xFFFF, 0xFFFF, 400, 0xFFFF, 0xFFFF];
+    assert_eq!(put(&mut mover, 1486, &all).await, Ok(()));
+    assert_eq!(targets(&place), [300, 400]);
+    loop {
+        let angle = read(&mut other, 1546 + 6, 1).await[0];
+        if angle < 450 {
+            break;
+        }
+        sleep(Duration::from_millis(5)).await;
+    }
+    let shown = place.gateway.clients();
+    assert!(matches!(shown[0].lease, ClientLease::Held(_)));
+    assert_eq!((shown[0].writes, shown[0].refused), (3, 0));
+    assert_eq!((shown[1].writes, shown[1].refused), (0, 2));
+    assert_eq!(shown[1].refusal, Some(WriteRefusal::Taken));
+}
+
+#[tokio::test]
+async fn what_clients_may_not_write_never_reaches_the_wire() {
+    let place = first_may().await;
+    let mut client = mover(&place).await;
+    let before = place.wires.writes();
+    for address in [1000, 1002, 1005, 1006, 1009, 1020, 1032, 1044, 1066, 1474] {
+        let told = put(&mut client, address, &[1]).await;
+        assert_eq!(told, Err(ExceptionCode::IllegalDataAddress), "{address}");
+    }
+    for (address, words) in [
+        (1004, &[1, 1][..]),
+        (1486, &[500; 7]),
+        (1487, &[500; 2]),
+        (1546, &[500; 6]),
+        (1700, &[0xA8C0, 0xD20B]),
+        (2320, &[1]),
+        (2322, &[1]),
+        (3000, &[1]),
+        (65535, &[1]),
+    ] {
+        let told = put(&mut client, address, words).await;
+        assert_eq!(told, Err(ExceptionCode::IllegalDataAddress), "{address}");
+    }
+    for (address, value) in [
+        (INDEX, 1001),
+        (INDEX, 0xFFFE),
+        (1498, 3001),
+        (1522, 0xFFFF),
+        (1004, 2),
+        (1008, 41),
+    ] {
+        let told = put(&mut client, address, &[value]).await;
+        assert_eq!(told, Err(ExceptionCode::IllegalDataValue), "{address}");
+    }
+    assert_eq!(place.wires.writes(), before);
+    let shown = newest(&place);
+    assert_eq!((shown.writes, shown.refused), (1, 25));
+    let value = WriteRefusal::Value { address: 1008 };
+    assert_eq!(shown.refusal, Some(value));
+    assert!(matches!(shown.lease, ClientLease::Held(_)), "it keeps it");
+}
+
+#[tokio::test]
+async fn a_client_that_goes_leaves_a_stopped_hand_and_the_right_to_the_next() {
+    let place = first_may().await;
+    let client = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    drop(client);
+    is_stopped(&place).await;
+    let mut next = place.client().await;
+    let stopped = targets(&place).len();
+    assert_eq!(put(&mut next, INDEX, &[900]).await, Ok(()));
+    assert_eq!(targets(&place)[stopped..], [900]);
+}
+
+#[tokio::test]
+async fn a_silent_client_may_no_more_until_it_connects_again() {
+    let place = silent_after(Duration::from_millis(400)).await;
+    let mut client = mover(&place).await;
+    for _ in 0..8 {
+        // Whoever reads is not silent.
+        sleep(Duration::from_millis(100)).await;
+        read(&mut client, 1546, 6).await;
+    }
+    assert!(matches!(newest(&place).lease, ClientLease::Held(_)));
+    assert_eq!(put(&mut client, INDEX, &[1000]).await, Ok(()));
+    sleep(Duration::from_millis(100)).await;
+    until(|| newest(&place).lease == ClientLease::Ended(LeaseRefusal::Ended(Disarmed::Silent)))
+        .await;
+    until(|| matches!(place.link.status().hold, Hold::Confirmed { .. })).await;
+    assert_eq!(put(&mut client, INDEX, &[0]).await, BUSY);
+    assert_eq!(newest(&place).refusal, Some(WriteRefusal::Over));
+    drop(client);
+    drop(mover_again(&place).await);
+}
+
+/// A client that moves a hand that was moved before.
+async fn mover_again(place: &Place) -> Context {
+    let mut client = place.client().await;
+    assert_eq!(put(&mut client, INDEX, &[500]).await, Ok(()));
+    client
+}
+
+#[tokio::test]
+async fn a_fault_ends_the_right_and_stops_the_hand() {
+    let place = first_may().await;
+    let mut client = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    place
+        .hand
+        .with(|hand, _| hand.inject_fault(Dof::Ring, Fault::OverCurrent));
+    until(|| newest(&place).lease == ClientLease::Ended(LeaseRefusal::Ended(Disarmed::Fault)))
+        .await;
+    is_stopped(&place).await;
+    let moved = targets(&place).len();
+    assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY);
+    assert_eq!(newest(&place).refusal, Some(WriteRefusal::Over));
+    // To clear the fault moves nothing; to move the hand it has to connect again.
+    assert_eq!(put(&mut client, 1004, &[1]).await, Ok(()));
+    until(|| place.link.status().state == LinkState::Monitoring).await;
+    assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY);
+    assert!(!targets(&place)[moved..].contains(&900));
+}
+
+#[tokio::test]
+async fn a_lost_link_ends_the_right_and_nothing_goes_on_when_it_is_back() {
+    let place = first_may().await;
+    let mut client = mover(&place).await;
+    place.wires.cut();
+    until(|| !place.link.status().state.is_live()).await;
+    let told = put(&mut client, INDEX, &[900]).await;
+    assert!(told.is_err(), "{told:?}");
+    place.wires.mend();
+    until(|| place.link.status().state.is_live()).await;
+    let ended = ClientLease::Ended(LeaseRefusal::Ended(Disarmed::LinkLost));
+    until(|| newest(&place).lease == ended).await;
+    assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY);
+    until(|| place.link.stats().state_reads > 60).await;
+    assert_eq!(place.link.status().armed, None);
+    assert!(!targets(&place).contains(&900));
+}
+
+#[tokio::test]
+async fn a_stop_by_a_person_ends_the_right() {
+    let place = first_may().await;
+    let mut client = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    place.link.stop();
+    is_stopped(&place).await;
+    assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY);
+    assert_eq!(newest(&place).refusal, Some(WriteRefusal::Over));
+}
+
+#[tokio::test]
+async fn a_gateway_that_closes_stops_what_a_client_moves() {
+    let place = first_may().await;
+    let _client = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    let Place { gateway, link, .. } = &place;
+    assert_eq!(gateway.clients().len(), 1);
+    assert!(link.status().armed.is_some());
+    let place = place.close();
+    until(|| matches!(place.link.status().hold, Hold::Confirmed { .. })).await;
+    assert_eq!(place.link.status().holder, None);
+}
+
+#[tokio::test]
+async fn a_person_grants_it_to_the_client_of_choice_who_then_has_it_alone() {
+    let place = share_as(config(), PollRates::default(), Duration::ZERO).await;
+    until(|| place.link.stats().state_reads > 20).await;
+    let (mut one, mut two) = (place.client().await, place.client().await);
+    let ids = || -> Vec<_> {
+        let clients = place.gateway.clients();
+        clients.iter().map(|client| client.id).collect()
+    };
+    until(|| ids().len() == 2).await;
+    let may = |nth: usize| matches!(place.gateway.clients()[nth].lease, ClientLease::Held(_));
+    place.gateway.grant(ids()[1]);
+    until(|| may(1) && place.link.status().armed.is_some()).await;
+    assert_eq!(place.wires.writes(), ARMING, "nothing moves by a grant");
+    assert_eq!(put(&mut one, INDEX, &[900]).await, BUSY);
+    assert_eq!(put(&mut two, INDEX, &[800]).await, Ok(()));
+    place.gateway.grant(ids()[0]);
+    until(|| may(0)).await;
+    assert_eq!(put(&mut two, INDEX, &[700]).await, BUSY);
+    assert_eq!(put(&mut one, INDEX, &[600]).await, Ok(()));
+    assert_eq!(targets(&place), [800, 600]);
+}
+
+#[tokio::test]
+async fn clients_that_write_in_a_storm_get_one_lease_and_only_targets_reach_the_hand() {
+    let place = first_may().await;
+    let mut clients = tokio::task::JoinSet::new();
+    for seed in 0..6 {
+        let mut client = place.client().await;
+        clients.spawn(async move {
+            let mut rng = fastrand::Rng::with_seed(seed);
+            let mut done = 0;
+            for _ in 0..40 {
+                let address = [1486, 1488, 1498, 1522, 1005, 1000, 1700, rng.u16(..)];
+                let address = address[rng.usize(..address.len())];
+                let words: Vec<u16> = (0..rng.usize(1..4)).map(|_| rng.u16(..1200)).collect();
+                done += usize::from(put(&mut client, address, &words).await.is_ok());
+            }
+            (done > 0, client)
+        });
+    }
+    let ends = clients.join_all().await;
+    assert_eq!(ends.iter().filter(|(wrote, _)| *wrote).count(), 1);
+    let known = [1486, 1498, 1522];
+    let inside = |address: &u16| known.iter().any(|at| (*at..at + 12).contains(address));
+    let writes = place.wires.writes();
+    assert!(writes.len() > 5 && writes.iter().all(inside), "{writes:?}");
+}
