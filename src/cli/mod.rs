@@ -3,6 +3,7 @@
 mod args;
 mod doctor;
 mod help;
+mod inputs;
 mod interrupt;
 mod out;
 mod params;
@@ -65,6 +66,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
+        Command::Inputs(args) => wait_for(inputs::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),

@@ -17,6 +17,7 @@ mod layers;
 mod link;
 mod looks;
 mod manual;
+mod pad;
 mod place_changes;
 mod program;
 mod record;
