@@ -16,7 +16,7 @@
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
-//! | 3 | [`inputs`] | motion from elsewhere: gamepad, streams; what they ask for, checked, and how a hand follows it |
+//! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams; what they ask for, checked, and how a hand follows it |
 //! | 4 | [`share`] | one hand for several programs: gateway |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, exhibit |

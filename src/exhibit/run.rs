@@ -122,10 +122,12 @@ pub enum ExhibitWish {
 /// What is to be done at the hand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExhibitOrder {
+    /// A person gave the exhibition the right to move the hand.
+    Grant,
     /// Let setpoints pass, with these limits.
     Arm(ArmRequest),
     /// Let none pass any more; the hand is open and rests.
-    Disarm,
+    Rest,
     /// Stop the hand, which disarms it.
     Stop,
     /// Play this, in place of what is played.
@@ -160,6 +162,8 @@ pub struct ExhibitInput<'a> {
     pub status: &'a LinkStatus,
     /// What was read.
     pub sample: &'a HandSample,
+    /// Why the right to move the hand that was granted last ended, if it did.
+    pub ended: Option<Disarmed>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -200,6 +204,8 @@ pub struct ExhibitRun {
     asked: Option<Moment>,
     /// The link's arming that was asked for here.
     epoch: Option<ArmEpoch>,
+    /// A person permitted it just now.
+    grants: bool,
     /// The hand is to be stopped.
     stops: bool,
     /// Faults are to be cleared.
@@ -239,6 +245,7 @@ impl ExhibitRun {
             is_holding: false,
             asked: None,
             epoch: None,
+            grants: false,
             stops: false,
             clears: false,
             heat: HeatGovernor::default(),
@@ -316,6 +323,7 @@ impl ExhibitRun {
     fn permit(&mut self, now: Moment) {
         if self.is_live {
             self.permitted = true;
+            self.grants = true;
             self.phase = Phase::Idle;
             self.rest(now);
         }
@@ -327,6 +335,7 @@ impl ExhibitRun {
             self.phase = Phase::Halted(why);
         }
         self.permitted = false;
+        self.grants = false;
         // A tile that was held before does not count as held from now on.
         self.held = None;
         self.holds = false;
@@ -409,13 +418,16 @@ impl ExhibitRun {
     pub fn tick(&mut self, seen: ExhibitInput<'_>, now: Moment) -> Option<ExhibitOrder> {
         self.heat.take(seen.sample);
         self.level = self.heat.level(now);
-        self.watch_link(seen.status);
+        self.watch_link(seen);
         self.watch_faults(seen, now);
         self.watch_held(seen.status, now);
         if std::mem::take(&mut self.stops) && self.is_live {
             self.holds = false;
             self.is_holding = false;
             return Some(ExhibitOrder::Stop);
+        }
+        if std::mem::take(&mut self.grants) {
+            return Some(ExhibitOrder::Grant);
         }
         if std::mem::take(&mut self.holds) {
             self.is_holding = true;
@@ -443,7 +455,8 @@ impl ExhibitRun {
     }
 
     /// A link that is lost, a stop, or another who talks to the hand ends the permission to move.
-    fn watch_link(&mut self, status: &LinkStatus) {
+    fn watch_link(&mut self, seen: ExhibitInput<'_>) {
+        let status = seen.status;
         if !status.state.is_live() {
             self.slept |= matches!(status.trouble, Some(LinkTrouble::Suspended { .. }));
             self.link_lost();
@@ -459,20 +472,19 @@ impl ExhibitRun {
             });
             self.held = None;
         }
-        let is_ours = self.epoch.is_none() || status.armed == self.epoch;
-        let why = match status.disarmed {
-            _ if status.other_controller => Some(HaltReason::OtherController),
-            _ if status.state == LinkState::Holding => Some(HaltReason::Stopped),
-            // What can be cleared is looked at next.
-            _ if is_ours || status.state == LinkState::Fault => None,
-            Some(Disarmed::Stop) => Some(HaltReason::Stopped),
+        let why = match seen.ended {
+            _ if seen.status.other_controller => Some(HaltReason::OtherController),
+            None => None,
             Some(Disarmed::Fault) => Some(HaltReason::Fault),
             Some(Disarmed::Resume) => Some(HaltReason::Slept),
             Some(Disarmed::OtherController) => Some(HaltReason::OtherController),
             Some(Disarmed::LinkLost | Disarmed::Stale) => Some(HaltReason::LinkLost),
-            Some(Disarmed::Person) | None => Some(HaltReason::NotArmed),
+            Some(Disarmed::Stop) => Some(HaltReason::Stopped),
+            Some(Disarmed::Person | Disarmed::Released | Disarmed::Silent) => {
+                Some(HaltReason::NotArmed)
+            }
         };
-        if let Some(why) = why.filter(|_| self.permitted) {
+        if let Some(why) = why.filter(|_| self.permitted && !self.grants) {
             self.halt(why);
         }
     }
@@ -642,7 +654,7 @@ impl ExhibitRun {
         if self.asked.take_if(|at| is_late(*at)).is_some() {
             self.motion = Playback::None;
             // Nor is it armed later.
-            return Some(ExhibitOrder::Disarm);
+            return Some(ExhibitOrder::Rest);
         }
         let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
         let is_disarmed = status.state == LinkState::Monitoring && status.armed.is_none();
@@ -650,7 +662,7 @@ impl ExhibitRun {
             Playback::Done { .. } if is_resting => {
                 self.motion = Playback::None;
                 self.epoch = None;
-                Some(ExhibitOrder::Disarm)
+                Some(ExhibitOrder::Rest)
             }
             Playback::Waits(plan) if self.epoch.is_some() && self.epoch == status.armed => {
                 let plan = plan.clone();

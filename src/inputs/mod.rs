@@ -1,6 +1,12 @@
 //! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
 
+pub mod follow;
+#[cfg(test)]
+mod follow_tests;
+pub mod intake;
+pub mod line;
 pub mod offer;
 pub mod pad;
+pub mod stream;
 
 pub use offer::Offer;

@@ -11,4 +11,6 @@ pub struct Offer {
     pub aims: PerDof<Option<Angle>>,
     /// Whether its dead-man is held; `None` for a source without one.
     pub held: Option<bool>,
+    /// The same for targets that are the same to the last bit; `None` for a source that may rightly stand still.
+    pub mark: Option<u64>,
 }

@@ -1,7 +1,8 @@
 //! The program's end of a link: what may be said to it and what is heard. Only a request waits, for its answer.
 
-use crate::hand::{HandCommand, Setpoints, Setting, Span};
+use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::config::LinkConfig;
+use crate::link::lease::{Lease, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
@@ -9,7 +10,7 @@ use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
 use crate::link::wanted::{Ends, PendingControl};
-use crate::record::{Calibrated, Record, Reset, Saved, Written};
+use crate::record::{Calibrated, Disarmed, Record, Reset, Saved, Written};
 use std::sync::Arc;
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
@@ -18,10 +19,6 @@ use tokio::sync::{broadcast, mpsc, oneshot, watch};
 pub const REQUESTS_MAX: usize = 16;
 /// Records that may wait for a reader: ten seconds of samples at full rate of a serial line.
 pub const RECORDS_MAX: usize = 1024;
-
-/// A turn at moving the hand. Only the newest turn's setpoints pass, so that whoever takes over is not talked over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MotionTurn(pub(crate) u64);
 
 /// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
 /// told last.
@@ -78,7 +75,10 @@ impl LinkHandle {
     /// Where the link stands now.
     #[must_use]
     pub fn status(&self) -> LinkStatus {
-        self.0.status.borrow().clone()
+        let mut status = self.0.status.borrow().clone();
+        // Granted at once, and not when the session next looks.
+        status.holder = self.0.wanted.borrow().book.holder();
+        status
     }
 
     /// The link's statistics so far.
@@ -87,58 +87,108 @@ impl LinkHandle {
         *self.0.stats.borrow()
     }
 
-    /// Stops the hand where it is, before anything else, and disarms. Everything not yet sent is dropped.
+    /// Stops the hand where it is, before anything else, and disarms. Everything not yet sent is dropped, and whoever might move
+    /// the hand may no more.
     pub fn stop(&self) {
+        self.end(Disarmed::Stop, PendingControl::stop);
+    }
+
+    /// Disarms: no more setpoints pass, and whoever might move the hand may no more. The hand keeps its last targets.
+    pub fn disarm(&self) {
+        self.end(Disarmed::Person, PendingControl::disarm);
+    }
+
+    fn end(&self, why: Disarmed, how: fn(&mut PendingControl, Disarmed)) {
         self.0.wanted.send_modify(|wanted| {
-            wanted.stop = true;
-            wanted.arm = None;
-            wanted.setpoints = None;
+            how(wanted, why);
+            wanted.book.end(why);
         });
+    }
+
+    /// Grants the right to move the hand. A person must have asked for it. Nothing that the holder before sent passes any more;
+    /// an armed hand stays armed.
+    #[must_use]
+    pub fn grant(&self, owner: Owner) -> Lease {
+        let mut granted = None;
+        self.0
+            .wanted
+            .send_modify(|wanted| granted = Some(wanted.grant(owner)));
+        granted.unwrap_or_else(|| unreachable!("the slot is modified at once"))
+    }
+
+    /// Whether a lease still holds.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.0.wanted.borrow().book.check(lease)
     }
 
     /// Asks to arm. The answer is the state `Armed`, or a record that says why not.
-    pub fn arm(&self, request: ArmRequest) {
-        self.0
-            .wanted
-            .send_modify(|wanted| wanted.arm = Some(request));
+    ///
+    /// # Errors
+    /// Nothing is asked under a lease that does not hold.
+    pub fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| wanted.arm = Some((lease, request)))
     }
 
-    /// Disarms: no more setpoints pass. The hand keeps its last targets.
-    pub fn disarm(&self) {
-        self.0.wanted.send_modify(|wanted| {
-            wanted.disarm = true;
-            wanted.arm = None;
-            wanted.setpoints = None;
-        });
-    }
-
-    /// Takes the turn at moving the hand: no further setpoints of earlier turns pass.
-    #[must_use]
-    pub fn take_turn(&self) -> MotionTurn {
-        let mut turn = 0;
-        self.0.wanted.send_if_modified(|wanted| {
-            wanted.turn += 1;
-            turn = wanted.turn;
-            false
-        });
-        MotionTurn(turn)
-    }
-
-    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second. False if the
-    /// turn is over; then nothing is sent.
+    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second.
+    ///
+    /// # Errors
+    /// Nothing is sent under a lease that does not hold.
     ///
     /// [`SETPOINT_HZ_MAX`]: crate::link::session::motion::SETPOINT_HZ_MAX
-    pub fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
-        self.0.wanted.send_if_modified(|wanted| {
-            if wanted.turn != turn.0 {
-                return false;
-            }
-            match &mut wanted.setpoints {
-                Some(older) => older.merge(setpoints),
-                none => *none = Some(*setpoints),
-            }
-            true
+    pub fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| wanted.set(setpoints))
+    }
+
+    /// From now on the hand is stopped at this moment, unless it is put off before: while a person holds what has to be held.
+    /// The lease outlasts that, so that who holds again may arm again.
+    ///
+    /// # Errors
+    /// Nothing is changed under a lease that does not hold.
+    pub fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| wanted.runs_until = Some(until))
+    }
+
+    /// Stops the hand where it is, before anything else, and disarms. The lease outlasts it.
+    ///
+    /// # Errors
+    /// Nothing is stopped under a lease that does not hold.
+    pub fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| wanted.stop(Disarmed::Released))
+    }
+
+    /// Disarms a hand that has nothing to do. The lease outlasts it.
+    ///
+    /// # Errors
+    /// Nothing is changed under a lease that does not hold.
+    pub fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| wanted.disarm(Disarmed::Released))
+    }
+
+    /// Ends a lease for this reason: the hand is stopped and disarmed, and a person has to grant it again.
+    ///
+    /// # Errors
+    /// Nothing is stopped under a lease that does not hold.
+    pub fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
+        self.under(lease, |wanted| {
+            wanted.stop(why);
+            wanted.book.end(why);
         })
+    }
+
+    fn under(
+        &self,
+        lease: Lease,
+        want: impl FnOnce(&mut PendingControl),
+    ) -> Result<(), LeaseRefusal> {
+        let mut done = Ok(());
+        self.0.wanted.send_if_modified(|wanted| {
+            done = wanted.under(lease, want);
+            done.is_ok()
+        });
+        done
     }
 
     /// Reads at other rates from now on, reconnects included. Only what is asked for changes; nothing is written.
@@ -157,13 +207,23 @@ impl LinkHandle {
         });
     }
 
-    /// Writes, and waits until the hand acknowledged. It does not say that the value is in force.
+    /// Writes, and waits until the hand acknowledged. It does not say that the value is in force. What moves the hand is
+    /// refused: that needs a lease.
     ///
     /// # Errors
     /// [`RequestError`]: [`RequestError::NotConnected`] at once while there is no live hand, [`RequestError::Full`] if too
     /// many wait. Nothing is tried again by itself.
     pub async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
-        self.request(|answer| Request::Command(command, answer))
+        self.request(|answer| Request::Command(command, None, answer))
+            .await
+    }
+
+    /// Writes under a lease, and waits as [`Self::write`] does. What moves the hand needs arming too.
+    ///
+    /// # Errors
+    /// As [`Self::write`], and [`RequestError::NotOwner`] if the lease does not hold when it is this command's turn.
+    pub async fn write_as(&self, lease: Lease, command: HandCommand) -> Result<(), RequestError> {
+        self.request(|answer| Request::Command(command, Some(lease), answer))
             .await
     }
 

@@ -10,6 +10,7 @@ pub mod clock;
 pub mod config;
 pub mod handle;
 pub mod latency;
+pub mod lease;
 pub mod poll;
 pub mod quirks;
 pub mod request;
@@ -23,8 +24,9 @@ mod wanted;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
-pub use handle::{LinkHandle, LinkObserver, MotionTurn, Records, open};
+pub use handle::{LinkHandle, LinkObserver, Records, open};
 pub use latency::Ticks;
+pub use lease::{Lease, LeaseHolder, LeaseRefusal, Owner};
 pub use poll::line_time::line_time;
 pub use poll::plan::{PollPriority, PollRates};
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};

@@ -1,6 +1,7 @@
 //! What may be asked of a link, each with the place its answer goes to, and how asking can fail.
 
 use crate::hand::{HandCommand, OutOfRange, Setting, Span};
+use crate::link::lease::{Lease, LeaseRefusal};
 use crate::record::{Calibrated, Reset, Saved, Written};
 use tokio::sync::oneshot;
 
@@ -10,8 +11,8 @@ pub(crate) type Answer<T> = oneshot::Sender<Result<T, RequestError>>;
 /// One thing asked of the hand.
 #[derive(Debug)]
 pub(crate) enum Request {
-    /// Write; answered once the hand acknowledged every write.
-    Command(HandCommand, Answer<()>),
+    /// Write, under a lease if the hand moves by it; answered once the hand acknowledged every write.
+    Command(HandCommand, Option<Lease>, Answer<()>),
     /// Read some memory.
     Read(Span, Answer<Vec<u8>>),
     /// Write one kept group and read it back.
@@ -29,7 +30,7 @@ impl Request {
     pub(crate) fn fail(self, error: RequestError) {
         // Whoever asked may be gone.
         let _told = match self {
-            Self::Command(_, answer) => answer.send(Err(error)).is_ok(),
+            Self::Command(_, _, answer) => answer.send(Err(error)).is_ok(),
             Self::Read(_, answer) => answer.send(Err(error)).is_ok(),
             Self::Set(_, answer) => answer.send(Err(error)).is_ok(),
             Self::Save(answer) => answer.send(Err(error)).is_ok(),
@@ -41,7 +42,7 @@ impl Request {
     /// True if nobody waits for the answer any more.
     pub(crate) fn is_abandoned(&self) -> bool {
         match self {
-            Self::Command(_, answer) => answer.is_closed(),
+            Self::Command(_, _, answer) => answer.is_closed(),
             Self::Read(_, answer) => answer.is_closed(),
             Self::Set(_, answer) => answer.is_closed(),
             Self::Save(answer) => answer.is_closed(),
@@ -60,6 +61,9 @@ pub enum RequestError {
     /// A motion that needs arming.
     #[error("not armed: nothing was sent")]
     NotArmed,
+    /// A motion under a lease that does not hold.
+    #[error(transparent)]
+    NotOwner(#[from] LeaseRefusal),
     /// Too many requests wait already.
     #[error("{limit} requests wait already: nothing was sent")]
     Full {

@@ -1,6 +1,7 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
 use crate::hand::{ArmEpoch, Force, Moment, PerDof, Speed};
+use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
 use crate::record::{Disarmed, Hold, LinkState, Rest};
 use crate::transport::TransportError;
@@ -19,6 +20,8 @@ pub struct LinkStatus {
     pub trouble: Option<LinkTrouble>,
     /// The arming in force, if the hand is armed.
     pub armed: Option<ArmEpoch>,
+    /// Who may move the hand, if anybody may.
+    pub holder: Option<LeaseHolder>,
     /// What the hand answers in its own way, as found when the wire was opened.
     pub quirks: Quirks,
     /// True if the adapter gives back what is sent.

@@ -1,12 +1,13 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
-use crate::hand::Setpoints;
+use crate::hand::{Moment, Setpoints};
+use crate::link::lease::{Lease, LeaseBook, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::Request;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
-use crate::record::Record;
+use crate::record::{Disarmed, Record};
 use std::sync::Arc;
 use tokio::sync::{broadcast, mpsc, watch};
 
@@ -16,12 +17,18 @@ use tokio::sync::{broadcast, mpsc, watch};
 pub(crate) struct PendingControl {
     pub(crate) stop: bool,
     pub(crate) disarm: bool,
-    pub(crate) arm: Option<ArmRequest>,
+    /// Why the hand is to be stopped or disarmed, if that is wanted.
+    pub(crate) why: Option<Disarmed>,
+    pub(crate) arm: Option<(Lease, ArmRequest)>,
     pub(crate) setpoints: Option<Setpoints>,
+    /// Another may move the hand from now on: what the one before asked for is dropped.
+    pub(crate) handed_over: bool,
     pub(crate) rates: Option<PollRates>,
     pub(crate) closed: bool,
-    /// Who may set targets: only the newest turn.
-    pub(crate) turn: u64,
+    /// Who may move the hand.
+    pub(crate) book: LeaseBook,
+    /// Motion passes only until then; it is put off while a person holds what has to be held.
+    pub(crate) runs_until: Option<Moment>,
     /// What is read first while something moves.
     pub(crate) priority: PollPriority,
 }
@@ -29,19 +36,75 @@ pub(crate) struct PendingControl {
 impl PendingControl {
     /// True if anything is wanted at all.
     pub(crate) const fn is_any(&self) -> bool {
-        let moves = self.arm.is_some() || self.setpoints.is_some();
+        let moves = self.arm.is_some() || self.setpoints.is_some() || self.handed_over;
         self.stop || self.disarm || self.closed || moves || self.rates.is_some()
     }
 
     /// Gives out what is wanted; what outlasts it stays.
     pub(crate) fn take(&mut self) -> Self {
         let rest = Self {
-            closed: self.closed,
-            turn: self.turn,
-            priority: self.priority,
-            ..Self::default()
+            rates: None,
+            ..self.lasting()
         };
         std::mem::replace(self, rest)
+    }
+
+    /// What outlasts a lost link.
+    pub(crate) fn lasting(&self) -> Self {
+        Self {
+            closed: self.closed,
+            rates: self.rates,
+            book: self.book,
+            runs_until: self.runs_until,
+            priority: self.priority,
+            ..Self::default()
+        }
+    }
+
+    /// A person grants the right to move the hand. Nothing of the one before is sent any more.
+    pub(crate) fn grant(&mut self, owner: Owner) -> Lease {
+        self.forget_motion();
+        self.handed_over = true;
+        self.runs_until = None;
+        self.book.grant(owner)
+    }
+
+    /// Stops the hand before anything else.
+    pub(crate) fn stop(&mut self, why: Disarmed) {
+        self.stop = true;
+        self.why.get_or_insert(why);
+        self.forget_motion();
+    }
+
+    /// Lets no setpoint pass any more.
+    pub(crate) fn disarm(&mut self, why: Disarmed) {
+        self.disarm = true;
+        self.why.get_or_insert(why);
+        self.forget_motion();
+    }
+
+    /// Wants this under a lease, if it holds.
+    pub(crate) fn under(
+        &mut self,
+        lease: Lease,
+        want: impl FnOnce(&mut Self),
+    ) -> Result<(), LeaseRefusal> {
+        self.book.check(lease)?;
+        want(self);
+        Ok(())
+    }
+
+    /// Puts newer setpoints over older ones.
+    pub(crate) fn set(&mut self, setpoints: &Setpoints) {
+        match &mut self.setpoints {
+            Some(older) => older.merge(setpoints),
+            none => *none = Some(*setpoints),
+        }
+    }
+
+    fn forget_motion(&mut self) {
+        self.arm = None;
+        self.setpoints = None;
     }
 }
 

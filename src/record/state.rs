@@ -92,6 +92,21 @@ pub enum Disarmed {
     Resume,
     /// Another controller talks to this hand.
     OtherController,
+    /// Who moved it let go of what has to be held, or has nothing to do.
+    Released,
+    /// Who moved it fell silent.
+    Silent,
+}
+
+impl Disarmed {
+    /// True if whoever might move the hand, or a person, wanted it so.
+    #[must_use]
+    pub const fn is_asked_for(self) -> bool {
+        matches!(
+            self,
+            Self::Stop | Self::Person | Self::Released | Self::Silent
+        )
+    }
 }
 
 /// Why the hand cannot be armed.

@@ -5,9 +5,9 @@ use crate::exhibit::run::{
     ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitView, ExhibitWish,
 };
 use crate::hand::{HandCommand, HandSample, PerDof, Setpoints};
-use crate::link::Clock;
+use crate::link::{Clock, Lease, LeaseRefusal, Owner};
 use crate::poses::player::{PlayMode, PlayPlan};
-use crate::record::Record;
+use crate::record::{Disarmed, Record};
 use crate::tasks::hand::Hand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
@@ -59,6 +59,7 @@ pub async fn exhibit<H: Hand>(
         locked: start.locked,
         sample: start.seen,
         playing: None,
+        lease: None,
         told,
         clock,
     };
@@ -118,6 +119,8 @@ struct AtHand<'a, H> {
     locked: PerDof<bool>,
     sample: HandSample,
     playing: Option<PlayingPiece>,
+    /// What a person granted; it may have ended.
+    lease: Option<Lease>,
     told: mpsc::UnboundedSender<Setpoints>,
     clock: Clock,
 }
@@ -126,9 +129,14 @@ impl<H: Hand> AtHand<'_, H> {
     fn obey_all(&mut self) {
         loop {
             let status = self.hand.status();
+            let refused = self.lease.and_then(|lease| self.hand.check(lease).err());
             let seen = ExhibitInput {
                 status: &status,
                 sample: &self.sample,
+                ended: refused.map(|refused| match refused {
+                    LeaseRefusal::Ended(why) => why,
+                    LeaseRefusal::Taken(_) => Disarmed::Person,
+                }),
             };
             match self.run.tick(seen, self.clock.now()) {
                 Some(order) => self.obey(order),
@@ -139,8 +147,14 @@ impl<H: Hand> AtHand<'_, H> {
 
     fn obey(&mut self, order: ExhibitOrder) {
         match order {
-            ExhibitOrder::Arm(request) => self.hand.arm(request),
-            ExhibitOrder::Disarm => self.hand.disarm(),
+            ExhibitOrder::Grant => self.lease = Some(self.hand.grant(Owner::Exhibition)),
+            // A lease that ended is seen in the next step.
+            ExhibitOrder::Arm(request) => {
+                let _asked = self.lease.map(|lease| self.hand.arm(lease, request));
+            }
+            ExhibitOrder::Rest => {
+                let _rests = self.lease.map(|lease| self.hand.rest(lease));
+            }
             ExhibitOrder::Stop => {
                 self.playing = None;
                 self.hand.stop();
@@ -161,14 +175,14 @@ impl<H: Hand> AtHand<'_, H> {
     }
 
     fn play(&mut self, plan: PlayPlan) {
-        let Some(epoch) = self.hand.status().armed else {
+        let Some((epoch, lease)) = self.hand.status().armed.zip(self.lease) else {
             return;
         };
         let start = PlayStart {
             plan,
             pace: PlayMode::Through,
             epoch,
-            turn: self.hand.take_turn(),
+            lease,
             locked: self.locked,
             seen: self.sample,
             clock: self.clock,

@@ -1,10 +1,11 @@
 //! A hand as tasks see it, how one is reached, and the waits that tasks share.
 
-use crate::hand::{HandCommand, Setpoints, Setting, Span};
+use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::{
-    ArmRequest, LinkHandle, LinkStatus, MotionTurn, PollRates, Records, RequestError,
+    ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, PollRates, Records,
+    RequestError,
 };
-use crate::record::{Calibrated, LinkState, NotSent, Reset, Rest, Saved, Written};
+use crate::record::{Calibrated, Disarmed, LinkState, NotSent, Reset, Rest, Saved, Written};
 use crate::transport::Endpoint;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
@@ -43,12 +44,22 @@ pub trait Hand: Clone + Send + Sync + 'static {
     fn stop(&self);
     /// Lets no setpoint pass any more.
     fn disarm(&self);
-    /// Asks to arm, within these limits. A person must have asked for it.
-    fn arm(&self, request: ArmRequest);
-    /// Takes the turn at moving the hand.
-    fn take_turn(&self) -> MotionTurn;
-    /// Sets targets and limits; false if the turn is over.
-    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool;
+    /// Grants the right to move the hand. A person must have asked for it.
+    fn grant(&self, owner: Owner) -> Lease;
+    /// Whether a lease still holds.
+    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal>;
+    /// Asks to arm, within these limits.
+    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal>;
+    /// Sets targets and limits.
+    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal>;
+    /// Stops the hand at this moment, unless it is put off before; the lease outlasts it.
+    fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal>;
+    /// Stops and disarms; the lease outlasts it.
+    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal>;
+    /// Disarms a hand that has nothing to do; the lease outlasts it.
+    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal>;
+    /// Stops, disarms and ends the lease for this reason.
+    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal>;
     /// Reads at other rates.
     fn read_at(&self, rates: PollRates);
 }
@@ -84,14 +95,29 @@ impl Hand for LinkHandle {
     fn disarm(&self) {
         Self::disarm(self);
     }
-    fn arm(&self, request: ArmRequest) {
-        Self::arm(self, request);
+    fn grant(&self, owner: Owner) -> Lease {
+        Self::grant(self, owner)
     }
-    fn take_turn(&self) -> MotionTurn {
-        Self::take_turn(self)
+    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        Self::check(self, lease)
     }
-    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
-        Self::set(self, turn, setpoints)
+    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
+        Self::arm(self, lease, request)
+    }
+    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
+        Self::set(self, lease, setpoints)
+    }
+    fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
+        Self::run_until(self, lease, until)
+    }
+    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        Self::halt(self, lease)
+    }
+    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        Self::rest(self, lease)
+    }
+    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
+        Self::give_back(self, lease, why)
     }
     fn read_at(&self, rates: PollRates) {
         Self::read_at(self, rates);

@@ -2,7 +2,7 @@
 //! the hand ends it.
 
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
-use crate::link::{Clock, LinkStatus, MotionTurn};
+use crate::link::{Clock, Lease, LinkStatus};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
@@ -26,8 +26,8 @@ pub struct PlayStart {
     pub pace: PlayMode,
     /// The arming that a person gave for it.
     pub epoch: ArmEpoch,
-    /// The turn at moving the hand.
-    pub turn: MotionTurn,
+    /// The right to move the hand.
+    pub lease: Lease,
     /// Joints that are left alone.
     pub locked: PerDof<bool>,
     /// What was read until now.
@@ -70,7 +70,7 @@ pub async fn play<H: Hand>(
     let plan = start.plan;
     let rest = plan.cues.first().map(|cue| cue.targets);
     let mut run = Playing {
-        turn: start.turn,
+        lease: start.lease,
         hand,
         reaction: plan.reaction.zip(rest).map(|(cue, rest)| Reacting {
             watch: TouchWatch::new(cue.threshold),
@@ -117,7 +117,7 @@ struct Reacting {
 
 struct Playing<'a, H> {
     hand: &'a H,
-    turn: MotionTurn,
+    lease: Lease,
     player: Player,
     reaction: Option<Reacting>,
     epoch: ArmEpoch,
@@ -226,7 +226,7 @@ impl<H: Hand> Playing<'_, H> {
         for (dof, at) in self.free(&pose.map(Some)) {
             setpoints.angle[dof] = Some(Target::Go(at));
         }
-        if self.hand.set(self.turn, &setpoints) {
+        if self.hand.set(self.lease, &setpoints).is_ok() {
             tell(PlayStep::Sent(setpoints));
         }
     }
@@ -235,7 +235,7 @@ impl<H: Hand> Playing<'_, H> {
         if setpoints.is_empty() {
             return;
         }
-        if self.hand.set(self.turn, &setpoints) {
+        if self.hand.set(self.lease, &setpoints).is_ok() {
             tell(PlayStep::Sent(setpoints));
         } else {
             self.player.end(PlayEnd::TakenOver);

@@ -2,7 +2,7 @@
 //! every stop looked after until feedback shows rest. Decides nothing about trials.
 
 use crate::hand::{ArmEpoch, HandSample, PerDof, Speed};
-use crate::link::{Clock, LinkStatus, MotionTurn, PollRates, Records};
+use crate::link::{Clock, Lease, LinkStatus, PollRates, Records};
 use crate::record::{Hold, Record};
 use crate::tasks::hand::Hand;
 use crate::trials::limits::{Abort, LinkView};
@@ -63,8 +63,8 @@ pub struct SeriesStart {
     pub plan: TrialPlan,
     /// The arming that a person gave for it.
     pub epoch: ArmEpoch,
-    /// The turn at moving the hand.
-    pub turn: MotionTurn,
+    /// The right to move the hand.
+    pub lease: Lease,
     /// What was read until now.
     pub seen: HandSample,
     /// The program's clock.
@@ -84,7 +84,7 @@ pub async fn series<H: Hand>(
     let clock = start.clock;
     let mut series = TrialSeries::start(start.plan, start.epoch, clock.now())?;
     let mut records = hand.records();
-    let turn = start.turn;
+    let lease = start.lease;
     hand.read_at(RATES);
     let mut sample = start.seen;
     let mut ended = pin!(ended);
@@ -105,7 +105,8 @@ pub async fn series<H: Hand>(
             }
         }
         if let Some(SeriesOrder::Set(setpoints)) = &order {
-            hand.set(turn, setpoints);
+            // A lease that ended has disarmed too, and that ends the series.
+            let _set = hand.set(lease, setpoints);
         }
         if !tell_news(&mut series, &mut shown, &mut tell) {
             order = series.end(Abort::NotKept, clock.now()).or(order);

@@ -55,11 +55,14 @@ impl HandState {
             notices.push(self.now, NoticeKind::ArmRefused(reason));
             return;
         }
-        if let Some(open) = &self.open {
-            open.link.arm(ArmRequest {
-                speed: self.joints.map(|joint| joint.speed),
-                force: self.joints.map(|joint| joint.force),
-            });
+        let request = ArmRequest {
+            speed: self.joints.map(|joint| joint.speed),
+            force: self.joints.map(|joint| joint.force),
+        };
+        if let Some(open) = &mut self.open {
+            let lease = open.take_lease();
+            // Just granted: it holds.
+            let _asked = open.link.arm(lease, request);
         }
     }
 
@@ -178,7 +181,7 @@ impl HandState {
             run.leave();
         }
         if let Some(open) = &mut self.open {
-            open.turn = open.link.take_turn();
+            let _lease = open.take_lease();
         }
     }
 
@@ -189,8 +192,8 @@ impl HandState {
         };
         let mut setpoints = Setpoints::none(epoch);
         fill(&mut setpoints);
-        open.link.set(open.turn, &setpoints);
-        self.commanded = true;
+        let set = open.lease.map(|lease| open.link.set(lease, &setpoints));
+        self.commanded |= matches!(set, Some(Ok(())));
     }
 
     /// True for joints that a person may move now.

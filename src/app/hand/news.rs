@@ -176,8 +176,8 @@ impl HandState {
                 .map(|joint| !joint.locked && joint.target.is_some());
         }
         if before.armed.is_some() && armed.is_none() {
-            let asked_for = |why: &Disarmed| matches!(why, Disarmed::Stop | Disarmed::Person);
-            if let Some(why) = self.link.disarmed.filter(|why| !asked_for(why)) {
+            let is_known = |why: &Disarmed| why.is_asked_for() && *why != Disarmed::Silent;
+            if let Some(why) = self.link.disarmed.filter(|why| !is_known(why)) {
                 notices.push(self.now, NoticeKind::Disarmed(why));
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::app::notices::RequestKind;
 use crate::hand::Moment;
-use crate::link::{LinkHandle, MotionTurn, Records, RequestError};
+use crate::link::{Lease, LinkHandle, Owner, Records, RequestError};
 use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 
@@ -11,18 +11,38 @@ use crate::transport::Endpoint;
 pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,
     pub(crate) records: Records,
-    /// The turn at moving the hand, as long as no task has it.
-    pub(crate) turn: MotionTurn,
+    /// The right to move the hand that the person at this window, or their task, had last.
+    pub(crate) lease: Option<Lease>,
 }
 
 impl OpenLink {
     /// With this link and what is heard of it.
     pub(crate) fn new((link, records): (LinkHandle, Records)) -> Self {
         Self {
-            turn: link.take_turn(),
+            lease: None,
             link,
             records,
         }
+    }
+}
+
+impl OpenLink {
+    /// The right of the person at this window to move the hand; granted anew if another has it, or none.
+    pub(crate) fn take_lease(&mut self) -> Lease {
+        let held = self.link.status().holder;
+        let held = held.filter(|holder| holder.owner == Owner::Person);
+        self.granted(held.map(|holder| holder.lease), Owner::Person)
+    }
+
+    /// The right of a task that this person starts. What they set meanwhile passes too.
+    pub(crate) fn lend_lease(&mut self) -> Lease {
+        self.granted(None, Owner::Task)
+    }
+
+    fn granted(&mut self, held: Option<Lease>, owner: Owner) -> Lease {
+        let lease = held.unwrap_or_else(|| self.link.grant(owner));
+        self.lease = Some(lease);
+        lease
     }
 }
 

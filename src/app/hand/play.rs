@@ -46,12 +46,12 @@ impl HandState {
         };
         let entry = plan.entry;
         self.take_over();
-        let Some(open) = &self.open else { return };
+        let Some(open) = &mut self.open else { return };
         let start = PlayStart {
             plan,
             pace,
             epoch,
-            turn: open.turn,
+            lease: open.lend_lease(),
             locked: self.joints.map(|joint| joint.locked),
             seen: self.sample,
             clock: env.clock,

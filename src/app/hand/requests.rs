@@ -25,8 +25,13 @@ impl HandState {
             self.failed(what, RequestError::NotConnected, notices);
             return false;
         };
-        let link = open.link.clone();
-        let write = async move { link.write(command).await };
+        let (link, lease) = (open.link.clone(), open.lease);
+        let write = async move {
+            match lease.filter(|_| command.is_motion()) {
+                Some(lease) => link.write_as(lease, command).await,
+                None => link.write(command).await,
+            }
+        };
         let end = BackgroundJob::start(&env.runtime, &env.wake, write);
         if self.asked.len() >= ASKED_MAX {
             self.asked.remove(0);

@@ -102,13 +102,13 @@ impl HandState {
             return;
         }
         self.take_over();
-        let (Some(epoch), Some(open)) = (self.link.armed, &self.open) else {
+        let (Some(epoch), Some(open)) = (self.link.armed, &mut self.open) else {
             return;
         };
         let start = SeriesStart {
             plan: plan.clone(),
             epoch,
-            turn: open.turn,
+            lease: open.lend_lease(),
             seen: self.sample,
             clock: env.clock,
         };

@@ -9,7 +9,7 @@ use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::TrialResults;
 use crate::hand::HandSample;
-use crate::link::{Clock, LinkHandle, Records};
+use crate::link::{Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesStart, Stop};
 use crate::transport::Endpoint;
@@ -32,12 +32,12 @@ pub(crate) async fn drive(
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let (link, mut records) = session::open_with_records(&args.hand, series::RATES, clock);
-    let seen = tokio::select! {
+    let ready = tokio::select! {
         biased;
         () = interrupt.wished() => None,
-        seen = make_ready(&link, &mut records, &args.hand, plan) => Some(seen?),
+        ready = make_ready(&link, &mut records, &args.hand, plan) => Some(ready?),
     };
-    let (Some(epoch), Some(seen)) = (link.status().armed, seen) else {
+    let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
         // Arming may have been under way.
         let stop = series::hold(&link, &mut records).await;
         bail!(
@@ -57,7 +57,7 @@ pub(crate) async fn drive(
     let start = SeriesStart {
         plan: plan.clone(),
         epoch,
-        turn: link.take_turn(),
+        lease,
         seen,
         clock,
     };
@@ -89,7 +89,7 @@ async fn make_ready(
     records: &mut Records,
     endpoint: &Endpoint,
     plan: &TrialPlan,
-) -> anyhow::Result<HandSample> {
+) -> anyhow::Result<(Lease, HandSample)> {
     session::answered(link, endpoint).await?;
     let mut seen = HandSample::default();
     let until = Instant::now() + READY_WITHIN;
@@ -102,14 +102,15 @@ async fn make_ready(
             bail!("the hand at {endpoint} does not tell its angles, faults and temperatures");
         }
     }
-    link.arm(series::arm_limits(plan));
+    let lease = link.grant(Owner::Task);
+    link.arm(lease, series::arm_limits(plan))?;
     while link.status().armed.is_none() {
         take_news(records, &mut seen).await?;
         if Instant::now() >= until {
             bail!("the hand at {endpoint} could not be armed in time");
         }
     }
-    Ok(seen)
+    Ok((lease, seen))
 }
 
 /// Takes the next record, or lets a moment pass.

@@ -188,6 +188,8 @@ impl PadInput {
             at,
             aims,
             held: Some(is_held),
+            // Controls that are held still are no frozen tracking.
+            mark: None,
         })
     }
 

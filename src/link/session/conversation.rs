@@ -248,12 +248,8 @@ impl Session {
     fn forget_wishes_but(&self, stop: fn(&PendingControl) -> bool) {
         self.ends.wanted.send_if_modified(|wanted| {
             *wanted = PendingControl {
-                closed: wanted.closed,
                 stop: stop(wanted),
-                rates: wanted.rates,
-                turn: wanted.turn,
-                priority: wanted.priority,
-                ..PendingControl::default()
+                ..wanted.lasting()
             };
             false
         });

@@ -4,6 +4,7 @@
 use crate::hand::{HandCommand, RegisterWrite, Span, Writes};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
+use crate::link::lease::Lease;
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::session::job::{JOB_MAX, ReadJob, SessionJob, WriteJob};
@@ -37,15 +38,15 @@ impl Session {
                     answer,
                 }));
             }
-            Request::Command(command, answer) => self.take_command(command, answer),
+            Request::Command(command, lease, answer) => self.take_command(command, lease, answer),
             request => self.job = Some(SessionJob::Alone(request)),
         }
     }
 
-    fn take_command(&mut self, command: HandCommand, answer: Answer<()>) {
+    fn take_command(&mut self, command: HandCommand, lease: Option<Lease>, answer: Answer<()>) {
         let is_motion = command.is_motion();
-        if is_motion && self.status.state != LinkState::Armed {
-            let _told = answer.send(Err(RequestError::NotArmed));
+        if let Err(refused) = self.may_write(is_motion, lease) {
+            let _told = answer.send(Err(refused));
             return;
         }
         let mut writes = ArrayVec::new();
@@ -60,6 +61,19 @@ impl Session {
             is_motion,
             answer,
         }));
+    }
+
+    /// What moves the hand needs arming, and whoever wants it the right to.
+    fn may_write(&self, is_motion: bool, lease: Option<Lease>) -> Result<(), RequestError> {
+        match lease {
+            Some(lease) => self.ends.wanted.borrow().book.check(lease)?,
+            None if is_motion => return Err(RequestError::NotArmed),
+            None => {}
+        }
+        match is_motion && self.status.state != LinkState::Armed {
+            true => Err(RequestError::NotArmed),
+            false => Ok(()),
+        }
     }
 
     /// Sends the next write of the request under way, or its read, and answers when all is done.

@@ -4,6 +4,7 @@
 use crate::hand::{ArmEpoch, HandCommand, RegisterWrite};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
+use crate::link::lease::Lease;
 use crate::link::request::RequestError;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
@@ -73,8 +74,8 @@ impl Session {
 
     /// What goes before everything that was asked for: wishes, a stop, setpoints.
     pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
-        if let Some(request) = self.take_wishes()? {
-            self.arm(bus, &request).await?;
+        if let Some((lease, request)) = self.take_wishes()? {
+            self.arm(bus, lease, &request).await?;
             return Ok(true);
         }
         self.watch_age();
@@ -108,6 +109,9 @@ impl Session {
             .motion
             .next_send(now)
             .map_or(read, |send| send.min(read));
+        let armed_until = self.ends.wanted.borrow().runs_until;
+        let armed_until = armed_until.filter(|_| self.status.armed.is_some());
+        let due = armed_until.map_or(due, |until| until.min(due));
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
         tokio::select! {
@@ -119,20 +123,27 @@ impl Session {
     }
 
     /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
-    fn take_wishes(&mut self) -> Result<Option<ArmRequest>, WireEnd> {
+    fn take_wishes(&mut self) -> Result<Option<(Lease, ArmRequest)>, WireEnd> {
         let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = wanted.take();
             false
         });
+        self.status.holder = wishes.book.holder();
         if wishes.stop {
-            self.begin_hold();
+            self.begin_hold(wishes.why.unwrap_or(Disarmed::Stop));
         }
         if wishes.closed {
             return Err(WireEnd::Closed);
         }
         if wishes.disarm {
-            self.disarm(Disarmed::Person);
+            self.disarm(wishes.why.unwrap_or(Disarmed::Person));
+        }
+        if wishes.handed_over {
+            self.motion.forget_setpoints();
+            if let Some(job) = self.job.take_if(|job| job.is_motion()) {
+                job.fail(RequestError::NotArmed);
+            }
         }
         if let Some(rates) = wishes.rates {
             self.config.rates = rates;
@@ -144,14 +155,20 @@ impl Session {
         Ok(wishes.arm)
     }
 
-    fn stop_wanted(&self) -> bool {
+    /// True if what is being armed for is not to be any more.
+    fn arming_is_over(&self, lease: Lease) -> bool {
         let wanted = self.ends.wanted.borrow();
-        wanted.stop || wanted.disarm || wanted.closed
+        wanted.stop || wanted.disarm || wanted.closed || wanted.book.check(lease).is_err()
     }
 
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
     /// An armed hand stays armed as it is.
-    async fn arm(&mut self, bus: &mut dyn Bus, request: &ArmRequest) -> Result<(), WireEnd> {
+    async fn arm(
+        &mut self,
+        bus: &mut dyn Bus,
+        lease: Lease,
+        request: &ArmRequest,
+    ) -> Result<(), WireEnd> {
         if self.status.armed.is_some() {
             return Ok(());
         }
@@ -167,7 +184,7 @@ impl Session {
         ];
         for write in limits.iter().flat_map(HandCommand::writes) {
             self.turn(bus).await?;
-            if self.stop_wanted() {
+            if self.arming_is_over(lease) {
                 return Ok(());
             }
             if let Err(error) = self.write(bus, &write, WriteCause::Arming).await {
@@ -177,7 +194,7 @@ impl Session {
             }
         }
         // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
-        if self.stop_wanted() {
+        if self.arming_is_over(lease) {
             return Ok(());
         }
         let epoch = ArmEpoch(self.motion.last_epoch.0 + 1);
@@ -196,9 +213,17 @@ impl Session {
         self.tell(Record::ArmRefused { at, reason });
     }
 
-    /// Disarms, and drops the setpoints that are on their way.
+    /// Disarms, and drops the setpoints that are on their way. What nobody asked for ends the right to move the hand too.
     pub(crate) fn disarm(&mut self, why: Disarmed) {
         self.motion.forget_setpoints();
+        let holder = &mut self.status.holder;
+        self.ends.wanted.send_if_modified(|wanted| {
+            if !why.is_asked_for() {
+                wanted.book.end(why);
+            }
+            *holder = wanted.book.holder();
+            false
+        });
         if self.status.armed.take().is_none() {
             return;
         }
@@ -215,6 +240,10 @@ impl Session {
             self.disarm(Disarmed::Stale);
         }
         let now = self.now();
+        let runs_until = self.ends.wanted.borrow().runs_until;
+        if self.status.armed.is_some() && runs_until.is_some_and(|until| until <= now) {
+            self.begin_hold(Disarmed::Released);
+        }
         if let Some(hold) = &mut self.motion.hold
             && hold.alarm_due(now)
         {
@@ -249,9 +278,9 @@ impl Session {
         }
     }
 
-    fn begin_hold(&mut self) {
+    fn begin_hold(&mut self, why: Disarmed) {
         let now = self.now();
-        self.disarm(Disarmed::Stop);
+        self.disarm(why);
         if let Some(job) = self.job.take_if(|job| job.is_motion()) {
             job.fail(RequestError::NotArmed);
         }

@@ -6,7 +6,10 @@ use crate::hand::{
     Angle, AngleReading, ArmEpoch, CurrentReading, Dof, Fault, Group, Groups, HandCommand,
     HandSample, Moment, PerDof, Setpoints, Setting, Span, Target, TemperatureReading, Timed,
 };
-use crate::link::{ArmRequest, Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::link::lease::LeaseBook;
+use crate::link::{
+    ArmRequest, Clock, Lease, LeaseRefusal, LinkStatus, Owner, PollRates, Records, RequestError,
+};
 use crate::record::{Calibrated, Disarmed, LinkState, Record, Reset, Rest, Saved, Written};
 use crate::sim::drive::{Drive, DriveGoal, DriveSettings, position_of};
 use crate::tasks::Hand;
@@ -40,7 +43,7 @@ pub(crate) struct BoothFacts {
     /// The wish to arm that is under way, by its number.
     arming: Option<u64>,
     armings: u64,
-    turn: u64,
+    book: LeaseBook,
     records: broadcast::Sender<Record>,
     /// What may be sent at all.
     allowed: PerDof<BTreeSet<Angle>>,
@@ -104,7 +107,7 @@ impl BoothHand {
             epoch: 0,
             arming: None,
             armings: 0,
-            turn: 0,
+            book: LeaseBook::default(),
             records: broadcast::channel(RECORDS).0,
             allowed,
             limits: plan.limits,
@@ -263,7 +266,18 @@ impl BoothFacts {
         let _heard = self.records.send(record);
     }
 
+    fn stop(&mut self, why: Disarmed) {
+        self.disarm(why);
+        self.hold();
+        if self.status.state.is_live() {
+            self.status.state = LinkState::Holding;
+        }
+    }
+
     fn disarm(&mut self, why: Disarmed) {
+        if !why.is_asked_for() {
+            self.book.end(why);
+        }
         self.arming = None;
         if self.status.armed.take().is_some() {
             self.status.disarmed = Some(why);
@@ -374,19 +388,27 @@ impl Hand for BoothHand {
 
     fn stop(&self) {
         let mut facts = self.facts();
-        facts.disarm(Disarmed::Stop);
-        facts.hold();
-        if facts.status.state.is_live() {
-            facts.status.state = LinkState::Holding;
-        }
+        facts.book.end(Disarmed::Stop);
+        facts.stop(Disarmed::Stop);
     }
 
     fn disarm(&self) {
-        self.facts().disarm(Disarmed::Person);
+        let mut facts = self.facts();
+        facts.book.end(Disarmed::Person);
+        facts.disarm(Disarmed::Person);
     }
 
-    fn arm(&self, request: ArmRequest) {
+    fn grant(&self, owner: Owner) -> Lease {
+        self.facts().book.grant(owner)
+    }
+
+    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.facts().book.check(lease)
+    }
+
+    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
         let mut facts = self.facts();
+        facts.book.check(lease)?;
         facts.armings += 1;
         let number = facts.armings;
         facts.arming = Some(number);
@@ -399,22 +421,41 @@ impl Hand for BoothHand {
                 facts.arm(request);
             }
         });
+        Ok(())
     }
 
-    fn take_turn(&self) -> MotionTurn {
+    fn run_until(&self, lease: Lease, _until: Moment) -> Result<(), LeaseRefusal> {
+        self.check(lease)
+    }
+
+    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
         let mut facts = self.facts();
-        facts.turn += 1;
-        MotionTurn(facts.turn)
+        facts.book.check(lease)?;
+        facts.stop(Disarmed::Released);
+        Ok(())
     }
 
-    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
+    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        let mut facts = self.facts();
+        facts.book.check(lease)?;
+        facts.disarm(Disarmed::Released);
+        Ok(())
+    }
+
+    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
+        let mut facts = self.facts();
+        facts.book.check(lease)?;
+        facts.book.end(why);
+        facts.stop(why);
+        Ok(())
+    }
+
+    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
         let now = self.clock.now();
         let mut facts = self.facts();
-        if facts.turn != turn.0 {
-            return false;
-        }
+        facts.book.check(lease)?;
         if facts.status.armed != Some(setpoints.epoch) {
-            return true;
+            return Ok(());
         }
         facts.go_on(now);
         for dof in Dof::ALL {
@@ -436,7 +477,7 @@ impl Hand for BoothHand {
         if facts.sent.len() < 1000 {
             facts.sent.push((now, *setpoints));
         }
-        true
+        Ok(())
     }
 
     fn read_at(&self, _rates: PollRates) {}

@@ -504,6 +504,7 @@ fn order(
     let seen = ExhibitInput {
         status: &status,
         sample: &sample,
+        ended: None,
     };
     run.tick(seen, at(second))
 }
@@ -514,6 +515,7 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
     let mut run = ExhibitRun::new(Arc::new(plan()), at(0));
     assert_eq!(order(&mut run, free, 1), None);
     run.wish(ExhibitWish::Arm, at(1));
+    assert_eq!(order(&mut run, free, 1), Some(ExhibitOrder::Grant));
     for (second, epoch) in [(1, 1), (70, 2)] {
         let asked = order(&mut run, free, second);
         assert!(matches!(asked, Some(ExhibitOrder::Arm(_))), "{asked:?}");
@@ -522,7 +524,7 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
         assert!(matches!(plays, Some(ExhibitOrder::Play(_))), "{plays:?}");
         if epoch == 1 {
             run.ended(at(5));
-            assert_eq!(order(&mut run, armed, 5), Some(ExhibitOrder::Disarm));
+            assert_eq!(order(&mut run, armed, 5), Some(ExhibitOrder::Rest));
         }
     }
     // What plays is to be held for a visitor, and ends with the fault before it can be.

@@ -4,13 +4,16 @@ use crate::hand::{
     AngleReading, ArmEpoch, Faults, ForceReading, Group, Groups, HandCommand, HandSample, Moment,
     PerDof, RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
 };
-use crate::link::{ArmRequest, Clock, LinkStatus, MotionTurn, PollRates, Records, RequestError};
+use crate::link::lease::LeaseBook;
+use crate::link::{
+    ArmRequest, Clock, Lease, LeaseRefusal, LinkStatus, Owner, PollRates, Records, RequestError,
+};
 use crate::params::changes::plan_writes;
 use crate::params::place;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::{
-    Calibrated, Hold, LinkState, NotSent, Record, Reset, Rest, Saved, Verdict, Written,
+    Calibrated, Disarmed, Hold, LinkState, NotSent, Record, Reset, Rest, Saved, Verdict, Written,
 };
 use crate::tasks::{Hand, Reach};
 use crate::transport::Endpoint;
@@ -67,7 +70,7 @@ pub(crate) struct Facts {
     pub(crate) asked: Vec<Asked>,
     script: Script,
     records: broadcast::Sender<Record>,
-    turn: u64,
+    book: LeaseBook,
 }
 
 /// One hand on an open link. Copies are the same hand.
@@ -91,7 +94,7 @@ impl FakeHand {
             asked: Vec::new(),
             script: Box::new(|_| Fate::Answered),
             records: broadcast::channel(RECORDS).0,
-            turn: 0,
+            book: LeaseBook::default(),
         };
         let hand = Self {
             facts: Arc::new(Mutex::new(facts)),
@@ -226,6 +229,32 @@ fn timeout(address: u16) -> RequestError {
     RequestError::Timeout { address, after_ms }
 }
 
+impl Facts {
+    fn disarm(&mut self) {
+        self.status.armed = None;
+        if self.status.state == LinkState::Armed {
+            self.status.state = LinkState::Monitoring;
+        }
+    }
+
+    fn hold_now(&mut self, at: Moment) {
+        self.status.armed = None;
+        if self.status.state.is_live() {
+            self.status.state = LinkState::Monitoring;
+            self.status.hold = Hold::Confirmed { at, rest: at };
+        }
+    }
+}
+
+impl FakeHand {
+    fn hold(&self, why: Disarmed) {
+        let at = self.clock.now();
+        let mut facts = self.facts();
+        facts.book.end(why);
+        facts.hold_now(at);
+    }
+}
+
 impl Hand for FakeHand {
     fn status(&self) -> LinkStatus {
         self.facts().status.clone()
@@ -343,40 +372,59 @@ impl Hand for FakeHand {
 
     fn stop(&self) {
         self.note(Asked::Stop);
-        let at = self.clock.now();
-        let mut facts = self.facts();
-        facts.status.armed = None;
-        if facts.status.state.is_live() {
-            facts.status.state = LinkState::Monitoring;
-            facts.status.hold = Hold::Confirmed { at, rest: at };
-        }
+        self.hold(Disarmed::Stop);
     }
 
     fn disarm(&self) {
         self.note(Asked::Disarm);
         let mut facts = self.facts();
-        facts.status.armed = None;
-        if facts.status.state == LinkState::Armed {
-            facts.status.state = LinkState::Monitoring;
-        }
+        facts.book.end(Disarmed::Person);
+        facts.disarm();
     }
 
-    fn arm(&self, request: ArmRequest) {
+    fn grant(&self, owner: Owner) -> Lease {
+        self.facts().book.grant(owner)
+    }
+
+    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.facts().book.check(lease)
+    }
+
+    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
         self.note(Asked::Arm(request));
+        Ok(())
     }
 
-    fn take_turn(&self) -> MotionTurn {
-        let mut facts = self.facts();
-        facts.turn += 1;
-        MotionTurn(facts.turn)
+    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
+        self.note(Asked::Move(*setpoints));
+        Ok(())
     }
 
-    fn set(&self, turn: MotionTurn, setpoints: &Setpoints) -> bool {
-        let is_its = self.facts().turn == turn.0;
-        if is_its {
-            self.note(Asked::Move(*setpoints));
-        }
-        is_its
+    fn run_until(&self, lease: Lease, _until: Moment) -> Result<(), LeaseRefusal> {
+        self.check(lease)
+    }
+
+    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
+        self.note(Asked::Stop);
+        self.facts().hold_now(self.clock.now());
+        Ok(())
+    }
+
+    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
+        self.note(Asked::Disarm);
+        self.facts().disarm();
+        Ok(())
+    }
+
+    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
+        self.note(Asked::Stop);
+        self.hold(why);
+        Ok(())
     }
 
     fn read_at(&self, rates: PollRates) {

@@ -1,6 +1,7 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
+use crate::link::Owner;
 use crate::poses::library::{EntryId, PoseId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::LinkState;
@@ -45,7 +46,7 @@ impl Bench {
             },
             pace,
             epoch: ArmEpoch(1),
-            turn: hand.take_turn(),
+            lease: hand.grant(Owner::Task),
             locked,
             seen: HandSample::default(),
             clock: hand.clock,
@@ -175,7 +176,7 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
 async fn whoever_takes_the_turn_ends_a_sequence() {
     let bench = Bench::playing().await;
     bench.hand.asked();
-    let _another = bench.hand.take_turn();
+    let _another = bench.hand.grant(Owner::Person);
     bench.at(700, 20).await;
     assert_eq!(bench.hand.asked(), []);
     assert_eq!(bench.task.await.unwrap(), PlayEnd::TakenOver);

@@ -1,7 +1,7 @@
 //! What a series sends and what ends it, on a hand that only notes what it is told.
 
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
-use crate::link::PollRates;
+use crate::link::{Owner, PollRates};
 use crate::record::LinkState;
 use crate::tasks::Hand;
 use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, series};
@@ -54,7 +54,7 @@ impl Bench {
         let start = SeriesStart {
             plan,
             epoch: ArmEpoch(1),
-            turn: hand.take_turn(),
+            lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
             clock: hand.clock,
         };
@@ -296,7 +296,7 @@ async fn readings_that_stay_away_end_it() {
 async fn setpoints_of_a_series_do_not_pass_once_another_took_the_turn() {
     let bench = Bench::running().await;
     bench.hand.asked();
-    let _another = bench.hand.take_turn();
+    let _another = bench.hand.grant(Owner::Person);
     for _ in 0..100 {
         bench.say(SPOKEN).await;
     }

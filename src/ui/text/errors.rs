@@ -4,7 +4,7 @@
 use crate::app::settings::Language;
 use crate::hand::OutOfRange;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
-use crate::link::{LinkTrouble, RequestError};
+use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
 use crate::store::{FileCause, FileError};
 use crate::tasks::TaskError;
 use crate::transport::endpoint::error::{EndpointError, Want};
@@ -85,6 +85,8 @@ chinese! {
     fn request_zh(&RequestError) {
         RequestError::NotConnected => "没有连接：未发送任何内容。";
         RequestError::NotArmed => "未使能：未发送任何内容。";
+        RequestError::NotOwner(LeaseRefusal::Taken(_)) => "灵巧手现由其他来源控制：未发送任何内容。";
+        RequestError::NotOwner(LeaseRefusal::Ended(_)) => "目前没有人获准控制灵巧手，需由人授权：未发送任何内容。";
         RequestError::Full { limit } => "已有 {limit} 个请求在等待：未发送。";
         RequestError::TooLong { address, len } => "此线路无法一次读写地址 {address} 起的 {len} 字节。";
         RequestError::Timeout { address, after_ms } => "地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。";

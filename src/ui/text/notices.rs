@@ -36,6 +36,8 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::Stale => panels::DISARMED_STALE,
         Disarmed::OtherController => panels::DISARMED_OTHER_CONTROLLER,
         Disarmed::Resume => panels::DISARMED_RESUME,
+        Disarmed::Released => panels::DISARMED_RELEASED,
+        Disarmed::Silent => panels::DISARMED_SILENT,
     })
 }
 

@@ -11,7 +11,7 @@ use handscope::app::hand::Preset;
 use handscope::app::notices::{NoticeKind, RequestKind};
 use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandSample, Moment, Speed, Timed};
-use handscope::link::RequestError;
+use handscope::link::{Owner, RequestError};
 use handscope::record::{ArmRefusal, Hold, LinkState, Record, WriteFate};
 use handscope::sim::SimConfig;
 use handscope::transport::Endpoint;
@@ -354,7 +354,8 @@ async fn records_come_in_the_order_in_which_it_happened() {
     let config = crate::setup::link::config("rs485:x", to_hand(hand));
     let (link, mut records) = handscope::link::open(config, &tokio::runtime::Handle::current());
     sleep(Duration::from_secs(1)).await;
-    link.arm(crate::setup::link::gentle());
+    let lease = link.grant(Owner::Person);
+    link.arm(lease, crate::setup::link::gentle()).unwrap();
     sleep(Duration::from_millis(200)).await;
     link.stop();
     sleep(Duration::from_secs(1)).await;

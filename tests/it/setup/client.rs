@@ -3,8 +3,9 @@
 use futures::FutureExt as _;
 use handscope::hand::{Groups, HandCommand, HandSample, Moment, Setpoints, Setting, Span};
 use handscope::link;
-use handscope::link::{LinkConfig, LinkHandle, MotionTurn, Records, RequestError};
+use handscope::link::{ArmRequest, Lease, LinkConfig, LinkHandle, Owner, Records, RequestError};
 use handscope::record::{ArmRefusal, Calibrated, LinkState, Record, Reset, Saved, Written};
+use std::cell::Cell;
 use std::ops::Deref;
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -60,7 +61,7 @@ pub(crate) enum LinkEvent {
 pub(crate) struct Client {
     link: LinkHandle,
     records: Records,
-    turn: MotionTurn,
+    lease: Cell<Lease>,
     tickets: u64,
     ends: mpsc::UnboundedSender<LinkEvent>,
     ended: mpsc::UnboundedReceiver<LinkEvent>,
@@ -71,7 +72,7 @@ pub(crate) fn open(config: LinkConfig) -> Client {
     let (link, records) = link::open(config, &tokio::runtime::Handle::current());
     let (ends, ended) = mpsc::unbounded_channel();
     Client {
-        turn: link.take_turn(),
+        lease: Cell::new(link.grant(Owner::Person)),
         link,
         records,
         tickets: 0,
@@ -88,9 +89,15 @@ impl Deref for Client {
     }
 }
 
-async fn done(link: LinkHandle, request: Request) -> Result<Outcome, RequestError> {
+async fn done(link: LinkHandle, lease: Lease, request: Request) -> Result<Outcome, RequestError> {
     match request {
-        Request::Command(command) => link.write(command).await.map(|()| Outcome::Acknowledged),
+        Request::Command(command) => {
+            let written = match command.is_motion() {
+                true => link.write_as(lease, command).await,
+                false => link.write(command).await,
+            };
+            written.map(|()| Outcome::Acknowledged)
+        }
         Request::Read(span) => {
             let bytes = link.read(span).await?;
             Ok(Outcome::Memory { span, bytes })
@@ -104,15 +111,21 @@ async fn done(link: LinkHandle, request: Request) -> Result<Outcome, RequestErro
 
 impl Client {
     pub(crate) fn set(&self, setpoints: &Setpoints) {
-        assert!(
-            self.link.set(self.turn, setpoints),
-            "nobody else took the turn"
-        );
+        // One that ended is refused, and that is what is tried.
+        let _set = self.link.set(self.lease.get(), setpoints);
+    }
+
+    /// A person grants the right to move the hand, and arms.
+    pub(crate) fn arm(&self, request: ArmRequest) {
+        if self.link.check(self.lease.get()).is_err() {
+            self.lease.set(self.link.grant(Owner::Person));
+        }
+        self.link.arm(self.lease.get(), request).unwrap();
     }
 
     /// Asks at once. What is refused at once comes back at once.
     pub(crate) fn ask(&mut self, request: Request) -> Result<Ticket, RequestError> {
-        let mut asked = Box::pin(done(self.link.clone(), request));
+        let mut asked = Box::pin(done(self.link.clone(), self.lease.get(), request));
         let ticket = Ticket(self.tickets);
         self.tickets += 1;
         if let Some(end) = asked.as_mut().now_or_never() {

@@ -1,0 +1,278 @@
+//! How a hand follows a source: from where it is, never far ahead and never fast, and not at all once the source is silent,
+//! frozen or let go. Pure: offers, poses and time in, orders out.
+
+use crate::hand::{Angle, Dof, Moment, PerDof};
+use crate::inputs::offer::Offer;
+use crate::record::LinkState;
+use std::time::Duration;
+
+/// A source that says nothing new for this long is held …
+pub const HOLDS_AFTER: Duration = Duration::from_millis(200);
+/// … and after this it may move the hand no more.
+pub const ENDS_AFTER: Duration = Duration::from_secs(1);
+/// Targets that are the same to the last bit for this long, away from the ends of the range: tracking is frozen?
+pub const FROZEN_AFTER: Duration = Duration::from_millis(500);
+/// A hold follows the hand for this long, as it acts late; then it stays.
+const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
+/// Arming is asked for again after this.
+const ARMS_AGAIN_AFTER: Duration = Duration::from_millis(500);
+/// A look that comes late moves no further than one in time.
+const STEP_LONGEST: Duration = Duration::from_millis(40);
+
+/// How far ahead of a joint its target may be, and how fast it may go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct FollowLimits {
+    /// Counts ahead at most, see [`Self::LEAD`].
+    pub lead: u16,
+    /// Counts a second at most, see [`Self::RATE`].
+    pub rate: u16,
+}
+
+impl FollowLimits {
+    /// Smallest and largest lead, counts.
+    pub const LEAD: (u16, u16) = (20, 500);
+    /// Smallest and largest rate, counts a second: the hand's own is 1667 at most (manual 2.6.13).
+    pub const RATE: (u16, u16) = (50, 1700);
+
+    /// The nearest limits that make sense.
+    #[must_use]
+    pub fn within(self) -> Self {
+        Self {
+            lead: self.lead.clamp(Self::LEAD.0, Self::LEAD.1),
+            rate: self.rate.clamp(Self::RATE.0, Self::RATE.1),
+        }
+    }
+}
+
+impl Default for FollowLimits {
+    fn default() -> Self {
+        Self {
+            lead: 150,
+            rate: 800,
+        }
+    }
+}
+
+/// What goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FollowPhase {
+    /// Nothing moves yet: no target came, or the hand is not armed yet.
+    Waiting,
+    /// The hand follows.
+    Following,
+    /// The hand follows, and the source repeats itself to the last bit.
+    Frozen,
+    /// The source said nothing for a while: the hand is held.
+    Silent,
+    /// The dead-man is not held: the hand was stopped.
+    Released,
+}
+
+/// What is known of the hand.
+#[derive(Debug, Clone, Copy)]
+pub struct FollowInput {
+    /// Where its link stands.
+    pub state: LinkState,
+    /// Where the joints are; `None` where that is not known freshly.
+    pub pose: PerDof<Option<Angle>>,
+}
+
+/// What is to be done at the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FollowOrder {
+    /// Let setpoints pass.
+    Arm,
+    /// These joints go here; the others are left alone.
+    Aim(PerDof<Option<Angle>>),
+    /// Stop the hand; whoever holds the dead-man again goes on.
+    Halt,
+    /// Stop the hand; the source may move it no more.
+    End,
+}
+
+/// One source that a hand follows.
+#[derive(Debug, Clone)]
+pub struct Follow {
+    limits: FollowLimits,
+    began: Moment,
+    phase: FollowPhase,
+    newest: Option<Offer>,
+    /// Since when targets are the same to the last bit.
+    same_since: Moment,
+    /// Where each joint was sent, finer than counts; `None` enters from where the joint is.
+    targets: PerDof<Option<f32>>,
+    sent: PerDof<Option<Angle>>,
+    stepped: Moment,
+    asked_to_arm: Option<Moment>,
+}
+
+impl Follow {
+    /// Begins with nothing offered.
+    #[must_use]
+    pub fn new(limits: FollowLimits, now: Moment) -> Self {
+        Self {
+            limits: limits.within(),
+            began: now,
+            phase: FollowPhase::Waiting,
+            newest: None,
+            same_since: now,
+            targets: PerDof::splat(None),
+            sent: PerDof::splat(None),
+            stepped: now,
+            asked_to_arm: None,
+        }
+    }
+
+    /// What goes on.
+    #[must_use]
+    pub const fn phase(&self) -> FollowPhase {
+        self.phase
+    }
+
+    /// Where the joints were sent last.
+    #[must_use]
+    pub const fn sent(&self) -> &PerDof<Option<Angle>> {
+        &self.sent
+    }
+
+    /// Other limits from now on.
+    pub fn limit(&mut self, limits: FollowLimits) {
+        self.limits = limits.within();
+    }
+
+    /// Takes a newer target.
+    pub fn offer(&mut self, offer: Offer) {
+        let before = self.newest.replace(offer);
+        let is_same = before.is_some_and(|before| {
+            offer.mark.is_some() && before.mark == offer.mark && before.held == offer.held
+        });
+        if is_same {
+            return;
+        }
+        self.same_since = offer.at;
+        if self.phase == FollowPhase::Frozen {
+            // Nobody knows where it went meanwhile: as on entering.
+            self.enter();
+        }
+    }
+
+    /// Time goes on.
+    pub fn tick(&mut self, seen: FollowInput, now: Moment) -> Option<FollowOrder> {
+        let age = now.since(self.newest.map_or(self.began, |offer| offer.at));
+        if age >= ENDS_AFTER {
+            return Some(FollowOrder::End);
+        }
+        let offer = self.newest?;
+        let is_silent = age >= HOLDS_AFTER;
+        if offer.held == Some(false) || is_silent && offer.held.is_some() {
+            return self.halt(match is_silent {
+                true => FollowPhase::Silent,
+                false => FollowPhase::Released,
+            });
+        }
+        if is_silent {
+            return self.hold(seen, age);
+        }
+        if seen.state != LinkState::Armed {
+            self.enter();
+            self.phase = FollowPhase::Waiting;
+            let is_due = |at| now.since(at) >= ARMS_AGAIN_AFTER;
+            if seen.state == LinkState::Monitoring && self.asked_to_arm.is_none_or(is_due) {
+                self.asked_to_arm = Some(now);
+                return Some(FollowOrder::Arm);
+            }
+            return None;
+        }
+        self.asked_to_arm = None;
+        if self.phase == FollowPhase::Silent {
+            self.enter();
+        }
+        let is_frozen = offer.mark.is_some()
+            && now.since(self.same_since) >= FROZEN_AFTER
+            && is_away_from_ends(&offer.aims);
+        self.phase = match is_frozen {
+            true => FollowPhase::Frozen,
+            false => FollowPhase::Following,
+        };
+        self.step(&offer.aims, &seen.pose, now)
+    }
+
+    /// From where the joints are, whatever they were told before.
+    fn enter(&mut self) {
+        self.targets = PerDof::splat(None);
+        self.sent = PerDof::splat(None);
+    }
+
+    /// Stops once; what is held again begins anew.
+    fn halt(&mut self, phase: FollowPhase) -> Option<FollowOrder> {
+        let stands = matches!(self.phase, FollowPhase::Released | FollowPhase::Silent);
+        self.enter();
+        self.asked_to_arm = None;
+        self.phase = phase;
+        (!stands).then_some(FollowOrder::Halt)
+    }
+
+    /// Where the hand is becomes its target.
+    fn hold(&mut self, seen: FollowInput, age: Duration) -> Option<FollowOrder> {
+        let steered = self.targets.map(|target| target.is_some());
+        let follows = age < HOLDS_AFTER + HOLD_FOLLOWS;
+        let was_silent = std::mem::replace(&mut self.phase, FollowPhase::Silent);
+        if seen.state != LinkState::Armed || !follows && was_silent == FollowPhase::Silent {
+            self.enter();
+            return None;
+        }
+        let pose = PerDof::from_fn(|dof| seen.pose[dof].filter(|_| steered[dof]));
+        self.send(pose)
+    }
+
+    fn step(
+        &mut self,
+        aims: &PerDof<Option<Angle>>,
+        pose: &PerDof<Option<Angle>>,
+        now: Moment,
+    ) -> Option<FollowOrder> {
+        let elapsed = now
+            .since(std::mem::replace(&mut self.stepped, now))
+            .min(STEP_LONGEST);
+        let reach = f32::from(self.limits.rate) * elapsed.as_secs_f32();
+        let lead = f32::from(self.limits.lead);
+        for dof in Dof::ALL {
+            let Some((aim, at)) = aims[dof].zip(pose[dof]) else {
+                // One that is not known is sent nowhere; one that is not aimed at is left alone.
+                self.targets[dof] = self.targets[dof].filter(|_| aims[dof].is_some());
+                continue;
+            };
+            let (aim, at) = (f32::from(aim.get()), f32::from(at.get()));
+            self.targets[dof] = Some(match self.targets[dof] {
+                None => at,
+                Some(from) => {
+                    let to = aim.clamp(at - lead, at + lead);
+                    from + (to - from).clamp(-reach, reach)
+                }
+            });
+        }
+        let targets = PerDof::from_fn(|dof| {
+            let target = self.targets[dof].filter(|_| pose[dof].is_some())?;
+            #[expect(clippy::cast_possible_truncation, reason = "rounded, and in range")]
+            Some(Angle::nearest(target.round() as i64))
+        });
+        self.send(targets)
+    }
+
+    /// Sends what is news to the joints.
+    fn send(&mut self, targets: PerDof<Option<Angle>>) -> Option<FollowOrder> {
+        let news = PerDof::from_fn(|dof| targets[dof].filter(|to| self.sent[dof] != Some(*to)));
+        for (dof, to) in news.iter() {
+            self.sent[dof] = to.or(self.sent[dof].filter(|_| self.targets[dof].is_some()));
+        }
+        let any = news.iter().any(|(_, to)| to.is_some());
+        any.then_some(FollowOrder::Aim(news))
+    }
+}
+
+/// A hand that is told to be wide open or a fist may rightly be told so for long.
+fn is_away_from_ends(aims: &PerDof<Option<Angle>>) -> bool {
+    let mut aims = aims.iter().filter_map(|(_, aim)| *aim);
+    aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)
+}

@@ -1,0 +1,317 @@
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
+
+use crate::hand::{Angle, Dof, Moment, PerDof};
+use crate::inputs::follow::{
+    ENDS_AFTER, FROZEN_AFTER, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
+    HOLDS_AFTER,
+};
+use crate::inputs::offer::Offer;
+use crate::record::LinkState;
+use fastrand::Rng;
+use std::time::Duration;
+
+const LIMITS: FollowLimits = FollowLimits {
+    lead: 100,
+    rate: 1000,
+};
+
+fn ms(ms: u64) -> Moment {
+    Moment::from_micros(ms * 1000)
+}
+
+fn at(angle: i16) -> FollowInput {
+    FollowInput {
+        state: LinkState::Armed,
+        pose: PerDof::splat(Some(Angle::nearest(angle))),
+    }
+}
+
+fn offer(when: u64, angle: i16) -> Offer {
+    Offer {
+        at: ms(when),
+        aims: PerDof::splat(Some(Angle::nearest(angle))),
+        held: None,
+        mark: Some(angle.unsigned_abs().into()),
+    }
+}
+
+fn index(order: Option<FollowOrder>) -> Option<i16> {
+    match order {
+        Some(FollowOrder::Aim(aims)) => aims[Dof::Index].map(Angle::get),
+        None => None,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_first_target_is_the_actual_pose_and_the_next_are_within_rate_and_lead() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    follow.offer(offer(0, 0));
+    assert_eq!(index(follow.tick(at(800), ms(0))), Some(800));
+    assert_eq!(index(follow.tick(at(800), ms(10))), Some(790));
+    // A look that comes late moves no further than one in time.
+    assert_eq!(index(follow.tick(at(800), ms(150))), Some(750));
+    for n in 0..20 {
+        follow.offer(offer(160 + n * 10, 0));
+        let _sent = follow.tick(at(800), ms(160 + n * 10));
+    }
+    assert_eq!(follow.sent()[Dof::Index], Some(Angle::nearest(700)), "lead");
+}
+
+#[test]
+fn a_silent_source_is_held_and_then_ended() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    follow.offer(offer(0, 0));
+    let _entered = follow.tick(at(800), ms(0));
+    let _moved = follow.tick(at(795), ms(30));
+    let held = HOLDS_AFTER.as_micros().try_into().unwrap();
+    let held = Moment::from_micros(held);
+    assert_eq!(index(follow.tick(at(760), held)), Some(760));
+    assert_eq!(follow.phase(), FollowPhase::Silent);
+    assert_eq!(
+        index(follow.tick(at(755), ms(260))),
+        Some(755),
+        "it acts late"
+    );
+    assert_eq!(index(follow.tick(at(750), ms(330))), None, "and stays then");
+    // A target that comes now is entered to from where the joint is.
+    let mut back = follow.clone();
+    back.offer(offer(400, 0));
+    assert_eq!(index(back.tick(at(752), ms(400))), Some(752));
+    let end = Moment::from_duration(ENDS_AFTER);
+    assert_eq!(follow.tick(at(750), end), Some(FollowOrder::End));
+}
+
+#[test]
+fn a_source_that_never_says_anything_ends_too() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    assert_eq!(follow.tick(at(800), ms(999)), None);
+    assert_eq!(follow.tick(at(800), ms(1000)), Some(FollowOrder::End));
+}
+
+/// Offers the same each 10 ms, and gives the phase and what was sent last.
+fn repeat(aim: i16, mark: Option<u64>, for_ms: u64) -> (Follow, FollowPhase) {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    for when in (0..=for_ms).step_by(10) {
+        follow.offer(Offer {
+            mark,
+            ..offer(when, aim)
+        });
+        let _sent = follow.tick(at(500), ms(when));
+    }
+    let phase = follow.phase();
+    (follow, phase)
+}
+
+#[test]
+fn targets_that_repeat_to_the_last_bit_are_called_frozen_and_the_next_one_is_entered_to() {
+    let frozen_ms = u64::try_from(FROZEN_AFTER.as_millis()).unwrap();
+    assert_eq!(
+        repeat(450, Some(1), frozen_ms - 10).1,
+        FollowPhase::Following
+    );
+    let (mut follow, phase) = repeat(450, Some(1), frozen_ms);
+    assert_eq!(phase, FollowPhase::Frozen);
+    for end in [0, 1000] {
+        assert_eq!(
+            repeat(end, Some(1), 2000).1,
+            FollowPhase::Following,
+            "{end}"
+        );
+    }
+    assert_eq!(repeat(450, None, 2000).1, FollowPhase::Following, "a pad");
+    follow.offer(offer(510, 100));
+    // Not from the target of before, but from where the joint is.
+    assert_eq!(index(follow.tick(at(520), ms(510))), Some(520));
+    assert_eq!(follow.phase(), FollowPhase::Following);
+}
+
+#[test]
+fn a_dead_man_that_is_let_go_stops_once_and_begins_anew_when_held() {
+    let held = |when, held| Offer {
+        held: Some(held),
+        ..offer(when, 0)
+    };
+    let free = FollowInput {
+        state: LinkState::Monitoring,
+        ..at(800)
+    };
+    let mut follow = Follow::new(LIMITS, ms(0));
+    follow.offer(held(0, true));
+    assert_eq!(follow.tick(free, ms(0)), Some(FollowOrder::Arm));
+    assert_eq!(index(follow.tick(at(800), ms(10))), Some(800));
+    follow.offer(held(20, false));
+    assert_eq!(follow.tick(at(800), ms(20)), Some(FollowOrder::Halt));
+    follow.offer(held(30, false));
+    assert_eq!(follow.tick(at(800), ms(30)), None);
+    assert_eq!(follow.phase(), FollowPhase::Released);
+    follow.offer(held(40, true));
+    assert_eq!(follow.tick(free, ms(40)), Some(FollowOrder::Arm));
+    assert_eq!(index(follow.tick(at(780), ms(50))), Some(780));
+    // Its state grows old like a target.
+    assert_eq!(follow.tick(at(780), ms(240)), Some(FollowOrder::Halt));
+    assert_eq!(follow.phase(), FollowPhase::Silent);
+}
+
+#[test]
+fn a_joint_that_is_not_aimed_at_or_not_known_is_left_alone() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    let mut aims = offer(0, 0);
+    aims.aims[Dof::Index] = None;
+    follow.offer(aims);
+    let mut seen = at(800);
+    seen.pose[Dof::Ring] = None;
+    let Some(FollowOrder::Aim(sent)) = follow.tick(seen, ms(0)) else {
+        panic!("nothing sent")
+    };
+    assert_eq!((sent[Dof::Index], sent[Dof::Ring]), (None, None));
+    assert!(sent[Dof::Little].is_some());
+}
+
+/// A hand that goes where it was told at its own speed, late, and is pushed now and then.
+struct Joints {
+    at: PerDof<f32>,
+    told: PerDof<f32>,
+    state: LinkState,
+}
+
+impl Joints {
+    fn go_on(&mut self, elapsed: Duration, rng: &mut Rng) {
+        for dof in Dof::ALL {
+            let reach = 1667.0 * elapsed.as_secs_f32();
+            self.at[dof] += (self.told[dof] - self.at[dof]).clamp(-reach, reach);
+            if rng.f32() < 0.002 {
+                self.at[dof] = rng.f32() * 1000.0;
+            }
+        }
+    }
+
+    fn input(&self, rng: &mut Rng) -> FollowInput {
+        #[expect(clippy::cast_possible_truncation, reason = "in range")]
+        let pose = self.at.map(|at| Angle::nearest(at.round() as i64));
+        FollowInput {
+            state: self.state,
+            pose: pose.map(|at| (rng.f32() >= 0.01).then_some(at)),
+        }
+    }
+}
+
+/// What a source does now and then.
+fn next_offer(now: Moment, before: Option<Offer>, rng: &mut Rng) -> Option<Offer> {
+    if rng.f32() < 0.1 {
+        return None;
+    }
+    if let Some(before) = before.filter(|_| rng.f32() < 0.5) {
+        return Some(Offer { at: now, ..before });
+    }
+    Some(Offer {
+        at: now,
+        aims: PerDof::from_fn(|_| {
+            let aim = Angle::nearest(rng.i16(0..=1000));
+            (rng.f32() >= 0.1).then_some(aim)
+        }),
+        held: match rng.u8(0..4) {
+            0 => Some(false),
+            1 => Some(true),
+            _ => None,
+        },
+        mark: (rng.f32() < 0.8).then(|| rng.u64(..)),
+    })
+}
+
+/// 20 000 schedules of offers, silence, pushes and disarming: no target beyond rate and lead, none without a fresh offer but
+/// where the hand is, none after the end.
+#[test]
+fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
+    let (mut aims, mut halts, mut ends) = (0, 0, 0);
+    for seed in 0..20_000 {
+        let mut rng = Rng::with_seed(seed);
+        let limits = FollowLimits {
+            lead: rng.u16(20..=500),
+            rate: rng.u16(50..=1700),
+        };
+        let mut follow = Follow::new(limits, ms(0));
+        let start = rng.f32() * 1000.0;
+        let mut hand = Joints {
+            at: PerDof::splat(start),
+            told: PerDof::splat(start),
+            state: LinkState::Monitoring,
+        };
+        let mut offered: Option<Offer> = None;
+        let mut sent: PerDof<Option<(Angle, Moment)>> = PerDof::splat(None);
+        let mut now = ms(0);
+        let mut silence = 0_u32;
+        for _ in 0..120 {
+            let elapsed = Duration::from_micros(rng.u64(200..30_000));
+            now = now.plus(elapsed);
+            hand.go_on(elapsed, &mut rng);
+            if silence > 0 {
+                silence -= 1;
+            } else if rng.f32() < 0.03 {
+                silence = rng.u32(1..60);
+            } else if let Some(offer) = next_offer(now, offered, &mut rng) {
+                offered = Some(offer);
+                follow.offer(offer);
+            }
+            if rng.f32() < 0.01 {
+                hand.state = LinkState::Monitoring;
+            }
+            let seen = hand.input(&mut rng);
+            match follow.tick(seen, now) {
+                None => {}
+                Some(FollowOrder::Arm) => {
+                    assert_ne!(offered.unwrap().held, Some(false), "seed {seed}");
+                    hand.state = LinkState::Armed;
+                    sent = PerDof::splat(None);
+                }
+                Some(FollowOrder::Halt) => {
+                    halts += 1;
+                    hand.told = hand.at;
+                    hand.state = LinkState::Monitoring;
+                    sent = PerDof::splat(None);
+                }
+                Some(FollowOrder::End) => {
+                    ends += 1;
+                    let last = offered.map_or(ms(0), |offer| offer.at);
+                    assert!(now.since(last) >= ENDS_AFTER, "seed {seed}");
+                    break;
+                }
+                Some(FollowOrder::Aim(targets)) => {
+                    assert_eq!(hand.state, LinkState::Armed, "seed {seed}");
+                    let offer = offered.unwrap();
+                    assert_ne!(offer.held, Some(false), "seed {seed}");
+                    let is_fresh = now.since(offer.at) < HOLDS_AFTER;
+                    for (dof, to) in targets.iter() {
+                        let Some(to) = *to else { continue };
+                        aims += 1;
+                        let actual = seen.pose[dof].expect("a pose that is known");
+                        let is_entry = to == actual;
+                        assert!(is_fresh || is_entry, "seed {seed}: moved in silence");
+                        let ahead = to.get().abs_diff(actual.get());
+                        if let (Some((before, when)), false) = (sent[dof], is_entry) {
+                            let step = f32::from(to.get().abs_diff(before.get()));
+                            let may = f32::from(limits.rate) * now.since(when).as_secs_f32() + 1.0;
+                            assert!(step <= may, "seed {seed}: {step} of {may}");
+                            let was = before.get().abs_diff(actual.get());
+                            let may = limits.lead.max(was) + 1;
+                            assert!(ahead <= may, "seed {seed}: lead {ahead} of {may}");
+                        } else {
+                            assert!(is_entry, "seed {seed}: entered with a jump of {ahead}");
+                        }
+                        sent[dof] = Some((to, now));
+                        hand.told[dof] = to.get().into();
+                    }
+                    for dof in Dof::ALL {
+                        if offer.aims[dof].is_none() {
+                            sent[dof] = None;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(
+        aims > 500_000 && halts > 5_000 && ends > 500,
+        "{aims} {halts} {ends}"
+    );
+}

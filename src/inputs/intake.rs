@@ -1,0 +1,191 @@
+//! Lines of one stream, whoever they come from: one sender at a time, in order, counted. Pure.
+
+use crate::hand::Moment;
+use crate::hand::kinematics::Side;
+use crate::inputs::follow::ENDS_AFTER;
+use crate::inputs::line::{LineFault, StreamLine};
+use std::collections::{BTreeMap, VecDeque};
+use std::net::SocketAddr;
+use std::time::Duration;
+
+/// The rate is that of the lines of the last second, of so many at most.
+const RATE_OVER: Duration = Duration::from_secs(1);
+const RATE_LINES: usize = 1024;
+
+/// What came in over one stream so far.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct IntakeView {
+    /// Who is listened to, and when a line of theirs came last.
+    pub sender: Option<(SocketAddr, Moment)>,
+    /// Lines a second.
+    pub rate_hz: f32,
+    /// Lines that were taken.
+    pub taken: u64,
+    /// Lines that were refused, by reason.
+    pub refused: BTreeMap<LineFault, u64>,
+}
+
+/// Takes lines in.
+#[derive(Debug)]
+pub struct Intake {
+    side: Side,
+    view: IntakeView,
+    seq: Option<u64>,
+    recent: VecDeque<Moment>,
+}
+
+impl Intake {
+    /// For the hand of this side.
+    #[must_use]
+    pub fn new(side: Side) -> Self {
+        Self {
+            side,
+            view: IntakeView::default(),
+            seq: None,
+            recent: VecDeque::new(),
+        }
+    }
+
+    /// Takes a line of a sender. A stop passes whoever sends it.
+    ///
+    /// # Errors
+    /// [`LineFault`]: why it is refused, which is counted.
+    pub fn take(
+        &mut self,
+        line: &[u8],
+        from: SocketAddr,
+        now: Moment,
+    ) -> Result<StreamLine, LineFault> {
+        let taken = StreamLine::parse(line, self.side)
+            .and_then(|line| self.in_turn(&line, from, now).map(|()| line));
+        match &taken {
+            Ok(_) => {
+                self.view.taken += 1;
+                if self.recent.len() >= RATE_LINES {
+                    self.recent.pop_front();
+                }
+                self.recent.push_back(now);
+            }
+            Err(fault) => self.refuse(*fault),
+        }
+        taken
+    }
+
+    /// Counts what was refused before it was a line.
+    pub fn refuse(&mut self, fault: LineFault) {
+        // Wrong lengths are one reason, however wrong.
+        let fault = match fault {
+            LineFault::Length { .. } => LineFault::Length { got: 0 },
+            fault => fault,
+        };
+        *self.view.refused.entry(fault).or_default() += 1;
+    }
+
+    fn in_turn(
+        &mut self,
+        line: &StreamLine,
+        from: SocketAddr,
+        now: Moment,
+    ) -> Result<(), LineFault> {
+        if line.stop {
+            return Ok(());
+        }
+        if let Some((sender, last)) = self.view.sender
+            && now.since(last) < ENDS_AFTER
+        {
+            if sender != from {
+                return Err(LineFault::OtherSender);
+            }
+            if self.seq.is_some() && line.seq.is_some() && line.seq <= self.seq {
+                return Err(LineFault::Late);
+            }
+        }
+        self.seq = line.seq;
+        self.view.sender = Some((from, now));
+        Ok(())
+    }
+
+    /// What came in, as of now.
+    pub fn view(&mut self, now: Moment) -> &IntakeView {
+        while self
+            .recent
+            .front()
+            .is_some_and(|at| now.since(*at) > RATE_OVER)
+        {
+            self.recent.pop_front();
+        }
+        let span = self.recent.front().zip(self.recent.back());
+        let span = span.map_or(0.0, |(first, last)| last.since(*first).as_secs_f32());
+        let gaps = u16::try_from(self.recent.len().saturating_sub(1)).unwrap_or(u16::MAX);
+        self.view.rate_hz = match span > 0.0 {
+            true => f32::from(gaps) / span,
+            false => 0.0,
+        };
+        &self.view
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    fn peer(port: u16) -> SocketAddr {
+        ([127, 0, 0, 1], port).into()
+    }
+
+    const LINE: &[u8] = br#"{"right":[1,1,1,1,1,1]}"#;
+
+    fn numbered(seq: u64) -> Vec<u8> {
+        format!(r#"{{"seq":{seq},"right":[1,1,1,1,1,1]}}"#).into_bytes()
+    }
+
+    #[test]
+    fn one_sender_is_listened_to_until_it_is_silent() {
+        let mut intake = Intake::new(Side::Right);
+        assert!(intake.take(LINE, peer(1), at(0)).is_ok());
+        assert_eq!(
+            intake.take(LINE, peer(2), at(999)),
+            Err(LineFault::OtherSender)
+        );
+        let stop = intake.take(br#"{"stop":true}"#, peer(2), at(999));
+        assert!(stop.is_ok_and(|line| line.stop), "a stop passes");
+        assert!(intake.take(LINE, peer(2), at(1000)).is_ok());
+        assert_eq!(
+            intake.take(LINE, peer(1), at(1001)),
+            Err(LineFault::OtherSender)
+        );
+        assert_eq!(intake.view(at(1001)).refused[&LineFault::OtherSender], 2);
+    }
+
+    #[test]
+    fn late_and_doubled_lines_are_refused_and_a_sender_that_begins_anew_is_not() {
+        let mut intake = Intake::new(Side::Right);
+        for (seq, ms, taken) in [
+            (5, 0, true),
+            (5, 10, false),
+            (4, 20, false),
+            (7, 30, true),
+            (6, 40, false),
+            (1, 1030, true),
+        ] {
+            let result = intake.take(&numbered(seq), peer(1), at(ms));
+            assert_eq!(result.is_ok(), taken, "{seq} at {ms}");
+        }
+        assert_eq!(intake.view(at(1030)).refused[&LineFault::Late], 3);
+    }
+
+    #[test]
+    fn the_rate_is_that_of_the_last_second() {
+        let mut intake = Intake::new(Side::Right);
+        for n in 0..300 {
+            intake.take(LINE, peer(1), at(n * 5)).unwrap();
+        }
+        let rate = intake.view(at(1500)).rate_hz;
+        assert!((rate - 200.0).abs() < 1.0, "{rate}");
+        assert!(intake.view(at(2600)).rate_hz.abs() < 0.1);
+    }
+}

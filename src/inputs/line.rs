@@ -1,0 +1,193 @@
+//! Lines of JSON that ask a hand to go somewhere: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open (`handscope help stream`).
+//! What is wrong is refused whole and counted, never bent into range.
+
+use crate::hand::kinematics::Side;
+use crate::hand::{Angle, Dof, PerDof};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+/// Version of the lines that are read here.
+pub const LINE_VERSION: u64 = 1;
+/// Longest line, bytes.
+pub const LINE_MAX: usize = 2048;
+
+/// What one line asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamLine {
+    /// Its number, if the sender counts.
+    pub seq: Option<u64>,
+    /// Where the joints should go.
+    pub aims: PerDof<Option<Angle>>,
+    /// Whether the sender's dead-man is held, if it has one.
+    pub held: Option<bool>,
+    /// The hand is to be stopped.
+    pub stop: bool,
+    /// The same for targets that are the same to the last bit.
+    pub mark: u64,
+}
+
+/// Why a line was refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
+pub enum LineFault {
+    /// It is too long.
+    #[error("longer than {LINE_MAX} bytes")]
+    TooLong,
+    /// A number is NaN or infinite.
+    #[error("a number is NaN or infinite: send null to leave a joint alone")]
+    NotFinite,
+    /// It is no object of this kind.
+    #[error("not a line of JSON as 'handscope help stream' has it")]
+    Malformed,
+    /// It has another version.
+    #[error("its version is not {LINE_VERSION}")]
+    Version,
+    /// It says nothing of this hand.
+    #[error("nothing in it is for this hand's side")]
+    OtherSide,
+    /// Not six values.
+    #[error("a hand has six joints, not {got}")]
+    Length {
+        /// How many.
+        got: usize,
+    },
+    /// A value that is not from 0 to 1.
+    #[error("a value is not from 0 (bent) to 1 (open)")]
+    Range,
+    /// Its number is not above the one before.
+    #[error("late or doubled: its seq is not above the one before")]
+    Late,
+    /// Another sender is followed.
+    #[error("another sender is followed until it is silent")]
+    OtherSender,
+}
+
+#[derive(serde::Deserialize)]
+struct Raw {
+    v: Option<u64>,
+    seq: Option<u64>,
+    left: Option<Vec<Option<f64>>>,
+    right: Option<Vec<Option<f64>>>,
+    held: Option<bool>,
+    #[serde(default)]
+    stop: bool,
+}
+
+impl StreamLine {
+    /// Reads one line for the hand of this side.
+    ///
+    /// # Errors
+    /// [`LineFault`]: why it is refused whole.
+    pub fn parse(line: &[u8], side: Side) -> Result<Self, LineFault> {
+        if line.len() > LINE_MAX {
+            return Err(LineFault::TooLong);
+        }
+        let raw: Raw = serde_json::from_slice(line).map_err(|_unread| malformed(line))?;
+        if raw.v.is_some_and(|version| version != LINE_VERSION) {
+            return Err(LineFault::Version);
+        }
+        let values = match side {
+            Side::Left => raw.left,
+            Side::Right => raw.right,
+        };
+        // A stop needs no targets.
+        let values = match values {
+            None if raw.stop => vec![None; Dof::ALL.len()],
+            values => values.ok_or(LineFault::OtherSide)?,
+        };
+        let got = values.len();
+        let mut aims = PerDof::splat(None);
+        let mut hasher = DefaultHasher::new();
+        if got != Dof::ALL.len() {
+            return Err(LineFault::Length { got });
+        }
+        for (dof, value) in Dof::ALL.into_iter().zip(values) {
+            value.map(f64::to_bits).hash(&mut hasher);
+            aims[dof] = value.map(angle).transpose()?;
+        }
+        Ok(Self {
+            seq: raw.seq,
+            aims,
+            held: raw.held,
+            stop: raw.stop,
+            mark: hasher.finish(),
+        })
+    }
+}
+
+fn angle(share: f64) -> Result<Angle, LineFault> {
+    if !share.is_finite() {
+        return Err(LineFault::NotFinite);
+    }
+    if !(0.0..=1.0).contains(&share) {
+        return Err(LineFault::Range);
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "from 0 to 1000")]
+    let counts = (share * f64::from(Angle::MAX.get())).round() as i64;
+    Angle::new(counts).map_err(|_out| LineFault::Range)
+}
+
+/// JSON has no word for NaN; many senders write one anyway.
+fn malformed(line: &[u8]) -> LineFault {
+    let words: [&[u8]; 3] = [b"NaN", b"Infinity", b"1e999"];
+    let has = |word: &&[u8]| line.windows(word.len()).any(|part| part == *word);
+    match words.iter().any(has) {
+        true => LineFault::NotFinite,
+        false => LineFault::Malformed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(line: &str) -> Result<StreamLine, LineFault> {
+        StreamLine::parse(line.as_bytes(), Side::Right)
+    }
+
+    #[test]
+    fn a_line_says_where_each_joint_goes_and_null_leaves_one_alone() {
+        let line = parse(r#"{"t":1.5,"seq":7,"right":[0,1,0.5,null,0.25,1e-9],"more":3}"#).unwrap();
+        let counts = line.aims.map(|aim| aim.map(Angle::get));
+        let want = [Some(0), Some(1000), Some(500), None, Some(250), Some(0)];
+        assert_eq!(Dof::ALL.map(|dof| counts[dof]), want);
+        assert_eq!((line.seq, line.held, line.stop), (Some(7), None, false));
+        let stop = parse(r#"{"stop":true}"#).unwrap();
+        assert!(stop.stop && stop.aims == PerDof::splat(None));
+    }
+
+    #[test]
+    fn what_is_wrong_is_refused_whole() {
+        for (line, fault) in [
+            (r#"{"right":[0,0,0,0,0,NaN]}"#, LineFault::NotFinite),
+            (r#"{"right":[0,0,0,0,0,-Infinity]}"#, LineFault::NotFinite),
+            (r#"{"right":[0,0,0,0,0,1e999]}"#, LineFault::NotFinite),
+            (r#"{"right":[0,0,0,0,0,1.001]}"#, LineFault::Range),
+            (r#"{"right":[0,0,0,0,0,-0.001]}"#, LineFault::Range),
+            (r#"{"right":[0,0,0,0,0]}"#, LineFault::Length { got: 5 }),
+            (r#"{"right":[0,0,0,0,0,0,0]}"#, LineFault::Length { got: 7 }),
+            (r#"{"left":[0,0,0,0,0,0]}"#, LineFault::OtherSide),
+            (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, LineFault::Version),
+            (r#"{"right":"fist"}"#, LineFault::Malformed),
+            ("[0,0,0,0,0,0]", LineFault::Malformed),
+            ("", LineFault::Malformed),
+        ] {
+            assert_eq!(parse(line), Err(fault), "{line}");
+        }
+        let long = format!(
+            r#"{{"right":[0,0,0,0,0,0],"x":"{}"}}"#,
+            "y".repeat(LINE_MAX)
+        );
+        assert_eq!(parse(&long), Err(LineFault::TooLong));
+    }
+
+    #[test]
+    fn a_mark_is_the_same_for_the_same_bits_only() {
+        let mark = |value: &str| {
+            parse(&format!(r#"{{"right":[{value},0,0,0,0,0]}}"#))
+                .unwrap()
+                .mark
+        };
+        assert_eq!(mark("0.5"), mark("0.50"));
+        assert_ne!(mark("0.5"), mark("0.50000001"));
+        assert_ne!(mark("0"), mark("null"));
+    }
+}

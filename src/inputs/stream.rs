@@ -1,0 +1,269 @@
+//! Listens for lines of JSON, over UDP or TCP, and hands on what they ask for. Nothing listens before it is opened, nor after it
+//! is dropped.
+
+use crate::hand::kinematics::Side;
+use crate::inputs::intake::{Intake, IntakeView};
+use crate::inputs::line::{LINE_MAX, LineFault};
+use crate::inputs::offer::Offer;
+use crate::link::{Clock, Wake};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::io::AsyncReadExt as _;
+use tokio::net::{TcpListener, TcpStream, UdpSocket};
+use tokio::sync::{mpsc, watch};
+use tokio::task::{AbortHandle, JoinSet};
+use tokio::time::{interval, timeout};
+
+/// Connections at once; more are closed at once.
+const CONNECTIONS_MAX: usize = 8;
+/// A connection that sends no whole line for so long is closed.
+const LINE_WITHIN: Duration = Duration::from_secs(10);
+/// How often it is told what came in.
+const TELL_EACH: Duration = Duration::from_millis(50);
+/// Lines that may wait to be looked at.
+const LINES_MAX: usize = 64;
+/// Offers that may wait to be followed: one follows faster than this fills.
+const OFFERS_MAX: usize = 64;
+
+/// Where lines come in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StreamPlace {
+    /// One line a datagram.
+    Udp(SocketAddr),
+    /// Lines that end with a line feed.
+    Tcp(SocketAddr),
+}
+
+/// What a stream is opened with.
+#[derive(Clone)]
+pub struct StreamConfig {
+    /// Where to listen.
+    pub place: StreamPlace,
+    /// Which hand the lines are for.
+    pub side: Side,
+    /// The program's clock.
+    pub clock: Clock,
+    /// Stops the hand. Called for each line that says so, whoever sent it.
+    pub stop: Arc<dyn Fn() + Send + Sync>,
+    /// Called when there is news. Must return at once.
+    pub wake: Wake,
+}
+
+/// What is known of a stream now.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StreamView {
+    /// What came in.
+    pub intake: IntakeView,
+    /// The newest target.
+    pub newest: Option<Offer>,
+    /// Targets that nobody followed, as no person granted it.
+    pub not_granted: u64,
+    /// Connections at once, of TCP.
+    pub connections: usize,
+}
+
+/// An open stream. Dropped, it is closed.
+#[derive(Debug)]
+pub struct StreamSource {
+    local: SocketAddr,
+    view: watch::Receiver<StreamView>,
+    follower: watch::Sender<Option<mpsc::Sender<Offer>>>,
+    abort: AbortHandle,
+}
+
+impl Drop for StreamSource {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl StreamSource {
+    /// Listens from now on.
+    ///
+    /// # Errors
+    /// The system's, if it does not let anybody listen there.
+    pub fn open(config: StreamConfig, runtime: &tokio::runtime::Handle) -> std::io::Result<Self> {
+        let _entered = runtime.enter();
+        let (told, view) = watch::channel(StreamView::default());
+        let (follower, followed) = watch::channel(None);
+        let listening = Listening {
+            intake: Intake::new(config.side),
+            view: StreamView::default(),
+            config: config.clone(),
+            followed,
+            told,
+            is_news: false,
+        };
+        let (local, task) = match config.place {
+            StreamPlace::Udp(at) => {
+                let socket = std::net::UdpSocket::bind(at)?;
+                socket.set_nonblocking(true)?;
+                let socket = UdpSocket::from_std(socket)?;
+                let local = socket.local_addr()?;
+                (local, runtime.spawn(listening.datagrams(socket)))
+            }
+            StreamPlace::Tcp(at) => {
+                let listener = std::net::TcpListener::bind(at)?;
+                listener.set_nonblocking(true)?;
+                let listener = TcpListener::from_std(listener)?;
+                let local = listener.local_addr()?;
+                (local, runtime.spawn(listening.connections(listener)))
+            }
+        };
+        Ok(Self {
+            local,
+            view,
+            follower,
+            abort: task.abort_handle(),
+        })
+    }
+
+    /// Where it listens, with the port that the system chose where none was asked for.
+    #[must_use]
+    pub const fn local(&self) -> SocketAddr {
+        self.local
+    }
+
+    /// What is known of it.
+    #[must_use]
+    pub fn view(&self) -> StreamView {
+        self.view.borrow().clone()
+    }
+
+    /// Its targets from now on, for whoever follows; whoever did before does no more.
+    #[must_use]
+    pub fn follow(&self) -> mpsc::Receiver<Offer> {
+        let (offers, followed) = mpsc::channel(OFFERS_MAX);
+        self.follower.send_replace(Some(offers));
+        followed
+    }
+}
+
+struct Listening {
+    intake: Intake,
+    view: StreamView,
+    config: StreamConfig,
+    followed: watch::Receiver<Option<mpsc::Sender<Offer>>>,
+    told: watch::Sender<StreamView>,
+    is_news: bool,
+}
+
+impl Listening {
+    async fn datagrams(mut self, socket: UdpSocket) {
+        // One byte more than the longest line tells a longer one.
+        let mut datagram = [0; LINE_MAX + 1];
+        let mut tell = interval(TELL_EACH);
+        loop {
+            tokio::select! {
+                received = socket.recv_from(&mut datagram) => {
+                    // An error is that of an earlier answer; nothing is answered here.
+                    let Ok((len, from)) = received else { continue };
+                    self.take(datagram.get(..len).unwrap_or_default(), from);
+                }
+                _ = tell.tick() => self.tell(),
+            }
+        }
+    }
+
+    async fn connections(mut self, listener: TcpListener) {
+        let (lines, mut heard) = mpsc::channel(LINES_MAX);
+        let mut readers = JoinSet::new();
+        let mut tell = interval(TELL_EACH);
+        loop {
+            tokio::select! {
+                accepted = listener.accept() => match accepted {
+                    Ok((stream, from)) if readers.len() < CONNECTIONS_MAX => {
+                        readers.spawn(read_lines(stream, from, lines.clone()));
+                    }
+                    Ok(_too_many) => {}
+                    // The system is out of something: it may have it again soon.
+                    Err(_error) => tokio::time::sleep(TELL_EACH).await,
+                },
+                Some(_ended) = readers.join_next() => {}
+                Some((line, from)) = heard.recv() => match line {
+                    Ok(line) => self.take(&line, from),
+                    Err(fault) => {
+                        self.intake.refuse(fault);
+                        self.is_news = true;
+                    }
+                },
+                _ = tell.tick() => {
+                    self.is_news |= self.view.connections != readers.len();
+                    self.view.connections = readers.len();
+                    self.tell();
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, line: &[u8], from: SocketAddr) {
+        let now = self.config.clock.now();
+        self.is_news = true;
+        let Ok(line) = self.intake.take(line, from, now) else {
+            return;
+        };
+        if line.stop {
+            (self.config.stop)();
+            return;
+        }
+        let offer = Offer {
+            at: now,
+            aims: line.aims,
+            held: line.held,
+            mark: Some(line.mark),
+        };
+        self.view.newest = Some(offer);
+        let followed = self.followed.borrow();
+        // A follower that is not fast enough takes the next one; one that is gone follows no more.
+        let is_followed = followed.as_ref().is_some_and(|offers| {
+            !matches!(
+                offers.try_send(offer),
+                Err(mpsc::error::TrySendError::Closed(_))
+            )
+        });
+        self.view.not_granted += u64::from(!is_followed);
+    }
+
+    fn tell(&mut self) {
+        let intake = self.intake.view(self.config.clock.now());
+        // The rate sinks with time alone.
+        if !self.is_news && intake.rate_hz.to_bits() == self.view.intake.rate_hz.to_bits() {
+            return;
+        }
+        self.is_news = false;
+        self.view.intake = intake.clone();
+        self.told.send_replace(self.view.clone());
+        (self.config.wake)();
+    }
+}
+
+/// Reads lines until the other side closes, is silent, or sends one that is too long.
+async fn read_lines(
+    mut stream: TcpStream,
+    from: SocketAddr,
+    lines: mpsc::Sender<(Result<Vec<u8>, LineFault>, SocketAddr)>,
+) {
+    let mut rest = Vec::with_capacity(LINE_MAX);
+    let mut piece = [0; LINE_MAX];
+    loop {
+        let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
+            return;
+        };
+        rest.extend_from_slice(piece.get(..len).unwrap_or_default());
+        let mut parts = rest.split(|byte| *byte == b'\n');
+        let unfinished = parts.next_back().unwrap_or_default().to_vec();
+        let whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
+        for line in whole.into_iter().filter(|line| !line.is_empty()) {
+            if lines.send((Ok(line), from)).await.is_err() {
+                return;
+            }
+        }
+        rest = unfinished;
+        if rest.len() > LINE_MAX {
+            let _gone = lines.send((Err(LineFault::TooLong), from)).await;
+            return;
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! A hand that follows a source under a lease that a person granted: gamepad, stream, another hand. When it moves, and how far, is decided
+//! in `inputs`; here it is done.
+
+use crate::hand::{AngleReading, Dof, HandSample, Moment, PerDof, Setpoints, Target};
+use crate::inputs::Offer;
+use crate::inputs::follow::{Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase};
+use crate::link::{ArmRequest, Clock, Lease, LeaseRefusal};
+use crate::record::{Disarmed, Record, WriteCause};
+use crate::tasks::hand::Hand;
+use std::collections::VecDeque;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::time::timeout;
+
+/// How often time is looked at where nothing is offered or read.
+const TICK: Duration = Duration::from_millis(5);
+/// Angles older than this are not gone by.
+const FRESH_FOR: Duration = Duration::from_millis(250);
+/// The delay that is told is that of so many targets.
+const DELAYS: usize = 512;
+/// How often the view is told while only its figures change.
+const TELL_EACH: Duration = Duration::from_millis(100);
+
+/// What following begins with.
+#[derive(Debug, Clone)]
+pub struct FollowStart {
+    /// The right to move the hand, granted by a person for this source.
+    pub lease: Lease,
+    /// How far and how fast.
+    pub limits: FollowLimits,
+    /// Speeds and forces to arm with.
+    pub arm: ArmRequest,
+    /// Joints that are left alone.
+    pub locked: PerDof<bool>,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// What a person may want meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FollowCommand {
+    /// Other limits.
+    Limit(FollowLimits),
+    /// Leave these joints alone.
+    Lock(PerDof<bool>),
+}
+
+/// What is shown of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FollowView {
+    /// What goes on.
+    pub phase: FollowPhase,
+    /// Counts that targets are ahead of their joints, at most.
+    pub lead: u16,
+    /// From a target's arrival to its first byte on the wire, 99 of 100.
+    pub delay_p99: Option<Duration>,
+}
+
+/// What is told on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FollowStep {
+    /// Something else goes on, or its figures changed.
+    View(FollowView),
+    /// The hand was told this.
+    Sent(Setpoints),
+}
+
+/// Why it ended. The hand was stopped, by this or by what ended it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FollowEnd {
+    /// The source fell silent.
+    Silent,
+    /// The source is gone.
+    Gone,
+    /// The lease ended, or another has it.
+    Lease(LeaseRefusal),
+}
+
+/// Follows until the source or the lease ends.
+pub async fn follow<H: Hand>(
+    hand: &H,
+    start: FollowStart,
+    mut offers: mpsc::Receiver<Offer>,
+    mut commands: mpsc::Receiver<FollowCommand>,
+    mut tell: impl FnMut(FollowStep),
+) -> FollowEnd {
+    let clock = start.clock;
+    let mut records = hand.records();
+    let mut at = AtHand {
+        follow: Follow::new(start.limits, clock.now()),
+        sample: start.seen,
+        locked: start.locked,
+        delays: Delays::default(),
+        hand,
+        start,
+    };
+    let mut told: Option<(FollowPhase, Moment)> = None;
+    loop {
+        tokio::select! {
+            biased;
+            Some(command) = commands.recv() => match command {
+                FollowCommand::Limit(limits) => at.follow.limit(limits),
+                FollowCommand::Lock(locked) => at.locked = locked,
+            },
+            offer = offers.recv() => match offer {
+                Some(offer) => at.take(offer),
+                None => {
+                    at.give_back();
+                    return FollowEnd::Gone;
+                }
+            },
+            record = timeout(TICK, records.next()) => {
+                if let Ok(Some(record)) = record {
+                    at.heard(&record);
+                }
+            }
+        }
+        // The newest of what waits.
+        while let Ok(offer) = offers.try_recv() {
+            at.take(offer);
+        }
+        if let Err(refused) = hand.check(at.start.lease) {
+            return FollowEnd::Lease(refused);
+        }
+        if let Some(end) = at.go_on(&mut tell) {
+            return end;
+        }
+        let now = clock.now();
+        let is_due = |(phase, when)| phase != at.follow.phase() || now.since(when) >= TELL_EACH;
+        if told.is_none_or(is_due) {
+            told = Some((at.follow.phase(), now));
+            tell(FollowStep::View(at.view()));
+        }
+    }
+}
+
+struct AtHand<'a, H> {
+    hand: &'a H,
+    start: FollowStart,
+    follow: Follow,
+    sample: HandSample,
+    locked: PerDof<bool>,
+    delays: Delays,
+}
+
+impl<H: Hand> AtHand<'_, H> {
+    fn take(&mut self, mut offer: Offer) {
+        for (dof, aim) in offer.aims.iter_mut() {
+            *aim = aim.filter(|_| !self.locked[dof]);
+        }
+        self.follow.offer(offer);
+        self.delays.offered = Some(offer.at);
+    }
+
+    fn heard(&mut self, record: &Record) {
+        match record {
+            Record::Reading { sample, .. } => self.sample = **sample,
+            Record::Sent { at, cause, .. } if *cause == WriteCause::Setpoint => {
+                self.delays.sent(*at);
+            }
+            _ => {}
+        }
+    }
+
+    /// Where each joint is, if that is known freshly.
+    fn pose(&self) -> PerDof<Option<crate::hand::Angle>> {
+        let now = self.start.clock.now();
+        let angle = self.sample.angle;
+        let angle = angle.filter(|angle| angle.age(now) <= FRESH_FOR);
+        PerDof::from_fn(|dof| angle.and_then(|angle| AngleReading::hold(angle.value[dof])))
+    }
+
+    /// Does what is to be done now; why it ended, if it did.
+    fn go_on(&mut self, tell: &mut impl FnMut(FollowStep)) -> Option<FollowEnd> {
+        let status = self.hand.status();
+        let seen = FollowInput {
+            state: status.state,
+            pose: self.pose(),
+        };
+        let lease = self.start.lease;
+        let done = match self.follow.tick(seen, self.start.clock.now())? {
+            FollowOrder::Arm => self.hand.arm(lease, self.start.arm),
+            FollowOrder::Halt => self.hand.halt(lease),
+            FollowOrder::End => {
+                self.give_back();
+                return Some(FollowEnd::Silent);
+            }
+            FollowOrder::Aim(aims) => {
+                let mut setpoints = Setpoints::none(status.armed?);
+                setpoints.angle = aims.map(|aim| aim.map(Target::Go));
+                let set = self.hand.set(lease, &setpoints);
+                if set.is_ok() {
+                    self.delays.set();
+                    tell(FollowStep::Sent(setpoints));
+                }
+                set
+            }
+        };
+        done.err().map(FollowEnd::Lease)
+    }
+
+    /// The hand is stopped and the source may move it no more; if it may not any more already, it was.
+    fn give_back(&self) {
+        let _done = self.hand.give_back(self.start.lease, Disarmed::Silent);
+    }
+
+    fn view(&self) -> FollowView {
+        let pose = self.pose();
+        let lead = |dof: Dof| {
+            let (to, at) = self.follow.sent()[dof].zip(pose[dof])?;
+            Some(to.get().abs_diff(at.get()))
+        };
+        FollowView {
+            phase: self.follow.phase(),
+            lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
+            delay_p99: self.delays.p99(),
+        }
+    }
+}
+
+/// From a target's arrival to the wire.
+#[derive(Debug, Default)]
+struct Delays {
+    /// When the newest target came in, until it was set.
+    offered: Option<Moment>,
+    /// When the one came in that was set and is not on the wire yet.
+    set: Option<Moment>,
+    all: VecDeque<Duration>,
+}
+
+impl Delays {
+    fn set(&mut self) {
+        if let Some(offered) = self.offered.take() {
+            // One that a newer one replaced before it was sent does not count as sent.
+            self.set = Some(offered);
+        }
+    }
+
+    fn sent(&mut self, at: Moment) {
+        if let Some(offered) = self.set.take() {
+            if self.all.len() >= DELAYS {
+                self.all.pop_front();
+            }
+            self.all.push_back(at.since(offered));
+        }
+    }
+
+    fn p99(&self) -> Option<Duration> {
+        let mut sorted: Vec<Duration> = self.all.iter().copied().collect();
+        sorted.sort_unstable();
+        let last = sorted.len().checked_sub(1)?;
+        sorted.get(last * 99 / 100).copied()
+    }
+}
