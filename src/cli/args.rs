@@ -3,6 +3,7 @@
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::follow::FollowArgs;
 use crate::cli::help::{self, HelpArgs};
+use crate::cli::inputs::InputsArgs;
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
@@ -77,6 +78,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibit' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is well; 1 FILE cannot be taken, or no window opens; 2 wrong usage."
     )]
     Exhibit(ExhibitArgs),
+    /// List gamepads, or print what one does as it is moved, without a hand
+    #[command(
+        after_help = "Examples:\n  handscope inputs\n  handscope inputs --watch\n  handscope inputs --watch --map my-pad.toml --json\n\nNothing moves. 'handscope help gamepad' describes the controls and the file. Linux only.\n\nExit status: 0 done, also where no gamepad is there; 1 gamepads cannot be read, or FILE cannot be taken; 2 wrong usage."
+    )]
+    Inputs(InputsArgs),
     /// Close joints on an object repeatedly, and measure each grasp
     #[command(
         after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nThis moves the hand, and only with --arm: keep everything but the object out of its way. The joints go to --start gently, rest for half a second, close, hold for --dwell after they have stopped, and go back. No joint closes before the hand confirms the speed and the threshold that were set. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials done; 1 ended early, or no setting qualifies for --best; 2 wrong usage."
@@ -199,6 +205,7 @@ mod tests {
             "handscope snapshot --out x --size 10x10",
             "handscope snapshot --out x --scale 0",
             "handscope snapshot --out x --hand sim: --scenario grasp",
+            "handscope inputs --map pad.toml",
             "handscope --hand sim: watch --hand sim:",
         ] {
             let error = Cli::try_parse_from(line.split(' ')).unwrap_err();

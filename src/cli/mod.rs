@@ -4,6 +4,7 @@ mod args;
 mod doctor;
 mod follow;
 mod help;
+mod inputs;
 mod interrupt;
 mod out;
 mod params;
@@ -67,6 +68,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
+        Command::Inputs(args) => wait_for(inputs::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Follow(args) => wait_for(follow::run(&mut out, &args)),

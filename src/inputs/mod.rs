@@ -6,6 +6,7 @@ mod follow_tests;
 pub mod intake;
 pub mod line;
 pub mod offer;
+pub mod pad;
 pub mod stream;
 
 pub use offer::Offer;

@@ -18,6 +18,7 @@ mod layers;
 mod link;
 mod looks;
 mod manual;
+mod pad;
 mod place_changes;
 mod program;
 mod record;

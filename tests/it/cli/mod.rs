@@ -7,6 +7,8 @@ mod datagrams;
 mod doctor;
 #[cfg(unix)]
 mod doors;
+#[cfg(target_os = "linux")]
+mod inputs;
 #[cfg(unix)]
 mod interop;
 #[cfg(unix)]

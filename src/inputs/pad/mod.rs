@@ -1,0 +1,21 @@
+//! A gamepad as a source of motion: what is on it, what each control does, what it asks of the hand. Gamepads are read on Linux.
+
+pub mod control;
+pub mod device;
+#[cfg(target_os = "linux")]
+mod evdev;
+pub mod facts;
+pub mod file;
+pub mod input;
+pub mod map;
+#[cfg(target_os = "linux")]
+pub mod reader;
+pub mod report;
+pub mod state;
+
+pub use control::{ControlKind, PadControl};
+pub use facts::{AxisRange, FaceOrder, PadFacts};
+pub use input::{PadEvent, PadInput};
+pub use map::{MapRefusal, PadAction, PadMap};
+pub use report::{KernelEvent, PadClock, PadId, PadNews, PadReport, PadTrouble};
+pub use state::PadState;

@@ -1,0 +1,324 @@
+//! The thread that looks for gamepads in a folder, reads them, and notices at once when one is gone.
+
+use crate::inputs::pad::facts::PadFacts;
+use crate::inputs::pad::report::{KernelEvent, PadClock, PadId, PadNews, PadReport, PadTrouble};
+use crate::transport::serial::permission::remedy;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, Metadata};
+use std::io;
+use std::os::fd::BorrowedFd;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+use tokio::sync::mpsc::Sender;
+
+/// How often the folder is looked at.
+const LOOK_EACH: Duration = Duration::from_secs(1);
+/// How often a gamepad says that it is still there, milliseconds.
+const ALIVE_EACH_MS: u16 = 50;
+/// How soon the thread ends where there is no gamepad, milliseconds.
+const IDLE_MS: u16 = 250;
+/// Gamepads that are read at once: more than a computer has sockets in reach.
+const PADS_MAX: usize = 8;
+
+/// Opens what lies in the folder.
+pub trait OpenPad: Send {
+    /// The gamepad of a file; `None` if it is another device.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn open(&self, path: &Path) -> io::Result<Option<Box<dyn PadDevice>>>;
+}
+
+/// A gamepad that is open.
+pub trait PadDevice: Send {
+    /// What it says of itself.
+    fn facts(&self) -> &PadFacts;
+    /// What becomes readable when it says something.
+    fn fd(&self) -> BorrowedFd<'_>;
+    /// Where its controls are.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn now(&mut self) -> io::Result<Vec<KernelEvent>>;
+    /// What it said since the last call. Does not wait.
+    ///
+    /// # Errors
+    /// What the system says; any error means that it is gone.
+    fn read(&mut self) -> io::Result<Vec<DeviceSays>>;
+}
+
+/// What a device says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeviceSays {
+    /// A control moved.
+    Event(KernelEvent),
+    /// All that belongs together has been said.
+    Whole,
+    /// The kernel dropped events. What comes until [`Self::Whole`] is not to be trusted.
+    Dropped,
+}
+
+/// Which device a file is, as long as it is there: the number of a device is given again.
+type FileMark = (u64, i64, i64);
+
+struct OpenedPad {
+    id: PadId,
+    device: Box<dyn PadDevice>,
+    /// Events were dropped, and the rest of what they belonged to is not there yet.
+    is_behind: bool,
+}
+
+struct PadThread {
+    folder: PathBuf,
+    clock: PadClock,
+    opener: Box<dyn OpenPad>,
+    to: Sender<PadReport>,
+    pads: BTreeMap<PathBuf, OpenedPad>,
+    /// Devices of other kinds, so that they are not opened again and again.
+    others: BTreeMap<PathBuf, FileMark>,
+    told: Option<PadTrouble>,
+    next: u64,
+}
+
+/// Nobody takes the reports any more.
+struct NobodyListens;
+
+/// Starts the thread.
+pub(crate) fn spawn(
+    folder: PathBuf,
+    clock: PadClock,
+    opener: Box<dyn OpenPad>,
+    to: Sender<PadReport>,
+) -> Result<(), PadTrouble> {
+    let thread = PadThread {
+        folder,
+        clock,
+        opener,
+        to,
+        pads: BTreeMap::new(),
+        others: BTreeMap::new(),
+        told: None,
+        next: 0,
+    };
+    let named = thread::Builder::new().name("gamepads".into());
+    let started = named.spawn(move || {
+        // Ends when nobody listens, and says nothing more.
+        let _ended = thread.run();
+    });
+    started
+        .map(drop)
+        .map_err(|error| PadTrouble::NoThread(error.to_string()))
+}
+
+/// The gamepads that are there.
+pub(crate) fn find(folder: &Path, opener: &dyn OpenPad) -> Result<Vec<PadFacts>, PadTrouble> {
+    let mut refused = BTreeSet::new();
+    let mut found = Vec::new();
+    for path in event_files(folder)? {
+        match opener.open(&path) {
+            Ok(Some(pad)) => found.push(pad.facts().clone()),
+            Ok(None) => {}
+            Err(error) => note_refused(&mut refused, &path, &error),
+        }
+    }
+    match may_not_open(&refused) {
+        Some(trouble) if found.is_empty() => Err(trouble),
+        _ => Ok(found),
+    }
+}
+
+impl PadThread {
+    fn run(mut self) -> Result<(), NobodyListens> {
+        let mut looked: Option<Instant> = None;
+        let mut said = Instant::now();
+        while !self.to.is_closed() {
+            if looked.is_none_or(|at| at.elapsed() >= LOOK_EACH) {
+                looked = Some(Instant::now());
+                self.look()?;
+            }
+            for path in self.wait() {
+                self.read(&path)?;
+            }
+            if said.elapsed() >= Duration::from_millis(ALIVE_EACH_MS.into()) {
+                said = Instant::now();
+                let all: Vec<PadId> = self.pads.values().map(|pad| pad.id).collect();
+                for pad in all {
+                    self.say(PadNews::Alive(pad))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens gamepads that are new, and tells why there is none.
+    fn look(&mut self) -> Result<(), NobodyListens> {
+        let files = match event_files(&self.folder) {
+            Ok(files) => files,
+            Err(trouble) => return self.tell(Some(trouble)),
+        };
+        self.others.retain(|path, _| files.contains(path));
+        let mut refused = BTreeSet::new();
+        for path in files {
+            let Ok(mark) = fs::metadata(&path).map(|about| mark(&about)) else {
+                continue;
+            };
+            let is_known = self.pads.contains_key(&path) || self.others.get(&path) == Some(&mark);
+            if is_known || self.pads.len() >= PADS_MAX {
+                continue;
+            }
+            match self.opener.open(&path) {
+                Ok(Some(device)) => self.begin(path, device)?,
+                Ok(None) => drop(self.others.insert(path, mark)),
+                Err(error) => note_refused(&mut refused, &path, &error),
+            }
+        }
+        let trouble = may_not_open(&refused).filter(|_| self.pads.is_empty());
+        self.tell(trouble)
+    }
+
+    fn begin(
+        &mut self,
+        path: PathBuf,
+        mut device: Box<dyn PadDevice>,
+    ) -> Result<(), NobodyListens> {
+        // Gone already: it is looked for again.
+        let Ok(now) = device.now() else { return Ok(()) };
+        let id = PadId(self.next);
+        self.next += 1;
+        let news = PadNews::Found {
+            pad: id,
+            facts: device.facts().clone(),
+            now,
+        };
+        let pad = OpenedPad {
+            id,
+            device,
+            is_behind: false,
+        };
+        self.pads.insert(path, pad);
+        self.say(news)
+    }
+
+    /// The gamepads that have something to say, after some time at the latest.
+    fn wait(&self) -> Vec<PathBuf> {
+        let wanted = self.pads.values();
+        let mut fds: Vec<PollFd<'_>> = wanted
+            .map(|pad| PollFd::new(pad.device.fd(), PollFlags::POLLIN))
+            .collect();
+        let limit = if fds.is_empty() {
+            IDLE_MS
+        } else {
+            ALIVE_EACH_MS
+        };
+        if poll(&mut fds, PollTimeout::from(limit)).is_err() {
+            // A signal came between; the next call tells.
+            return Vec::new();
+        }
+        let ready = self.pads.keys().zip(&fds);
+        // An error or a hang-up also shows when it is read.
+        let ready = ready.filter(|(_, fd)| fd.any() != Some(false));
+        ready.map(|(path, _)| path.clone()).collect()
+    }
+
+    fn read(&mut self, path: &Path) -> Result<(), NobodyListens> {
+        let Some(pad) = self.pads.get_mut(path) else {
+            return Ok(());
+        };
+        match pad.news() {
+            Ok(news) => news.into_iter().try_for_each(|news| self.say(news)),
+            Err(_gone) => {
+                let gone = PadNews::Gone(pad.id);
+                self.pads.remove(path);
+                self.say(gone)
+            }
+        }
+    }
+
+    /// Tells a trouble when it is a new one.
+    fn tell(&mut self, trouble: Option<PadTrouble>) -> Result<(), NobodyListens> {
+        if self.told == trouble {
+            return Ok(());
+        }
+        self.told.clone_from(&trouble);
+        trouble.map_or(Ok(()), |trouble| self.say(PadNews::Trouble(trouble)))
+    }
+
+    /// Waits while too many reports wait: the kernel counts what is dropped meanwhile.
+    fn say(&self, news: PadNews) -> Result<(), NobodyListens> {
+        let at = (self.clock)();
+        let sent = self.to.blocking_send(PadReport { at, news });
+        sent.map_err(|_unsent| NobodyListens)
+    }
+}
+
+impl OpenedPad {
+    fn news(&mut self) -> io::Result<Vec<PadNews>> {
+        let mut news = Vec::new();
+        for said in self.device.read()? {
+            match said {
+                DeviceSays::Event(event) if !self.is_behind => {
+                    news.push(PadNews::Moved {
+                        pad: self.id,
+                        event,
+                    });
+                }
+                DeviceSays::Dropped => {
+                    self.is_behind = true;
+                    // Nothing counts from here on, even if the rest never comes.
+                    news.push(self.lost()?);
+                }
+                DeviceSays::Whole if self.is_behind => {
+                    self.is_behind = false;
+                    news.push(self.lost()?);
+                }
+                DeviceSays::Event(_) | DeviceSays::Whole => {}
+            }
+        }
+        Ok(news)
+    }
+
+    fn lost(&mut self) -> io::Result<PadNews> {
+        let now = self.device.now()?;
+        Ok(PadNews::Lost { pad: self.id, now })
+    }
+}
+
+/// The event devices of the folder, in order.
+fn event_files(folder: &Path) -> Result<BTreeSet<PathBuf>, PadTrouble> {
+    let trouble = |error: io::Error| PadTrouble::NoFolder {
+        folder: folder.to_owned(),
+        why: error.to_string(),
+    };
+    let mut files = BTreeSet::new();
+    for entry in fs::read_dir(folder).map_err(trouble)? {
+        let entry = entry.map_err(trouble)?;
+        let name = entry.file_name();
+        if name.to_str().is_some_and(|name| name.starts_with("event")) {
+            files.insert(entry.path());
+        }
+    }
+    Ok(files)
+}
+
+fn mark(about: &Metadata) -> FileMark {
+    (about.ino(), about.ctime(), about.ctime_nsec())
+}
+
+/// Keeps in mind a device that a person may not open. Other errors come from devices that are just going.
+fn note_refused(refused: &mut BTreeSet<PathBuf>, path: &Path, error: &io::Error) {
+    if error.kind() == io::ErrorKind::PermissionDenied {
+        refused.insert(path.to_owned());
+    }
+}
+
+fn may_not_open(refused: &BTreeSet<PathBuf>) -> Option<PadTrouble> {
+    let first = refused.first()?;
+    Some(PadTrouble::MayNotOpen {
+        path: first.clone(),
+        count: refused.len(),
+        remedy: remedy(&first.to_string_lossy()),
+    })
+}

@@ -1,0 +1,214 @@
+//! Where the controls of one gamepad are now. Amounts are whole thousandths; what the device's own numbers mean stays here.
+
+use crate::inputs::pad::control::{PadControl, key};
+use crate::inputs::pad::facts::{AxisRange, AxisUse, FaceOrder, PadFacts};
+use crate::inputs::pad::report::KernelEvent;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A whole amount, in thousandths.
+pub const FULL: i16 = 1000;
+/// How far from the middle a stick may rest, thousandths: worn sticks do not come back whole. A device may ask for more.
+const STICK_REST: i64 = 120;
+/// How far from either end a trigger counts as at it, thousandths.
+const TRIGGER_REST: i64 = 40;
+
+/// Where the controls of a gamepad are.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PadState {
+    uses: BTreeMap<u16, (AxisUse, AxisRange)>,
+    is_by_letter: bool,
+    has_trigger_axes: bool,
+    held: BTreeSet<PadControl>,
+    sticks: [StickPlace; 2],
+    triggers: [i16; 2],
+}
+
+/// Where a stick is, in thousandths of its way.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct StickPlace {
+    /// -1000 at the left, 1000 at the right.
+    pub right: i16,
+    /// -1000 at the bottom, 1000 at the top.
+    pub up: i16,
+}
+
+impl PadState {
+    /// Of this gamepad, with nothing held.
+    #[must_use]
+    pub fn of(facts: &PadFacts) -> Self {
+        let uses = facts.uses();
+        let is_trigger = |(what, _): &(AxisUse, AxisRange)| *what == AxisUse::RightTrigger;
+        Self {
+            has_trigger_axes: uses.values().any(is_trigger),
+            uses,
+            is_by_letter: facts.face == FaceOrder::ByLetter,
+            ..Self::default()
+        }
+    }
+
+    /// The same gamepad with nothing held and everything let go.
+    #[must_use]
+    pub fn released(&self) -> Self {
+        Self {
+            held: BTreeSet::new(),
+            sticks: Default::default(),
+            triggers: Default::default(),
+            ..self.clone()
+        }
+    }
+
+    /// Takes in what the kernel says. What no control of ours says is passed over.
+    pub fn apply(&mut self, event: KernelEvent) {
+        match event {
+            KernelEvent::Key { code, is_down } => self.button(code, is_down),
+            KernelEvent::Axis { code, value } => {
+                if let Some((what, range)) = self.uses.get(&code).copied() {
+                    self.axis(what, range, value);
+                }
+            }
+        }
+    }
+
+    /// Buttons that are down.
+    #[must_use]
+    pub const fn held(&self) -> &BTreeSet<PadControl> {
+        &self.held
+    }
+
+    /// Whether a button is down.
+    #[must_use]
+    pub fn is_held(&self, button: PadControl) -> bool {
+        self.held.contains(&button)
+    }
+
+    /// How far a trigger is pressed, 0 to 1000; 0 for what is no trigger.
+    #[must_use]
+    pub const fn trigger(&self, trigger: PadControl) -> i16 {
+        let [left, right] = self.triggers;
+        match trigger {
+            PadControl::LeftTrigger => left,
+            PadControl::RightTrigger => right,
+            _ => 0,
+        }
+    }
+
+    /// Where a stick is; the middle for what is no stick.
+    #[must_use]
+    pub const fn stick(&self, stick: PadControl) -> StickPlace {
+        let [left, right] = self.sticks;
+        match stick {
+            PadControl::LeftStick => left,
+            PadControl::RightStick => right,
+            _ => StickPlace { right: 0, up: 0 },
+        }
+    }
+
+    fn button(&mut self, code: u16, is_down: bool) {
+        let [left, right] = &mut self.triggers;
+        let control = match code {
+            // Pads with true triggers send these as well.
+            key::TL2 | key::TR2 if self.has_trigger_axes => return,
+            key::TL2 => {
+                *left = if is_down { FULL } else { 0 };
+                return;
+            }
+            key::TR2 => {
+                *right = if is_down { FULL } else { 0 };
+                return;
+            }
+            _ => button_of(code, self.is_by_letter),
+        };
+        if let Some(control) = control {
+            self.set(control, is_down);
+        }
+    }
+
+    fn axis(&mut self, what: AxisUse, range: AxisRange, value: i32) {
+        let [left, right] = &mut self.sticks;
+        let [left_trigger, right_trigger] = &mut self.triggers;
+        match what {
+            AxisUse::LeftX => left.right = off_middle(range, value),
+            AxisUse::LeftY => left.up = -off_middle(range, value),
+            AxisUse::RightX => right.right = off_middle(range, value),
+            AxisUse::RightY => right.up = -off_middle(range, value),
+            AxisUse::LeftTrigger => *left_trigger = pressed(range, value),
+            AxisUse::RightTrigger => *right_trigger = pressed(range, value),
+            AxisUse::CrossX => {
+                let way = off_middle(range, value).signum();
+                self.set(PadControl::DpadLeft, way < 0);
+                self.set(PadControl::DpadRight, way > 0);
+            }
+            AxisUse::CrossY => {
+                let way = off_middle(range, value).signum();
+                self.set(PadControl::DpadUp, way < 0);
+                self.set(PadControl::DpadDown, way > 0);
+            }
+        }
+    }
+
+    fn set(&mut self, control: PadControl, is_down: bool) {
+        match is_down {
+            true => self.held.insert(control),
+            false => self.held.remove(&control),
+        };
+    }
+}
+
+/// The button of this number.
+const fn button_of(code: u16, is_by_letter: bool) -> Option<PadControl> {
+    Some(match code {
+        key::SOUTH => PadControl::South,
+        key::EAST => PadControl::East,
+        key::NORTH if is_by_letter => PadControl::West,
+        key::WEST if is_by_letter => PadControl::North,
+        key::NORTH => PadControl::North,
+        key::WEST => PadControl::West,
+        key::TL => PadControl::LeftBumper,
+        key::TR => PadControl::RightBumper,
+        key::SELECT => PadControl::Select,
+        key::START => PadControl::Start,
+        key::MODE => PadControl::Home,
+        key::THUMBL => PadControl::LeftStickPress,
+        key::THUMBR => PadControl::RightStickPress,
+        key::DPAD_UP => PadControl::DpadUp,
+        key::DPAD_DOWN => PadControl::DpadDown,
+        key::DPAD_LEFT => PadControl::DpadLeft,
+        key::DPAD_RIGHT => PadControl::DpadRight,
+        _ => return None,
+    })
+}
+
+/// How far an axis is from its middle, -1000 to 1000; 0 where it may rest.
+fn off_middle(range: AxisRange, value: i32) -> i16 {
+    let (min, max) = (i64::from(range.min), i64::from(range.max));
+    let whole = max - min;
+    if whole <= 0 {
+        return 0;
+    }
+    // Twice the distance, so that the middle of an odd number of steps is exact.
+    let off = (2 * i64::from(value) - min - max).clamp(-whole, whole);
+    // A device that calls half its way rest or more is mistaken.
+    let flat = (2 * i64::from(range.flat.max(0))).min(whole / 2);
+    let rest = flat.max(whole * STICK_REST / i64::from(FULL));
+    let beyond = (off.abs() - rest).max(0);
+    let amount = thousandths(beyond, whole - rest);
+    if off < 0 { -amount } else { amount }
+}
+
+/// How far a trigger is pressed, 0 to 1000.
+fn pressed(range: AxisRange, value: i32) -> i16 {
+    let whole = i64::from(range.max) - i64::from(range.min);
+    if whole <= 0 {
+        return 0;
+    }
+    let rest = whole * TRIGGER_REST / i64::from(FULL);
+    let way = (i64::from(value) - i64::from(range.min) - rest).clamp(0, whole - 2 * rest);
+    thousandths(way, whole - 2 * rest)
+}
+
+/// A part of a whole in thousandths, rounded down.
+fn thousandths(part: i64, whole: i64) -> i16 {
+    let full = i64::from(FULL);
+    let share = (part * full).checked_div(whole).unwrap_or(0);
+    i16::try_from(share.clamp(0, full)).unwrap_or(0)
+}

@@ -1,0 +1,10 @@
+//! Where motion comes from besides the window.
+
+mod pad_picture;
+mod pad_places;
+mod pad_table;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use pad_picture::{PadShown, PoseName, pad_picture_ui};
+pub(crate) use pad_table::pad_table_ui;

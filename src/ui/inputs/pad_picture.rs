@@ -1,0 +1,538 @@
+//! A gamepad as a picture: what is held lights up, sticks and triggers show how far they are, and beside it stands what each
+//! control does. A control that is clicked is chosen.
+
+use crate::hand::Dof;
+use crate::inputs::pad::input::FingerChoice;
+use crate::inputs::pad::state::FULL;
+use crate::inputs::pad::{ControlKind, PadAction, PadControl, PadMap, PadState};
+use crate::ui::inputs::pad_places::{CANVAS, CAP, CAP_WAY, cross_middle, outline, place};
+use crate::ui::kit::{Label, Look, focus_ring, text_width};
+use crate::ui::text::pad;
+use crate::ui::theme;
+use egui::{
+    Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+
+/// Height of a row that says what a control does.
+const ROW: f32 = 30.0;
+/// Width of the sign of a control in its row, and of the amount at its end.
+const BADGE: f32 = 40.0;
+const AMOUNT: f32 = 46.0;
+/// Points of a unit of the picture: never smaller than what a finger hits, and no poster.
+const SCALE: [f32; 2] = [0.75, 1.5];
+/// The controls whose rows stand at the left, from the top; all others stand at the right.
+const AT_LEFT: [PadControl; 9] = [
+    PadControl::LeftTrigger,
+    PadControl::LeftBumper,
+    PadControl::LeftStick,
+    PadControl::LeftStickPress,
+    PadControl::Select,
+    PadControl::DpadUp,
+    PadControl::DpadLeft,
+    PadControl::DpadRight,
+    PadControl::DpadDown,
+];
+const AT_RIGHT: [PadControl; 10] = [
+    PadControl::RightTrigger,
+    PadControl::RightBumper,
+    PadControl::Home,
+    PadControl::Start,
+    PadControl::North,
+    PadControl::West,
+    PadControl::East,
+    PadControl::South,
+    PadControl::RightStick,
+    PadControl::RightStickPress,
+];
+
+/// What a pose is called, in files and in the window's language.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct PoseName {
+    /// In files and maps.
+    pub(crate) name: String,
+    /// On screen.
+    pub(crate) shown: String,
+}
+
+/// What is shown of a gamepad.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PadShown<'a> {
+    /// Where its controls are; `None` without a gamepad.
+    pub(crate) state: Option<&'a PadState>,
+    /// What they do.
+    pub(crate) map: &'a PadMap,
+    /// The control that is being changed.
+    pub(crate) chosen: Option<PadControl>,
+    /// The fingers that a trigger closes.
+    pub(crate) fingers: FingerChoice,
+    /// The poses that a button can go to.
+    pub(crate) poses: &'a [PoseName],
+}
+
+impl PadShown<'_> {
+    /// What a control does, in words.
+    pub(crate) fn does(&self, look: Look, action: &PadAction) -> String {
+        let PadAction::Pose(name) = action else {
+            return look.say(pad::action(action)).to_owned();
+        };
+        let known = self.poses.iter().find(|pose| pose.name == *name);
+        look.fill(pad::POSE, &[&known.map_or(name, |pose| &pose.shown)])
+    }
+
+    fn is_held(&self, control: PadControl) -> bool {
+        self.state.is_some_and(|state| state.is_held(control))
+    }
+
+    /// How far a control is from rest: 0 to 1.
+    fn amount(&self, control: PadControl) -> f32 {
+        let Some(state) = self.state else { return 0.0 };
+        match control.kind() {
+            ControlKind::Button => f32::from(u8::from(state.is_held(control))),
+            ControlKind::Trigger => share(state.trigger(control)),
+            ControlKind::Stick => self.way(control).length().min(1.0),
+        }
+    }
+
+    /// Where a stick is, as the screen has it: 1 is its whole way.
+    fn way(&self, stick: PadControl) -> Vec2 {
+        let place = self.state.map(|state| state.stick(stick));
+        let place = place.unwrap_or_default();
+        let way = vec2(share(place.right), -share(place.up));
+        way / way.length().max(1.0)
+    }
+
+    /// Whether it is drawn as one that does something.
+    fn is_used(&self, control: PadControl) -> bool {
+        *self.map.action(control) != PadAction::Nothing
+    }
+}
+
+/// Draws the gamepad between what its controls do. The control that was clicked, if one was.
+pub(crate) fn pad_picture_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Option<PadControl> {
+    let (left, right) = (rows(look, shown, &AT_LEFT), rows(look, shown, &AT_RIGHT));
+    let widths = [&left, &right].map(|rows| {
+        let words = rows.iter();
+        let words = words.map(|(_, words)| text_width(ui, words, theme::body()));
+        BADGE + words.fold(0.0, f32::max) + AMOUNT + 2.0 * theme::PAD
+    });
+    let [left_width, right_width] = widths;
+    let [least, most] = SCALE;
+    let room = ui.available_width() - left_width - right_width - 2.0 * theme::PAD;
+    let scale = (room / CANVAS.width()).clamp(least, most);
+    let row = ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::PAD, 2.0);
+        let by_left = rows_ui(ui, look, (&left, left_width), shown);
+        let by_pad = pad_ui(ui, look, scale, shown);
+        let by_right = rows_ui(ui, look, (&right, right_width), shown);
+        by_left.or(by_pad).or(by_right)
+    });
+    row.inner
+}
+
+/// The controls of one side that do something, and what.
+fn rows(look: Look, shown: &PadShown<'_>, side: &[PadControl]) -> Vec<(PadControl, String)> {
+    let used = side.iter().copied();
+    let used = used.filter(|control| shown.is_used(*control) || shown.chosen == Some(*control));
+    used.map(|control| (control, shown.does(look, shown.map.action(control))))
+        .collect()
+}
+
+fn rows_ui(
+    ui: &mut Ui,
+    look: Look,
+    (rows, width): (&[(PadControl, String)], f32),
+    shown: &PadShown<'_>,
+) -> Option<PadControl> {
+    let column = ui.vertical(|ui| {
+        let mut clicked = None;
+        for (control, words) in rows {
+            let (rect, response) = ui.allocate_exact_size(vec2(width, ROW), Sense::click());
+            if named(&response, look, *control, shown).clicked() {
+                clicked = Some(*control);
+            }
+            row(ui, look, (*control, rect, &response), (words, shown));
+        }
+        clicked
+    });
+    column.inner
+}
+
+/// Names a control with what it does, and explains that.
+fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
+    let action = shown.map.action(control);
+    let words = look.pair(look.say(pad::control(control)), &shown.does(look, action));
+    let is_chosen = shown.chosen == Some(control);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &words));
+    let tips = [look.tip(pad::action(action)), look.say(pad::CHANGE)];
+    let tips = [&[words.as_str()][..], &tips].concat().join("\n");
+    let response = response.clone().on_hover_text(tips.replace("\n\n", "\n"));
+    response.on_hover_cursor(egui::CursorIcon::PointingHand)
+}
+
+/// What one control does: its sign as on the gamepad, words, how far it is.
+fn row(
+    ui: &Ui,
+    look: Look,
+    (control, rect, response): (PadControl, Rect, &Response),
+    (words, shown): (&str, &PadShown<'_>),
+) {
+    let palette = look.palette;
+    let ground = match (shown.chosen == Some(control), response.hovered()) {
+        (true, _) => Some((palette.wash(palette.accent), palette.accent)),
+        (false, true) => Some((palette.control, palette.edge)),
+        (false, false) => None,
+    };
+    let round = CornerRadius::same(theme::ROUND_SMALL);
+    if let Some((fill, edge)) = ground {
+        let edge = Stroke::new(1.0, edge);
+        ui.painter()
+            .rect(rect, round, fill, edge, StrokeKind::Inside);
+    }
+    focus_ring(ui, look, response, rect);
+    let rect = rect.shrink2(vec2(theme::STEP, 0.0));
+    let (badge, rest) = rect.split_left_right_at_x(rect.left() + BADGE);
+    let badge = Rect::from_center_size(badge.center(), vec2(BADGE, theme::CONTROL));
+    let ink = Ink::of(look, control, shown);
+    ui.painter()
+        .rect(badge, round, ink.fill, ink.edge, StrokeKind::Inside);
+    Label::new(sign(control), ink.text)
+        .center()
+        .paint(ui, badge);
+    let (said, amount) = rest.split_left_right_at_x(rest.right() - AMOUNT);
+    let said = said.shrink2(vec2(theme::GAP, 0.0));
+    let color = match shown.state {
+        Some(_) => palette.text,
+        None => palette.muted,
+    };
+    Label::new(words, color).paint(ui, said);
+    let percent = format!("{:.0} %", 100.0 * shown.amount(control));
+    if control.kind() != ControlKind::Button && shown.state.is_some() {
+        let label = Label::new(&percent, palette.muted).number().right();
+        label.paint(ui, amount);
+    }
+}
+
+/// The sign of a control, as it stands on an Xbox pad.
+const fn sign(control: PadControl) -> &'static str {
+    match control {
+        PadControl::South => "A",
+        PadControl::East => "B",
+        PadControl::West => "X",
+        PadControl::North => "Y",
+        PadControl::LeftBumper => "LB",
+        PadControl::RightBumper => "RB",
+        PadControl::LeftTrigger => "LT",
+        PadControl::RightTrigger => "RT",
+        PadControl::LeftStick => "LS",
+        PadControl::RightStick => "RS",
+        PadControl::LeftStickPress => "L3",
+        PadControl::RightStickPress => "R3",
+        PadControl::DpadUp => "\u{25B2}",
+        PadControl::DpadDown => "\u{25BC}",
+        PadControl::DpadLeft => "\u{25C0}",
+        PadControl::DpadRight => "\u{25B6}",
+        PadControl::Select => "\u{25C1}",
+        PadControl::Start => "\u{2261}",
+        PadControl::Home => "\u{25CB}",
+    }
+}
+
+/// The colours of one control.
+#[derive(Debug, Clone, Copy)]
+struct Ink {
+    fill: Color32,
+    edge: Stroke,
+    text: Color32,
+}
+
+impl Ink {
+    /// By what it does and whether it is held. STOP is red and the dead-man has the colour of an armed hand, always.
+    fn of(look: Look, control: PadControl, shown: &PadShown<'_>) -> Self {
+        let palette = look.palette;
+        let is_held = shown.is_held(control);
+        let ink = |fill, edge, text| Self { fill, edge, text };
+        let thin = |color| Stroke::new(1.0, color);
+        let strong = |color| Stroke::new(theme::STRONG, color);
+        if shown.state.is_none() {
+            return ink(palette.card, thin(palette.edge), palette.faint);
+        }
+        match (shown.map.action(control), is_held) {
+            (PadAction::Stop, false) => {
+                ink(palette.stop, thin(palette.stop_edge), palette.on_strong)
+            }
+            (PadAction::Stop, true) => {
+                ink(palette.stop_hover, strong(palette.text), palette.on_strong)
+            }
+            (PadAction::DeadMan, false) => ink(palette.sunken, strong(palette.armed), palette.text),
+            (PadAction::DeadMan, true) => {
+                ink(palette.armed, strong(palette.armed), palette.on_armed)
+            }
+            (_, true) => ink(palette.accent, thin(palette.accent), palette.on_accent),
+            (PadAction::Nothing, false) => ink(palette.card, thin(palette.edge), palette.faint),
+            (_, false) => ink(palette.sunken, thin(palette.faint), palette.text),
+        }
+    }
+}
+
+/// Draws the gamepad itself.
+fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<PadControl> {
+    let (rect, _) = ui.allocate_exact_size(CANVAS.size() * scale, Sense::hover());
+    let drawing = Drawing {
+        ui,
+        look,
+        shown,
+        origin: rect.min - CANVAS.min.to_vec2() * scale,
+        scale,
+    };
+    // What lies behind the body comes first.
+    let behind = [
+        PadControl::LeftTrigger,
+        PadControl::RightTrigger,
+        PadControl::LeftBumper,
+        PadControl::RightBumper,
+    ];
+    for control in behind {
+        drawing.control(control);
+    }
+    drawing.body();
+    for control in PadControl::ALL {
+        if !behind.contains(&control) {
+            drawing.control(control);
+        }
+    }
+    if shown.state.is_none() {
+        let (at, center) = (drawing.at(pos2(0.0, -115.0)), Align2::CENTER_CENTER);
+        let (words, font) = (look.say(pad::NONE), theme::title());
+        ui.painter()
+            .text(at, center, words, font, look.palette.muted);
+    }
+    let mut clicked = None;
+    for control in PadControl::ALL {
+        let place = drawing.rect(place(control));
+        // Round controls that stand askew have corners in common.
+        let inner = match control.kind() {
+            ControlKind::Button => place.shrink(1.5),
+            _ => place,
+        };
+        let id = ui.scope_id().with(("pad", control));
+        let response = ui.interact(inner, id, Sense::click());
+        let response = named(&response, look, control, shown);
+        if response.clicked() {
+            clicked = Some(control);
+        }
+        if shown.chosen == Some(control) || response.has_focus() || response.hovered() {
+            let strength = if response.hovered() {
+                1.0
+            } else {
+                theme::STRONG
+            };
+            let stroke = Stroke::new(strength, look.palette.accent);
+            let round = CornerRadius::same(theme::ROUND);
+            let outer = place.expand(4.0);
+            ui.painter()
+                .rect_stroke(outer, round, stroke, StrokeKind::Middle);
+        }
+    }
+    clicked
+}
+
+/// Where the gamepad is drawn, and with what.
+struct Drawing<'a> {
+    ui: &'a Ui,
+    look: Look,
+    shown: &'a PadShown<'a>,
+    origin: Pos2,
+    scale: f32,
+}
+
+impl Drawing<'_> {
+    fn at(&self, at: Pos2) -> Pos2 {
+        self.origin + at.to_vec2() * self.scale
+    }
+
+    fn rect(&self, rect: Rect) -> Rect {
+        Rect::from_min_max(self.at(rect.min), self.at(rect.max))
+    }
+
+    fn body(&self) {
+        let palette = self.look.palette;
+        let outline: Vec<Pos2> = outline().into_iter().map(|at| self.at(at)).collect();
+        self.ui.painter().add(filled(&outline, palette.control));
+        let edge = Stroke::new(theme::FOCUS_LINE, palette.faint);
+        self.ui.painter().add(Shape::closed_line(outline, edge));
+        let middle = self.rect(cross_middle()).expand(1.0);
+        self.ui.painter().rect_filled(middle, 0.0, palette.sunken);
+    }
+
+    fn control(&self, control: PadControl) {
+        let (ink, rect) = (
+            Ink::of(self.look, control, self.shown),
+            self.rect(place(control)),
+        );
+        match control {
+            PadControl::LeftTrigger | PadControl::RightTrigger => self.trigger(control, rect, ink),
+            PadControl::LeftStick | PadControl::RightStick => self.stick(control, rect, ink),
+            PadControl::South
+            | PadControl::East
+            | PadControl::West
+            | PadControl::North
+            | PadControl::Home => {
+                let radius = rect.width() / 2.0;
+                let painter = self.ui.painter();
+                painter.circle(rect.center(), radius, ink.fill, ink.edge);
+                self.sign(control, rect, ink.text);
+            }
+            PadControl::LeftBumper | PadControl::RightBumper => {
+                self.plate(rect, 8.0, ink);
+                // Its lower edge is behind the body.
+                self.sign(control, rect.translate(vec2(0.0, -1.0)), ink.text);
+            }
+            _ => {
+                self.plate(rect, 5.0, ink);
+                self.sign(control, rect, ink.text);
+            }
+        }
+    }
+
+    fn plate(&self, rect: Rect, round: f32, ink: Ink) {
+        let painter = self.ui.painter();
+        painter.rect(
+            rect,
+            round * self.scale,
+            ink.fill,
+            ink.edge,
+            StrokeKind::Inside,
+        );
+    }
+
+    fn sign(&self, control: PadControl, rect: Rect, color: Color32) {
+        let font = theme::small();
+        let center = Align2::CENTER_CENTER;
+        self.ui
+            .painter()
+            .text(rect.center(), center, sign(control), font, color);
+    }
+
+    /// Filled from the bottom as far as it is pressed.
+    fn trigger(&self, control: PadControl, rect: Rect, ink: Ink) {
+        let palette = self.look.palette;
+        self.plate(rect, 10.0, ink);
+        let amount = self.shown.amount(control);
+        if amount > 0.0 {
+            let inner = rect.shrink(2.0);
+            let level = egui::lerp(inner.bottom()..=inner.top(), amount);
+            let full = inner.with_min_y(level);
+            let painter = self.ui.painter().with_clip_rect(full);
+            let fill = palette.accent.gamma_multiply(0.35);
+            painter.rect_filled(inner, 9.0 * self.scale, fill);
+            let line = Stroke::new(theme::STRONG, palette.accent);
+            let painter = self.ui.painter();
+            painter.hline(inner.x_range().shrink(1.0), level, line);
+        }
+        self.sign(control, rect, ink.text);
+    }
+
+    /// A cap that moves in its well.
+    fn stick(&self, control: PadControl, rect: Rect, ink: Ink) {
+        let (palette, painter) = (self.look.palette, self.ui.painter());
+        let (center, radius) = (rect.center(), rect.width() / 2.0);
+        painter.circle(center, radius, palette.sunken, ink.edge);
+        match self.shown.map.action(control) {
+            PadAction::ChooseFingers => self.fingers(center, radius),
+            PadAction::RotateThumb => self.both_ways(center, radius),
+            _ => {}
+        }
+        let way = self.shown.way(control);
+        let cap = center + CAP_WAY * self.scale * way;
+        let press = match control {
+            PadControl::LeftStick => PadControl::LeftStickPress,
+            _ => PadControl::RightStickPress,
+        };
+        let is_moved = way.length() > 0.0;
+        let (fill, text) = match (self.shown.is_held(press), is_moved) {
+            (true, _) => (palette.accent, palette.on_accent),
+            (false, true) => (palette.control_hover, palette.text),
+            (false, false) => (palette.control, ink.text),
+        };
+        let edge = match is_moved {
+            true => Stroke::new(theme::STRONG, palette.accent),
+            false => Stroke::new(1.0, palette.faint),
+        };
+        painter.circle(cap, CAP * self.scale, fill, edge);
+        let sign_at = Rect::from_center_size(cap, Vec2::ZERO);
+        self.sign(control, sign_at, text);
+    }
+
+    /// Four arcs around a stick in the colours of the fingers; those that a trigger closes are strong.
+    fn fingers(&self, center: Pos2, radius: f32) {
+        let palette = self.look.palette;
+        for (finger, middle) in [
+            (Dof::Index, 180.0_f32),
+            (Dof::Middle, 270.0),
+            (Dof::Ring, 0.0),
+            (Dof::Little, 90.0),
+        ] {
+            let fingers = self.shown.fingers;
+            let is_on = [FingerChoice::All, FingerChoice::One(finger)].contains(&fingers);
+            let (width, strength) = match is_on && self.shown.state.is_some() {
+                true => (4.0, 1.0),
+                false => (2.0, 0.45),
+            };
+            let color = palette.dof[finger].gamma_multiply(strength);
+            let points = (-6..=6_i8).map(|step| {
+                let angle = (middle + 6.0 * f32::from(step)).to_radians();
+                center + Vec2::angled(angle) * (radius - 4.5)
+            });
+            let line = Stroke::new(width, color);
+            self.ui.painter().add(Shape::line(points.collect(), line));
+        }
+    }
+
+    /// Marks that a stick pushes left and right.
+    fn both_ways(&self, center: Pos2, radius: f32) {
+        let color = self.look.palette.dof[Dof::ThumbRotate];
+        for side in [-1.0, 1.0] {
+            let tip = center + vec2(side * (radius - 2.5), 0.0);
+            let back = vec2(-side * 6.0, 0.0);
+            let corners = vec![
+                tip,
+                tip + back + vec2(0.0, 5.0),
+                tip + back - vec2(0.0, 5.0),
+            ];
+            let shape = Shape::convex_polygon(corners, color, Stroke::NONE);
+            self.ui.painter().add(shape);
+        }
+    }
+}
+
+/// A closed line filled row by row: egui fills only what is nowhere hollow. The line's own stroke hides the steps.
+fn filled(outline: &[Pos2], color: Color32) -> Mesh {
+    let bounds = Rect::from_points(outline);
+    let mut mesh = Mesh::default();
+    let mut top = bounds.top();
+    while top < bounds.bottom() {
+        let bottom = (top + 1.0).min(bounds.bottom());
+        let middle = (top + bottom) / 2.0;
+        let next = outline.iter().cycle().skip(1);
+        let edges = outline.iter().zip(next);
+        let mut crossed: Vec<f32> = edges
+            .filter(|(one, other)| (one.y <= middle) != (other.y <= middle))
+            .map(|(one, other)| one.x + (middle - one.y) / (other.y - one.y) * (other.x - one.x))
+            .collect();
+        crossed.sort_by(f32::total_cmp);
+        for pair in crossed.chunks_exact(2) {
+            if let [left, right] = pair {
+                let row = Rect::from_min_max(pos2(*left, top), pos2(*right, bottom));
+                mesh.add_colored_rect(row, color);
+            }
+        }
+        top = bottom;
+    }
+    mesh
+}
+
+/// Thousandths as a part of one.
+fn share(thousandths: i16) -> f32 {
+    f32::from(thousandths) / f32::from(FULL)
+}
