@@ -1,5 +1,6 @@
-//! `follow`: a hand follows the lines of JSON that another program sends, once a person lets it.
+//! `follow`: a hand follows the lines of JSON that another program sends, or a gamepad, once a person lets it.
 
+use crate::cli::inputs::map_of;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{self, number};
@@ -7,9 +8,14 @@ use crate::cli::session;
 use crate::cli::wires::address;
 use crate::hand::kinematics::Side;
 use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
+use crate::inputs::Offer;
 use crate::inputs::follow::{FollowLimits, FollowPhase, HOLDS_AFTER};
+use crate::inputs::pad::device::{FOLDER, PadReader};
+use crate::inputs::pad::source::{PadSource, PadSourceConfig};
+use crate::inputs::pad::{PadInput, PadMap};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
+use crate::poses::starter::starter;
 use crate::record::{Disarmed, Record};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowStep, FollowView, follow};
 use crate::tasks::series::{self, Stop};
@@ -18,6 +24,7 @@ use anyhow::{anyhow, bail};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -32,7 +39,7 @@ const LOOK_EACH: Duration = Duration::from_millis(20);
 const READY_WITHIN: Duration = Duration::from_secs(5);
 
 #[derive(Debug, clap::Args)]
-#[group(id = "place", required = true, multiple = false, args = ["udp", "tcp"])]
+#[group(id = "place", required = true, multiple = false, args = ["udp", "tcp", "gamepad"])]
 pub(crate) struct FollowArgs {
     /// The hand that follows
     #[arg(long, value_name = "URL")]
@@ -43,6 +50,15 @@ pub(crate) struct FollowArgs {
     /// Take lines over TCP connections here
     #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
     tcp: Option<SocketAddr>,
+    /// Follow the gamepad of this computer ('handscope help gamepad')
+    #[arg(long)]
+    gamepad: bool,
+    /// With --gamepad: look for it in this folder
+    #[arg(long, value_name = "FOLDER", requires = "gamepad", default_value = FOLDER)]
+    devices: PathBuf,
+    /// With --gamepad: take what the controls do from this file
+    #[arg(long, value_name = "FILE", requires = "gamepad")]
+    map: Option<PathBuf>,
     /// Move the hand: nothing is in its way, and the 24 V switch is in reach. Without, what arrives is only shown
     #[arg(long)]
     arm: bool,
@@ -85,12 +101,6 @@ fn rate(text: &str) -> Result<u16, String> {
 }
 
 impl FollowArgs {
-    fn place(&self) -> anyhow::Result<StreamPlace> {
-        let udp = self.udp.map(StreamPlace::Udp);
-        udp.or(self.tcp.map(StreamPlace::Tcp))
-            .ok_or_else(|| anyhow!("say where lines come in: --udp or --tcp"))
-    }
-
     fn limits(&self) -> FollowLimits {
         FollowLimits {
             lead: self.lead,
@@ -118,8 +128,8 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         () = interrupt.wished() => return Ok(()),
         seen = known(&link, &mut records, &args.hand) => seen?,
     };
-    let source = listen(&link, args, clock)?;
-    out.line(&ready(args, &source))?;
+    let source = open(&link, args, clock)?;
+    out.line(&source.ready())?;
     out.flush()?;
     let mut at = AtHand {
         link,
@@ -144,11 +154,6 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
     }
 }
 
-fn ready(args: &FollowArgs, source: &StreamSource) -> String {
-    let kind = if args.udp.is_some() { "udp" } else { "tcp" };
-    format!("ready {kind} {}", source.local())
-}
-
 /// Waits until the hand says where it is.
 async fn known(
     link: &LinkHandle,
@@ -168,14 +173,29 @@ async fn known(
     bail!("the hand at {hand} does not tell its angles and faults")
 }
 
-fn listen(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<StreamSource> {
-    let place = args.place()?;
+fn open(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<FollowSource> {
     let stops = link.clone();
+    let stop = Arc::new(move || stops.stop());
+    let udp = args.udp.map(StreamPlace::Udp);
+    let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
+        let map = args.map.as_deref().map_or(Ok(PadMap::usual()), map_of)?;
+        let mut input = PadInput::new(map);
+        let poses = starter().poses.iter();
+        let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
+        input.set_poses(poses.collect());
+        return Ok(FollowSource::Pad(PadSource::open(PadSourceConfig {
+            reader: PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?,
+            input,
+            records: link.records(),
+            clock,
+            stop,
+        })));
+    };
     let config = StreamConfig {
         place,
         side: args.side,
         clock,
-        stop: Arc::new(move || stops.stop()),
+        stop,
         wake: Arc::new(|| ()),
     };
     let source = StreamSource::open(config, &Handle::current()).map_err(|error| {
@@ -188,7 +208,87 @@ fn listen(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<
             "warning: anyone in the network can send to {at}; 127.0.0.1 keeps it to this computer"
         ));
     }
-    Ok(source)
+    Ok(FollowSource::Stream(place, source))
+}
+
+/// What the hand follows.
+enum FollowSource {
+    Stream(StreamPlace, StreamSource),
+    Pad(PadSource),
+}
+
+impl FollowSource {
+    /// The line that says that it can be used.
+    fn ready(&self) -> String {
+        match self {
+            Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
+            Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
+            Self::Pad(_) => "ready gamepad".into(),
+        }
+    }
+
+    fn follow(&self) -> mpsc::Receiver<Offer> {
+        match self {
+            Self::Stream(_, source) => source.follow(),
+            Self::Pad(source) => source.follow(),
+        }
+    }
+
+    /// Who would move the hand now, and what it is called.
+    fn owner(&self, now: Moment) -> Option<(Owner, String)> {
+        match self {
+            Self::Stream(_, source) => {
+                let (sender, last) = source.view().intake.sender?;
+                let is_fresh = now.since(last) < HOLDS_AFTER;
+                is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
+            }
+            Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
+        }
+    }
+
+    /// How it goes, in words and as an object.
+    fn told(&self) -> (String, Value) {
+        match self {
+            Self::Stream(_, source) => {
+                let StreamView {
+                    intake,
+                    not_granted,
+                    ..
+                } = source.view();
+                let refused: BTreeMap<&str, u64> = intake
+                    .refused
+                    .iter()
+                    .map(|(fault, count)| (fault.name(), *count))
+                    .collect();
+                let words = format!(
+                    "{:6.1} lines/s  {} taken  {} refused",
+                    intake.rate_hz,
+                    intake.taken,
+                    refused.values().sum::<u64>()
+                );
+                let object = json!({
+                    "sender": intake.sender.map(|(sender, _)| sender.to_string()),
+                    "rate_hz": intake.rate_hz,
+                    "taken": intake.taken,
+                    "refused": refused,
+                    "not_granted": not_granted,
+                });
+                (words, object)
+            }
+            Self::Pad(source) => {
+                let view = source.view();
+                let held = if view.is_held { "held" } else { "not held" };
+                let words = match (&view.name, &view.trouble) {
+                    (Some(name), _) => format!("{name}, dead-man {held}"),
+                    (None, Some(trouble)) => trouble.clone(),
+                    (None, None) => "no gamepad yet: plug one in, or pair it".into(),
+                };
+                let object =
+                    json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
+                (words, object)
+            }
+        }
+    }
 }
 
 /// Does not leave before the hand is seen to rest.
@@ -209,7 +309,7 @@ struct AtHand<'a> {
     seen: HandSample,
     clock: Clock,
     args: &'a FollowArgs,
-    source: &'a StreamSource,
+    source: &'a FollowSource,
     teller: Teller<'a>,
 }
 
@@ -218,8 +318,8 @@ impl AtHand<'_> {
     async fn go_on(&mut self) -> anyhow::Result<()> {
         let mut entered = entered_lines();
         loop {
-            let sender = self.sender().await?;
-            let (offers, lease) = (self.source.follow(), self.link.grant(Owner::Stream(sender)));
+            let (owner, sender) = self.sender().await?;
+            let (offers, lease) = (self.source.follow(), self.link.grant(owner));
             let start = FollowStart {
                 lease,
                 limits: self.args.limits(),
@@ -233,7 +333,7 @@ impl AtHand<'_> {
             let mut trouble = None;
             let tell = |step| {
                 if let FollowStep::View(view) = step {
-                    let told = teller.tell(&source.view(), Some(view), clock.now());
+                    let told = teller.tell(source, Some(view), clock.now());
                     trouble = trouble.take().or(told.err());
                 }
             };
@@ -248,7 +348,7 @@ impl AtHand<'_> {
             say(&format!(
                 "{why}: the hand was stopped; press Enter to let it move again, Ctrl-C to leave"
             ));
-            self.teller.tell(&self.source.view(), None, clock.now())?;
+            self.teller.tell(self.source, None, clock.now())?;
             if entered.recv().await.is_none() {
                 bail!("{why}, and nobody can press Enter here");
             }
@@ -268,16 +368,13 @@ impl AtHand<'_> {
         why.to_owned()
     }
 
-    /// Waits until somebody sends; for ever if the hand is not to move.
-    async fn sender(&mut self) -> anyhow::Result<SocketAddr> {
+    /// Waits until there is somebody to follow; for ever if the hand is not to move.
+    async fn sender(&mut self) -> anyhow::Result<(Owner, String)> {
         loop {
-            let (view, now) = (self.source.view(), self.clock.now());
-            self.teller.tell(&view, None, now)?;
-            if let Some((sender, last)) = view.intake.sender
-                && now.since(last) < HOLDS_AFTER
-                && self.args.arm
-            {
-                return Ok(sender);
+            let now = self.clock.now();
+            self.teller.tell(self.source, None, now)?;
+            if let Some(owner) = self.source.owner(now).filter(|_| self.args.arm) {
+                return Ok(owner);
             }
             sleep(LOOK_EACH).await;
         }
@@ -310,7 +407,7 @@ struct Teller<'a> {
 impl Teller<'_> {
     fn tell(
         &mut self,
-        stream: &StreamView,
+        source: &FollowSource,
         follow: Option<FollowView>,
         now: Moment,
     ) -> anyhow::Result<()> {
@@ -320,15 +417,20 @@ impl Teller<'_> {
             return Ok(());
         }
         self.told = Some((phase, now));
-        let words = phase.map_or("waiting", phase_word);
-        match self.json {
-            true => self.out.object(&view_json(stream, follow, now))?,
-            false => self.out.line(&format!(
-                "{words:<9} {:6.1} lines/s  {} taken  {} refused",
-                stream.intake.rate_hz,
-                stream.intake.taken,
-                stream.intake.refused.values().sum::<u64>()
-            ))?,
+        let phase = phase.map_or("waiting", phase_word);
+        let (words, mut object) = source.told();
+        match object.as_object_mut().filter(|_| self.json) {
+            Some(fields) => {
+                fields.insert("t_s".into(), now.since(Moment::ZERO).as_secs_f64().into());
+                fields.insert("phase".into(), phase.into());
+                let lead = follow.map(|view| view.lead);
+                fields.insert("lead".into(), lead.into());
+                let delay = follow.and_then(|view| view.delay_p99);
+                let delay = delay.map(|delay| delay.as_secs_f64() * 1e3);
+                fields.insert("delay_p99_ms".into(), delay.into());
+                self.out.object(&object)?;
+            }
+            None => self.out.line(&format!("{phase:<9} {words}"))?,
         }
         self.out.flush()
     }
@@ -342,22 +444,4 @@ const fn phase_word(phase: FollowPhase) -> &'static str {
         FollowPhase::Silent => "silent",
         FollowPhase::Released => "released",
     }
-}
-
-fn view_json(stream: &StreamView, follow: Option<FollowView>, now: Moment) -> Value {
-    let refused = stream.intake.refused.iter();
-    let refused: BTreeMap<String, u64> = refused
-        .map(|(fault, count)| (fault.name().to_owned(), *count))
-        .collect();
-    json!({
-        "t_s": now.since(Moment::ZERO).as_secs_f64(),
-        "phase": follow.map_or("waiting", |view| phase_word(view.phase)),
-        "sender": stream.intake.sender.map(|(sender, _)| sender.to_string()),
-        "rate_hz": stream.intake.rate_hz,
-        "taken": stream.intake.taken,
-        "refused": refused,
-        "not_granted": stream.not_granted,
-        "lead": follow.map(|view| view.lead),
-        "delay_p99_ms": follow.and_then(|view| view.delay_p99).map(|delay| delay.as_secs_f64() * 1e3),
-    })
 }

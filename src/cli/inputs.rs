@@ -96,7 +96,7 @@ async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     }
 }
 
-fn map_of(path: &Path) -> anyhow::Result<PadMap> {
+pub(crate) fn map_of(path: &Path) -> anyhow::Result<PadMap> {
     let read = toml_file::load(path, file::BYTES_MAX, file::read);
     read.with_context(|| path.display().to_string())
 }

@@ -166,10 +166,11 @@ impl Follow {
         let offer = self.newest?;
         let is_silent = age >= HOLDS_AFTER;
         if offer.held == Some(false) || is_silent && offer.held.is_some() {
-            return self.halt(match is_silent {
+            let phase = match is_silent {
                 true => FollowPhase::Silent,
                 false => FollowPhase::Released,
-            });
+            };
+            return self.halt(phase, seen.state);
         }
         if is_silent {
             return self.hold(seen, age);
@@ -204,13 +205,12 @@ impl Follow {
         self.sent = PerDof::splat(None);
     }
 
-    /// Stops once; what is held again begins anew.
-    fn halt(&mut self, phase: FollowPhase) -> Option<FollowOrder> {
-        let stands = matches!(self.phase, FollowPhase::Released | FollowPhase::Silent);
+    /// Stops what may move; what is held again begins anew.
+    fn halt(&mut self, phase: FollowPhase, state: LinkState) -> Option<FollowOrder> {
         self.enter();
         self.asked_to_arm = None;
         self.phase = phase;
-        (!stands).then_some(FollowOrder::Halt)
+        (state == LinkState::Armed).then_some(FollowOrder::Halt)
     }
 
     /// Where the hand is becomes its target.

@@ -11,6 +11,7 @@ pub mod map;
 #[cfg(target_os = "linux")]
 pub mod reader;
 pub mod report;
+pub mod source;
 pub mod state;
 
 pub use control::{ControlKind, PadControl};

@@ -1,0 +1,143 @@
+//! A gamepad as a source that a hand can follow: reports in, offers out, STOP at once.
+
+use crate::hand::{Angle, AngleReading, PerDof};
+use crate::inputs::offer::Offer;
+use crate::inputs::pad::device::PadReader;
+use crate::inputs::pad::input::{PadEvent, PadInput};
+use crate::inputs::pad::report::PadNews;
+use crate::link::{Clock, Records};
+use crate::record::Record;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::task::AbortHandle;
+use tokio::time::{MissedTickBehavior, interval};
+
+/// How often a gamepad says where it wants the hand, whether it was moved or not.
+const OFFER_EACH: Duration = Duration::from_millis(10);
+/// Offers that may wait to be followed.
+const OFFERS_MAX: usize = 64;
+
+/// What a gamepad is followed with.
+pub struct PadSourceConfig {
+    /// The gamepads of this computer.
+    pub reader: PadReader,
+    /// What its controls do, with the poses of its buttons.
+    pub input: PadInput,
+    /// What the hand says, for where its joints are.
+    pub records: Records,
+    /// The program's clock.
+    pub clock: Clock,
+    /// Stops the hand. Called when STOP is pressed.
+    pub stop: Arc<dyn Fn() + Send + Sync>,
+}
+
+/// What is known of the gamepad now.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PadView {
+    /// What it calls itself; `None` without one.
+    pub name: Option<String>,
+    /// Why there is none, if the system says so.
+    pub trouble: Option<String>,
+    /// Its dead-man is held.
+    pub is_held: bool,
+}
+
+/// A gamepad that is read. Dropped, it is read no more.
+#[derive(Debug)]
+pub struct PadSource {
+    view: watch::Receiver<PadView>,
+    follower: watch::Sender<Option<mpsc::Sender<Offer>>>,
+    abort: AbortHandle,
+}
+
+impl Drop for PadSource {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl PadSource {
+    /// Reads from now on. Must be called within a tokio runtime.
+    #[must_use]
+    pub fn open(config: PadSourceConfig) -> Self {
+        let (told, view) = watch::channel(PadView::default());
+        let (follower, followed) = watch::channel(None);
+        let task = tokio::spawn(run(config, told, followed));
+        Self {
+            view,
+            follower,
+            abort: task.abort_handle(),
+        }
+    }
+
+    /// What is known of it.
+    #[must_use]
+    pub fn view(&self) -> PadView {
+        self.view.borrow().clone()
+    }
+
+    /// Its targets from now on, for whoever follows; whoever did before does no more.
+    #[must_use]
+    pub fn follow(&self) -> mpsc::Receiver<Offer> {
+        let (offers, followed) = mpsc::channel(OFFERS_MAX);
+        self.follower.send_replace(Some(offers));
+        followed
+    }
+}
+
+async fn run(
+    mut config: PadSourceConfig,
+    told: watch::Sender<PadView>,
+    followed: watch::Receiver<Option<mpsc::Sender<Offer>>>,
+) {
+    let mut tick = interval(OFFER_EACH);
+    tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut view = PadView::default();
+    loop {
+        tokio::select! {
+            biased;
+            report = config.reader.report() => {
+                let Some(report) = report else { return };
+                match &report.news {
+                    PadNews::Found { facts, .. } if view.name.is_none() => {
+                        view.name = Some(facts.name.clone());
+                        view.trouble = None;
+                    }
+                    PadNews::Trouble(trouble) => view.trouble = Some(trouble.to_string()),
+                    _ => {}
+                }
+                match config.input.take(&report) {
+                    Some(PadEvent::Stop) => (config.stop)(),
+                    Some(PadEvent::Gone) => view.name = None,
+                    _ => {}
+                }
+            }
+            Some(record) = config.records.next() => {
+                if let Record::Reading { sample, .. } = record {
+                    let angle = sample.angle;
+                    let actual: PerDof<Option<Angle>> = PerDof::from_fn(|dof| {
+                        angle.and_then(|angle| AngleReading::hold(angle.value[dof]))
+                    });
+                    config.input.set_actual(actual);
+                }
+                continue;
+            }
+            _ = tick.tick() => {}
+        }
+        let now = config.clock.now();
+        view.is_held = config.input.is_held(now);
+        told.send_if_modified(|shown| {
+            let is_news = *shown != view;
+            if is_news {
+                shown.clone_from(&view);
+            }
+            is_news
+        });
+        let offer = config.input.offer(now);
+        if let Some((offer, offers)) = offer.zip(followed.borrow().as_ref()) {
+            // A follower that is not fast enough takes the next one; one that is gone follows no more.
+            let _taken = offers.try_send(offer);
+        }
+    }
+}
