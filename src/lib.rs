@@ -19,7 +19,7 @@
 //! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams; what they ask for, checked, and how a hand follows it |
 //! | 4 | [`share`] | one hand for several programs: gateway |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
-//! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, exhibit |
+//! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
 //! | 7 | [`ui`] | the window: reads state, returns actions |
 //! | 8 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
@@ -40,6 +40,9 @@
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while a person has armed the hand;
 //!   a stop, faults, link loss, old feedback, another controller and sleep disarm it.
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not.
+//! * One owner at a time may move a hand, by a [`link::Lease`] that a person granted; a stop, a fault, a lost link and silence end it,
+//!   and what the one before asked for is dropped.
+//! * A hand that follows another program or a gamepad begins where it is, and stays within a lead and a rate.
 //! * Parameters are written at rest and disarmed, read back, and reported as applied, refused, altered or not known. A SAVE has
 //!   the line to itself, one at a time, and no late frame counts for another write. Flash cannot be read, and the program says so.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.

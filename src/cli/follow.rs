@@ -39,7 +39,7 @@ const LOOK_EACH: Duration = Duration::from_millis(20);
 const READY_WITHIN: Duration = Duration::from_secs(5);
 
 #[derive(Debug, clap::Args)]
-#[group(id = "place", required = true, multiple = false, args = ["udp", "tcp", "gamepad"])]
+#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad"]))]
 pub(crate) struct FollowArgs {
     /// The hand that follows
     #[arg(long, value_name = "URL")]
@@ -54,10 +54,10 @@ pub(crate) struct FollowArgs {
     #[arg(long)]
     gamepad: bool,
     /// With --gamepad: look for it in this folder
-    #[arg(long, value_name = "FOLDER", requires = "gamepad", default_value = FOLDER)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp"], default_value = FOLDER)]
     devices: PathBuf,
     /// With --gamepad: take what the controls do from this file
-    #[arg(long, value_name = "FILE", requires = "gamepad")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp"])]
     map: Option<PathBuf>,
     /// Move the hand: nothing is in its way, and the 24 V switch is in reach. Without, what arrives is only shown
     #[arg(long)]
@@ -92,12 +92,12 @@ fn side(text: &str) -> Result<Side, String> {
 
 fn lead(text: &str) -> Result<u16, String> {
     let (least, most) = FollowLimits::LEAD;
-    number(text, least..=most, "counts of lead")
+    number(text, least..=most, "a lead of 20 to 500 counts")
 }
 
 fn rate(text: &str) -> Result<u16, String> {
     let (least, most) = FollowLimits::RATE;
-    number(text, least..=most, "counts a second")
+    number(text, least..=most, "a rate of 50 to 1700 counts a second")
 }
 
 impl FollowArgs {

@@ -8,6 +8,7 @@ mod doctor;
 #[cfg(unix)]
 mod doors;
 #[cfg(target_os = "linux")]
+mod follow;
 mod inputs;
 #[cfg(unix)]
 mod interop;

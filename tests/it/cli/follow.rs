@@ -1,0 +1,178 @@
+//! `follow`: a hand that follows datagrams of another process, and what is told when it cannot.
+
+use crate::setup::process::{Running, listen, run, sim_on_tcp, start};
+use crate::setup::skipped::skipped;
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use std::net::UdpSocket;
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Follows on a free port; where that is.
+fn following(hand: &str, more: &[&str]) -> (Running, String) {
+    let args = ["follow", "--hand", hand, "--udp", "127.0.0.1:0", "--json"];
+    let mut running = start(&[&args, more].concat());
+    let ready = running.line();
+    let place = ready.strip_prefix("ready udp ").expect(&ready).to_owned();
+    (running, place)
+}
+
+/// Closes the index slowly, a hundred lines a second, until it is told to end.
+fn sender(place: String, ended: Arc<AtomicBool>) -> JoinHandle<()> {
+    std::thread::spawn(move || {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let mut seq = 0;
+        while !ended.load(Ordering::Relaxed) {
+            let index = 1.0 - f64::from(seq % 400) / 1000.0;
+            let line = format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#);
+            let _sent = socket.send_to(line.as_bytes(), &place);
+            seq += 1;
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    })
+}
+
+fn phase(line: &str) -> Value {
+    serde_json::from_str::<Value>(line).unwrap()["phase"].take()
+}
+
+fn angle(hand: &str) -> i64 {
+    let read = run(&["read", "ANGLE_ACT", "--hand", hand, "--json"]).ok();
+    let values = &read.lines()[0]["ANGLE_ACT"];
+    values[3].as_i64().unwrap_or_else(|| panic!("{}", read.out))
+}
+
+#[test]
+fn a_hand_follows_another_program_and_is_stopped_when_that_is_killed() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let before = angle(&hand);
+    let (mut running, place) = following(&hand, &["--arm"]);
+    let ended = Arc::new(AtomicBool::new(false));
+    let sends = sender(place, Arc::clone(&ended));
+    running.until(|line| phase(line) == "following");
+    let told = running.until(|line| {
+        let told: Value = serde_json::from_str(line).unwrap();
+        told["phase"] == "following" && told["taken"].as_u64() > Some(150)
+    });
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert!(told["delay_p99_ms"].as_f64().is_some(), "{told}");
+    ended.store(true, Ordering::Relaxed);
+    sends.join().unwrap();
+    running.until(|line| phase(line) == "silent");
+    // Nobody can press Enter in a test.
+    let said = running.end();
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    assert!(
+        said.err.contains("fell silent: the hand was stopped"),
+        "{}",
+        said.err
+    );
+    let after = angle(&hand);
+    assert!((before - after).abs() > 50, "{before} {after}");
+}
+
+#[test]
+fn nothing_moves_without_a_person_who_lets_it() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let before = angle(&hand);
+    let (mut running, place) = following(&hand, &[]);
+    let ended = Arc::new(AtomicBool::new(false));
+    let sends = sender(place, Arc::clone(&ended));
+    let told = running.until(|line| {
+        let told: Value = serde_json::from_str(line).unwrap();
+        told["not_granted"].as_u64() > Some(50)
+    });
+    assert_eq!(phase(&told), "waiting");
+    ended.store(true, Ordering::Relaxed);
+    sends.join().unwrap();
+    running.signal(Signal::SIGINT);
+    running.end().ok();
+    assert_eq!(angle(&hand), before);
+}
+
+#[test]
+fn ctrl_c_stops_the_hand_and_ends_well() {
+    let (mut running, place) = following("sim:?scenario=free", &["--arm"]);
+    let ended = Arc::new(AtomicBool::new(false));
+    let sends = sender(place, Arc::clone(&ended));
+    running.until(|line| phase(line) == "following");
+    running.signal(Signal::SIGINT);
+    running.end().ok();
+    ended.store(true, Ordering::Relaxed);
+    sends.join().unwrap();
+}
+
+#[test]
+fn the_sender_of_the_manual_moves_a_hand() {
+    let page = handscope::manual::topic("stream").unwrap().text;
+    let python = page.split("```python\n").nth(1).unwrap();
+    let python = python.split("```").next().unwrap();
+    if !Command::new("python3")
+        .arg("--version")
+        .output()
+        .is_ok_and(|output| output.status.success())
+    {
+        skipped("a sender in Python", "this machine has no python3");
+        return;
+    }
+    let (mut running, place) = following("sim:?scenario=free", &["--arm"]);
+    let port = place.rsplit(':').next().unwrap();
+    let python = python.replace("6010", port).replace("< 10", "< 3");
+    let mut command = Command::new("python3");
+    command.args(["-c", &python]).stdin(Stdio::null());
+    let sends = listen(command);
+    running.until(|line| phase(line) == "following");
+    sends.end().ok();
+    let told = running.until(|line| phase(line) == "silent");
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert!(told["taken"].as_u64() > Some(100), "{told}");
+    assert_eq!(told["refused"], serde_json::json!({}), "{told}");
+}
+
+#[test]
+fn wrong_use_is_told_in_one_sentence() {
+    for (args, code, words) in [
+        (&["--hand", "sim:"][..], 2, "--udp"),
+        (&["--hand", "sim:", "--udp", "here"], 2, "127.0.0.1:6000"),
+        (
+            &["--hand", "sim:", "--udp", "127.0.0.1:0", "--lead", "5"],
+            2,
+            "20",
+        ),
+        (
+            &["--hand", "sim:", "--udp", "127.0.0.1:0", "--side", "both"],
+            2,
+            "right or left",
+        ),
+        (
+            &[
+                "--hand",
+                "sim:",
+                "--udp",
+                "127.0.0.1:0",
+                "--map",
+                "pad.toml",
+            ],
+            2,
+            "--map",
+        ),
+        (
+            &["--hand", "sim:", "--gamepad", "--map", "/none.toml"],
+            1,
+            "/none.toml",
+        ),
+    ] {
+        let ended = run(&[&["follow"], args].concat());
+        assert_eq!(ended.code, Some(code), "{args:?}: {}", ended.err);
+        assert!(ended.err.contains(words), "{args:?}: {}", ended.err);
+    }
+    let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let place = taken.local_addr().unwrap().to_string();
+    let ended = run(&["follow", "--hand", "sim:", "--udp", &place]);
+    assert_eq!(ended.code, Some(1));
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    assert!(ended.err.contains(&place), "{}", ended.err);
+}
