@@ -4,6 +4,7 @@ use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
 use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
+use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
 use crate::app::poses::PoseState;
@@ -63,6 +64,8 @@ pub enum Action {
     Session(SessionAction),
     /// What a person does at an exhibition, or to begin one.
     Exhibit(ExhibitAction),
+    /// What is asked of inputs and of the gateway.
+    Input(InputAction),
     /// What is asked about grasp trials.
     Trial(TrialAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.

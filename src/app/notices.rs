@@ -2,7 +2,7 @@
 
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Finger, Gesture, Moment};
-use crate::link::{LinkTrouble, RequestError};
+use crate::link::{LinkTrouble, Owner, RequestError};
 use crate::record::file::OpenError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed};
@@ -71,6 +71,8 @@ pub enum NoticeKind {
     },
     /// The hand is not armed any more, and no person asked for it.
     Disarmed(Disarmed),
+    /// What the hand followed fell silent; the hand was stopped.
+    SourceSilent(Owner),
     /// The hand cannot be armed.
     ArmRefused(ArmRefusal),
     /// A joint is not well.

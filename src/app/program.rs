@@ -178,6 +178,7 @@ impl App {
         for hand in hands.iter_mut() {
             hand.take_news(notices, now);
             hand.tick_sequence();
+            hand.tick_inputs(notices);
             hand.tick_requests(notices);
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
@@ -343,6 +344,7 @@ impl App {
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),
+            Action::Input(action) => hand.input_action(action, settings, env),
             Action::Tare(finger) => {
                 hand.tare(finger, notices);
                 hand.keep_tare(settings);

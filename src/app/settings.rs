@@ -5,6 +5,8 @@ use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
+use crate::inputs::follow::FollowLimits;
+use crate::inputs::pad::{self, PadMap};
 use crate::link::PollPriority;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
@@ -310,6 +312,10 @@ pub struct Settings {
     pub read_first: PollPriority,
     /// What is recorded, and where.
     pub sessions: SessionSettings,
+    /// How far and how fast a hand follows a source.
+    pub follow: FollowLimits,
+    /// What the controls of a gamepad do, as a file of it says; as delivered if nothing changed that.
+    pub pad_map: Option<String>,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
     /// nothing else.
     pub trial_plan: Option<toml::Value>,
@@ -323,6 +329,14 @@ impl Settings {
     #[must_use]
     pub const fn records(&self, is_simulated: bool) -> bool {
         self.sessions.record && (!is_simulated || self.sessions.record_simulated)
+    }
+
+    /// What the controls of a gamepad do.
+    #[must_use]
+    pub fn pad_map(&self) -> PadMap {
+        let own = self.pad_map.as_deref();
+        let own = own.and_then(|text| pad::file::read(text).ok());
+        own.unwrap_or_else(PadMap::usual)
     }
 
     /// Where sessions lie; `None` = nowhere.

@@ -189,6 +189,7 @@ fn open(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<Fo
             records: link.records(),
             clock,
             stop,
+            wake: Arc::new(|| ()),
         })));
     };
     let config = StreamConfig {

@@ -1,6 +1,6 @@
 //! The views of the window.
 
-use crate::ui::text::{Text, main, sessions};
+use crate::ui::text::{Text, inputs, main, sessions};
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,6 +22,8 @@ pub enum View {
     Device,
     /// The link and its settings.
     Connection,
+    /// What besides the window may move the hand, and who uses it.
+    Inputs,
     /// What goes over the wire, frame by frame.
     Traffic,
     /// What was recorded.
@@ -30,7 +32,7 @@ pub enum View {
 
 impl View {
     /// All, in the order of the tabs.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Live,
         Self::Touch,
         Self::Tune,
@@ -39,6 +41,7 @@ impl View {
         Self::Poses,
         Self::Device,
         Self::Connection,
+        Self::Inputs,
         Self::Traffic,
         Self::Sessions,
     ];
@@ -63,6 +66,7 @@ impl View {
             Self::Poses => ("poses", main::TAB_POSES),
             Self::Device => ("device", main::TAB_DEVICE),
             Self::Connection => ("connection", main::TAB_CONNECTION),
+            Self::Inputs => ("inputs", inputs::TITLE),
             Self::Traffic => ("traffic", main::TAB_TRAFFIC),
             Self::Sessions => ("sessions", sessions::TITLE),
         }

@@ -9,6 +9,7 @@ use crate::history::MarkKind;
 use crate::link::ArmRequest;
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::LinkState;
+use crate::tasks::follow::FollowCommand;
 use crate::trials::Abort;
 
 impl HandState {
@@ -103,6 +104,7 @@ impl HandState {
         self.steered[dof] = false;
         self.follow();
         self.tell_locks();
+        self.command(FollowCommand::Lock(self.joints.map(|joint| joint.locked)));
         if freed && self.is_free(dof) {
             self.send(|setpoints| {
                 setpoints.force[dof] = Some(force);
@@ -198,6 +200,7 @@ impl HandState {
 
     /// True for joints that a person may move now.
     pub(crate) fn is_free(&self, dof: Dof) -> bool {
-        self.is_armed() && !self.runs_series() && !self.joints[dof].locked
+        let is_ours = !self.runs_series() && self.outside_owner().is_none();
+        self.is_armed() && is_ours && !self.joints[dof].locked
     }
 }

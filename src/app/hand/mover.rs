@@ -3,6 +3,7 @@
 use crate::app::hand::{Freshness, HandState};
 use crate::app::procedures::procedure::Procedure;
 use crate::hand::Gesture;
+use crate::link::Owner;
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState, Rest};
 
@@ -19,6 +20,8 @@ pub enum Mover {
     Playing(EntryId, usize),
     /// A stored gesture.
     Gesture(Gesture),
+    /// Another than this window, which a person let.
+    Outside(Owner),
     /// Setpoints of a person.
     Setpoints,
     /// Nothing that this program asked for.
@@ -39,6 +42,9 @@ impl HandState {
             && card.stage.is_doing()
         {
             return Some(Mover::Calibration);
+        }
+        if let Some(owner) = self.outside_owner() {
+            return Some(Mover::Outside(owner));
         }
         if let Some(run) = &self.series {
             return Some(Mover::Series(run.view.number, run.view.total));

@@ -3,6 +3,7 @@
 use crate::app::hand::joint::JointControl;
 use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
+use crate::app::inputs::HandInputs;
 use crate::app::params::state::ParamsState;
 use crate::app::procedures::procedure::Procedure;
 use crate::app::procedures::reach::GoRequest;
@@ -63,6 +64,8 @@ pub struct HandState {
     pub recorder: FaultRecorder,
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
+    /// What besides the window may move the hand, and who uses it.
+    pub inputs: HandInputs,
     /// The sequence that runs, or ran last.
     pub sequence: Option<SequenceRun>,
     /// What the hand keeps, and what of it is to be changed.

@@ -3,9 +3,10 @@
 use crate::hand::{Angle, AngleReading, PerDof};
 use crate::inputs::offer::Offer;
 use crate::inputs::pad::device::PadReader;
-use crate::inputs::pad::input::{PadEvent, PadInput};
+use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput};
 use crate::inputs::pad::report::PadNews;
-use crate::link::{Clock, Records};
+use crate::inputs::pad::state::PadState;
+use crate::link::{Clock, Records, Wake};
 use crate::record::Record;
 use std::sync::Arc;
 use std::time::Duration;
@@ -30,6 +31,8 @@ pub struct PadSourceConfig {
     pub clock: Clock,
     /// Stops the hand. Called when STOP is pressed.
     pub stop: Arc<dyn Fn() + Send + Sync>,
+    /// Called when there is news. Must return at once.
+    pub wake: Wake,
 }
 
 /// What is known of the gamepad now.
@@ -41,6 +44,10 @@ pub struct PadView {
     pub trouble: Option<String>,
     /// Its dead-man is held.
     pub is_held: bool,
+    /// Where its controls are.
+    pub state: PadState,
+    /// The fingers that a trigger closes.
+    pub fingers: FingerChoice,
 }
 
 /// A gamepad that is read. Dropped, it is read no more.
@@ -127,13 +134,17 @@ async fn run(
         }
         let now = config.clock.now();
         view.is_held = config.input.is_held(now);
-        told.send_if_modified(|shown| {
+        view.state.clone_from(config.input.state());
+        view.fingers = config.input.fingers();
+        if told.send_if_modified(|shown| {
             let is_news = *shown != view;
             if is_news {
                 shown.clone_from(&view);
             }
             is_news
-        });
+        }) {
+            (config.wake)();
+        }
         let offer = config.input.offer(now);
         if let Some((offer, offers)) = offer.zip(followed.borrow().as_ref()) {
             // A follower that is not fast enough takes the next one; one that is gone follows no more.

@@ -7,7 +7,7 @@ use crate::inputs::pad::state::FULL;
 use crate::inputs::pad::{ControlKind, PadAction, PadControl, PadMap, PadState};
 use crate::ui::inputs::pad_places::{CANVAS, CAP, CAP_WAY, cross_middle, outline, place};
 use crate::ui::kit::{Label, Look, focus_ring, text_width};
-use crate::ui::text::pad;
+use crate::ui::text::inputs;
 use crate::ui::theme;
 use egui::{
     Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
@@ -74,10 +74,10 @@ impl PadShown<'_> {
     /// What a control does, in words.
     pub(crate) fn does(&self, look: Look, action: &PadAction) -> String {
         let PadAction::Pose(name) = action else {
-            return look.say(pad::action(action)).to_owned();
+            return look.say(inputs::action(action)).to_owned();
         };
         let known = self.poses.iter().find(|pose| pose.name == *name);
-        look.fill(pad::POSE, &[&known.map_or(name, |pose| &pose.shown)])
+        look.fill(inputs::POSE, &[&known.map_or(name, |pose| &pose.shown)])
     }
 
     fn is_held(&self, control: PadControl) -> bool {
@@ -161,10 +161,13 @@ fn rows_ui(
 /// Names a control with what it does, and explains that.
 fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
     let action = shown.map.action(control);
-    let words = look.pair(look.say(pad::control(control)), &shown.does(look, action));
+    let words = look.pair(
+        look.say(inputs::control(control)),
+        &shown.does(look, action),
+    );
     let is_chosen = shown.chosen == Some(control);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &words));
-    let tips = [look.tip(pad::action(action)), look.say(pad::CHANGE)];
+    let tips = [look.tip(inputs::action(action)), look.say(inputs::CHANGE)];
     let tips = [&[words.as_str()][..], &tips].concat().join("\n");
     let response = response.clone().on_hover_text(tips.replace("\n\n", "\n"));
     response.on_hover_cursor(egui::CursorIcon::PointingHand)
@@ -303,7 +306,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
     }
     if shown.state.is_none() {
         let (at, center) = (drawing.at(pos2(0.0, -115.0)), Align2::CENTER_CENTER);
-        let (words, font) = (look.say(pad::NONE), theme::title());
+        let (words, font) = (look.say(inputs::NONE), theme::title());
         ui.painter()
             .text(at, center, words, font, look.palette.muted);
     }

@@ -3,7 +3,7 @@
 use crate::inputs::pad::{PadAction, PadControl, PadMap};
 use crate::ui::inputs::pad_picture::PadShown;
 use crate::ui::kit::{Label, Look, choose_ui};
-use crate::ui::text::pad;
+use crate::ui::text::inputs;
 use crate::ui::theme;
 use egui::{Align, Layout, Ui, vec2};
 
@@ -26,7 +26,7 @@ pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Opt
             let left = Layout::left_to_right(Align::Center);
             ui.allocate_ui_with_layout(vec2(NAME, theme::CONTROL), left, |ui| {
                 ui.set_min_width(NAME);
-                Label::new(look.say(pad::control(control)), color).ui(ui);
+                Label::new(look.say(inputs::control(control)), color).ui(ui);
             });
             action_ui(ui, look, control, shown)
         });
@@ -53,13 +53,13 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
         .zip(words.iter().map(String::as_str))
         .collect();
     let mut action = before.clone();
-    let name = look.say(pad::control(control));
+    let name = look.say(inputs::control(control));
     let chosen = ui.add_enabled_ui(!before.is_single(), |ui| {
         choose_ui(ui, name, &mut action, &choices)
     });
     chosen
         .response
-        .on_disabled_hover_text(look.say(pad::SINGLE));
+        .on_disabled_hover_text(look.say(inputs::SINGLE));
     match chosen.inner {
         true => shown.map.with(control, action).ok(),
         false => None,

@@ -185,7 +185,7 @@ fn everything_in_the_picture_can_be_hit_and_nothing_lies_on_another() {
     let all = PadControl::ALL.map(|control| {
         let shown = harness.state().pad();
         let does = shown.does(look(Theme::Dark, Language::En), shown.map.action(control));
-        let name = crate::ui::text::pad::control(control).en;
+        let name = crate::ui::text::inputs::control(control).en;
         let name = format!("{name}: {does}");
         let nodes = harness.get_all_by_label(&name);
         let rects: Vec<_> = nodes.map(|node| node.rect()).collect();

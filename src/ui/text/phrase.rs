@@ -82,7 +82,7 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, faults, main, pad, panels, poses, scan, sessions, traffic, tune,
+        cards, device, exhibit, faults, inputs, main, panels, poses, scan, sessions, traffic, tune,
         window,
     };
 
@@ -92,8 +92,8 @@ mod tests {
             device::ALL,
             exhibit::ALL,
             faults::ALL,
+            inputs::ALL,
             main::ALL,
-            pad::ALL,
             panels::ALL,
             poses::ALL,
             scan::ALL,

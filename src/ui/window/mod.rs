@@ -36,6 +36,7 @@ use crate::hand::Moment;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::exhibit::{self, ExhibitPage};
 use crate::ui::faults::{self, FaultsView};
+use crate::ui::inputs::InputsView;
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
 use crate::ui::joints::row::JointRow;
@@ -91,6 +92,7 @@ pub struct Window {
     poses: PoseView,
     device: DeviceView,
     connection: ConnectionForm,
+    inputs: InputsView,
     touch: TouchView,
     traffic: TrafficView,
     tune: TuneView,
@@ -370,6 +372,7 @@ impl Window {
             View::Poses => self.poses.ui(ui, pane),
             View::Device => self.device.ui(ui, pane),
             View::Connection => self.connection.ui(ui, pane),
+            View::Inputs => self.inputs.ui(ui, pane),
             View::Traffic => self.traffic.ui(ui, pane),
             View::Sessions => self.sessions.ui(ui, pane),
         }

@@ -4,12 +4,14 @@
 use crate::app::action::Action;
 use crate::app::hand::mover::Mover;
 use crate::app::hand::{Freshness, Play};
+use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
 use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState};
+use crate::ui::inputs::owner_words;
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
@@ -214,6 +216,10 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             let (title, name) = (look.say(panels::GESTURE), name.unwrap_or_default());
             let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
+        }
+        Mover::Outside(owner) => {
+            let words = owner_words(pane, owner);
+            (words, Some(Action::Input(InputAction::TakeBack)))
         }
         Mover::Setpoints => (say(window::MOVES_SETPOINTS), None),
         Mover::Unknown => (say(window::MOVES_UNKNOWN), None),

@@ -1,0 +1,420 @@
+//! What besides the window may move the hand, and who reads it: who does now, lines of JSON, the gamepad, the gateway.
+
+use crate::app::action::Action;
+use crate::app::inputs::InputAction;
+use crate::hand::Moment;
+use crate::inputs::follow::{FollowLimits, FollowPhase, HOLDS_AFTER};
+use crate::inputs::pad::PadControl;
+use crate::inputs::stream::StreamPlace;
+use crate::link::Owner;
+use crate::poses::starter::starter;
+use crate::share::gateway::{ClientLease, GatewayClient};
+use crate::ui::inputs::{PadShown, PoseName, pad_picture_ui, pad_table_ui};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
+use crate::ui::text::{inputs, words};
+use crate::ui::theme;
+use egui::{Grid, ScrollArea, Ui, vec2};
+use std::net::SocketAddr;
+use std::time::Duration;
+
+/// Where is listened and served unless a person says otherwise: this computer only.
+const STREAM_FIRST: &str = "127.0.0.1:6010";
+const SHARE_FIRST: &str = "127.0.0.1:6001";
+/// A view as wide as this has the gamepad beside the rest.
+const WIDE: f32 = 1000.0;
+
+/// What was typed and chosen.
+#[derive(Debug)]
+pub(crate) struct InputsView {
+    stream: String,
+    is_tcp: bool,
+    share: String,
+    chosen: Option<PadControl>,
+}
+
+impl Default for InputsView {
+    fn default() -> Self {
+        Self {
+            stream: STREAM_FIRST.into(),
+            is_tcp: false,
+            share: SHARE_FIRST.into(),
+            chosen: None,
+        }
+    }
+}
+
+impl InputsView {
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let is_wide = ui.available_width() >= WIDE;
+        ui.columns(if is_wide { 2 } else { 1 }, |columns| match columns {
+            [left, right] => {
+                scroll_ui(left, "inputs", |ui| self.sources_ui(ui, pane));
+                scroll_ui(right, "pad", |ui| self.pad_ui(ui, pane));
+            }
+            [only] => scroll_ui(only, "inputs", |ui| {
+                self.sources_ui(ui, pane);
+                self.pad_ui(ui, pane);
+            }),
+            _ => {}
+        });
+    }
+
+    fn sources_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        owner_ui(ui, pane);
+        self.stream_ui(ui, pane);
+        self.gateway_ui(ui, pane);
+    }
+
+    fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        kit::card_ui(ui, look, |ui| {
+            let at = pane.state.hand().inputs.stream_at;
+            kit::head_ui(ui, look, look.say(inputs::STREAM), |_| ());
+            kit::say_ui(ui, look.tip(inputs::STREAM), look.palette.muted);
+            ui.add_enabled_ui(at.is_none(), |ui| {
+                ui.horizontal(|ui| {
+                    let both = [(false, inputs::UDP), (true, inputs::TCP)];
+                    kit::pick_ui(ui, look, (&mut self.is_tcp, inputs::STREAM), both);
+                    address_ui(ui, look.say(inputs::STREAM_AT), &mut self.stream);
+                });
+            });
+            let wanted = place(&self.stream).map(|at| match self.is_tcp {
+                true => StreamPlace::Tcp(at),
+                false => StreamPlace::Udp(at),
+            });
+            ui.horizontal_wrapped(|ui| {
+                let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
+                switch_ui(ui, pane, at, (inputs::LISTEN, action, wanted.is_none()));
+                grant_ui(ui, pane, InputAction::GrantStream, silence(pane));
+            });
+            if at.is_some() {
+                stream_figures_ui(ui, pane);
+            }
+        });
+    }
+
+    fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        kit::card_ui(ui, look, |ui| {
+            let at = pane.state.hand().inputs.gateway_at;
+            kit::head_ui(ui, look, look.say(inputs::GATEWAY), |_| ());
+            kit::say_ui(ui, look.tip(inputs::GATEWAY), look.palette.muted);
+            ui.add_enabled_ui(at.is_none(), |ui| {
+                address_ui(ui, look.say(inputs::GATEWAY_AT), &mut self.share);
+            });
+            let wanted = place(&self.share);
+            let action = InputAction::Share(wanted.filter(|_| at.is_none()));
+            switch_ui(ui, pane, at, (inputs::SHARE, action, wanted.is_none()));
+            let clients = pane.state.hand().inputs.clients.clone();
+            if at.is_some() && clients.is_empty() {
+                Label::muted(look, inputs::NO_CLIENTS).ui(ui);
+            }
+            for client in &clients {
+                client_ui(ui, pane, client);
+            }
+        });
+    }
+
+    fn pad_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        kit::card_ui(ui, look, |ui| {
+            let view = pane.state.hand().inputs.pad_view.clone();
+            kit::head_ui(ui, look, look.say(inputs::PAD), |_| ());
+            kit::say_ui(ui, look.tip(inputs::PAD), look.palette.muted);
+            ui.horizontal_wrapped(|ui| {
+                let is_read = view.is_some();
+                let button = Button::said(look, inputs::READ_PAD).selected(is_read);
+                let button = button.disabled(no_hand(pane)).large();
+                let action = InputAction::ReadPad(!is_read);
+                button.sends(ui, pane, Action::Input(action));
+                let name = view.as_ref().and_then(|view| view.name.clone());
+                let missing = name.is_none().then_some(look.say(inputs::NONE));
+                grant_ui(ui, pane, InputAction::GrantPad, missing);
+            });
+            if let Some(view) = &view {
+                let (text, color) = match (&view.name, &view.trouble) {
+                    (Some(name), _) => (name.as_str(), look.palette.text),
+                    (None, Some(trouble)) => (trouble.as_str(), look.palette.warn),
+                    (None, None) => (look.say(inputs::PLUG_IN), look.palette.muted),
+                };
+                Label::new(text, color).wrap().ui(ui);
+            }
+            let map = pane.state.settings.pad_map();
+            let poses: Vec<PoseName> = starter()
+                .poses
+                .iter()
+                .map(|pose| PoseName {
+                    name: pose.name.clone(),
+                    shown: match look.language {
+                        crate::app::settings::Language::Zh if !pose.name_zh.is_empty() => {
+                            pose.name_zh.clone()
+                        }
+                        _ => pose.name.clone(),
+                    },
+                })
+                .collect();
+            let there = view.as_ref().filter(|view| view.name.is_some());
+            let shown = PadShown {
+                state: there.map(|view| &view.state),
+                map: &map,
+                chosen: self.chosen,
+                fingers: there.map(|view| view.fingers).unwrap_or_default(),
+                poses: &poses,
+            };
+            let clicked = ScrollArea::horizontal()
+                .id_salt("pad picture")
+                .show(ui, |ui| pad_picture_ui(ui, look, &shown))
+                .inner;
+            if clicked.is_some() {
+                self.chosen = clicked;
+            }
+            ui.add_space(theme::STEP);
+            if let Some(map) = pad_table_ui(ui, look, &shown) {
+                pane.actions.push(Action::Input(InputAction::Map(map)));
+            }
+        });
+    }
+}
+
+fn scroll_ui(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical()
+        .id_salt(salt)
+        .auto_shrink(false)
+        .show(ui, add);
+}
+
+fn address_ui(ui: &mut Ui, name: &str, text: &mut String) {
+    let width = ui.available_width();
+    ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
+        kit::edit_ui(ui, (name, name), text)
+    });
+}
+
+fn place(text: &str) -> Option<SocketAddr> {
+    text.trim().parse().ok()
+}
+
+fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
+    let is_live = pane.state.hand().link.state.is_live();
+    (!is_live).then(|| pane.look.say(inputs::NO_HAND))
+}
+
+/// Opens something or closes it, and says where it is.
+fn switch_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    at: Option<SocketAddr>,
+    (text, action, is_wrong): (crate::ui::text::Text, InputAction, bool),
+) {
+    let look = pane.look;
+    let wrong = (is_wrong && at.is_none()).then(|| look.say(inputs::ADDRESS_WRONG));
+    let button = Button::said(look, text).selected(at.is_some()).large();
+    let button = button.disabled(no_hand(pane).or(wrong));
+    button.sends(ui, pane, Action::Input(action));
+    if let Some(at) = at {
+        let is_open = !at.ip().is_loopback();
+        let color = if is_open {
+            look.palette.warn
+        } else {
+            look.palette.text
+        };
+        let label = Label::new(&at.to_string(), color).number().ui(ui);
+        if is_open {
+            label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+        }
+    } else if let Some(refused) = &pane.state.hand().inputs.refused {
+        Label::new(refused, look.palette.warn).wrap().ui(ui);
+    }
+}
+
+/// Lets a source move the hand.
+fn grant_ui(ui: &mut Ui, pane: &mut Pane<'_>, action: InputAction, missing: Option<&str>) {
+    let look = pane.look;
+    let hand = pane.state.hand();
+    let refusal = hand
+        .arm_refusal()
+        .map(|reason| words::refusal(look, reason));
+    let taken = hand.outside_owner().map(|_| look.say(inputs::TAKEN));
+    let reason = no_hand(pane).or(taken).or(missing);
+    let reason = reason.map(ToOwned::to_owned).or(refusal);
+    let button = Button::said(look, inputs::GRANT)
+        .weight(Weight::Strong)
+        .large();
+    let button = button.disabled(reason.as_deref());
+    button.sends(ui, pane, Action::Input(action));
+}
+
+/// Why nobody can be followed over the stream now.
+fn silence(pane: &Pane<'_>) -> Option<&'static str> {
+    let hand = pane.state.hand();
+    let sender = hand.inputs.stream_view.intake.sender;
+    let is_fresh = |(_, last): (SocketAddr, Moment)| hand.now.since(last) < HOLDS_AFTER;
+    let is_there = hand.inputs.stream_at.is_some() && sender.is_some_and(is_fresh);
+    (!is_there).then(|| pane.look.say(inputs::NOBODY_SENDS))
+}
+
+fn stream_figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let view = &pane.state.hand().inputs.stream_view;
+    let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
+    let mut rows = vec![
+        (
+            look.say(inputs::SENDER),
+            sender.unwrap_or_else(|| "-".into()),
+        ),
+        (
+            look.say(inputs::RATE),
+            format!("{:.0} Hz", view.intake.rate_hz),
+        ),
+        (look.say(inputs::TAKEN_LINES), view.intake.taken.to_string()),
+        (look.say(inputs::NOT_GRANTED), view.not_granted.to_string()),
+    ];
+    for (fault, count) in &view.intake.refused {
+        rows.push((look.say(inputs::fault(*fault)), count.to_string()));
+    }
+    figures_ui(ui, look, "stream figures", &rows);
+}
+
+fn figures_ui(ui: &mut Ui, look: Look, salt: &str, rows: &[(&str, String)]) {
+    Grid::new(salt).num_columns(2).show(ui, |ui| {
+        for (name, value) in rows {
+            Label::new(name, look.palette.muted).ui(ui);
+            Label::new(value, look.palette.text)
+                .number()
+                .named(name)
+                .ui(ui);
+            ui.end_row();
+        }
+    });
+}
+
+fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
+    let look = pane.look;
+    ui.separator();
+    let address = client.address.to_string();
+    let holds = matches!(client.lease, ClientLease::Held(_));
+    ui.horizontal_wrapped(|ui| {
+        Label::new(&address, look.palette.text).number().ui(ui);
+        if holds {
+            Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
+        } else {
+            grant_ui(ui, pane, InputAction::GrantClient(client.id), None);
+        }
+    });
+    let words = look.fill(
+        inputs::CLIENT,
+        &[&client.hz, &client.reads, &client.writes, &client.refused],
+    );
+    kit::say_ui(ui, &words, look.palette.muted);
+    if let Some(refusal) = &client.refusal {
+        kit::say_ui(ui, &refusal.to_string(), look.palette.warn);
+    }
+}
+
+/// Who may move the hand now, how it goes, and its end.
+fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(inputs::OWNER), |_| ());
+        let owner = pane.state.hand().outside_owner();
+        let words = match owner {
+            Some(owner) => owner_words(pane, owner),
+            None => look.say(inputs::NOBODY_OUTSIDE).to_owned(),
+        };
+        let color = if owner.is_some() {
+            look.palette.accent
+        } else {
+            look.palette.text
+        };
+        Label::new(&words, color).wrap().ui(ui);
+        if owner.is_some() {
+            let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
+            button
+                .large()
+                .sends(ui, pane, Action::Input(InputAction::TakeBack));
+        }
+        if let Some(view) = pane
+            .state
+            .hand()
+            .inputs
+            .follow
+            .as_ref()
+            .and_then(|run| run.view)
+        {
+            let delay = view.delay_p99.unwrap_or_default();
+            let delay = match delay {
+                Duration::ZERO => "-".to_owned(),
+                delay => format!("{:.1} ms", delay.as_secs_f64() * 1e3),
+            };
+            let rows = [
+                (
+                    look.say(inputs::PHASE),
+                    look.say(phase(view.phase)).to_owned(),
+                ),
+                (look.say(inputs::LEAD_NOW), view.lead.to_string()),
+                (look.say(inputs::DELAY), delay),
+            ];
+            figures_ui(ui, look, "follow figures", &rows);
+        }
+        limits_ui(ui, pane);
+    });
+}
+
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let limits = pane.state.settings.follow;
+    ui.horizontal_wrapped(|ui| {
+        let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
+            Label::muted(look, text).ui(ui);
+            let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
+            let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
+            u16::try_from(typed).ok()
+        };
+        let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
+        let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
+        if lead.or(rate).is_some() {
+            let limits = FollowLimits {
+                lead: lead.unwrap_or(limits.lead),
+                rate: rate.unwrap_or(limits.rate),
+            };
+            pane.actions.push(Action::Input(InputAction::Limit(limits)));
+        }
+    });
+}
+
+const fn phase(phase: FollowPhase) -> crate::ui::text::Text {
+    match phase {
+        FollowPhase::Waiting => inputs::PHASE_WAITING,
+        FollowPhase::Following => inputs::PHASE_FOLLOWING,
+        FollowPhase::Frozen => inputs::PHASE_FROZEN,
+        FollowPhase::Silent => inputs::PHASE_SILENT,
+        FollowPhase::Released => inputs::PHASE_RELEASED,
+    }
+}
+
+/// Who moves the hand from outside, with name and rate, for every view.
+pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
+    let look = pane.look;
+    let hand = pane.state.hand();
+    let name = inputs::owner(look, owner);
+    let rate = match owner {
+        Owner::Stream(_) => Some(hand.inputs.stream_view.intake.rate_hz),
+        Owner::Gateway(address) => {
+            let mut clients = hand.inputs.clients.iter();
+            let client = clients.find(|client| client.address == address);
+            client.map(|client| f32::from(u16::try_from(client.hz).unwrap_or(u16::MAX)))
+        }
+        _ => None,
+    };
+    let words = match rate {
+        Some(rate) => format!("{name} · {rate:.0} Hz"),
+        None => name,
+    };
+    match hand.inputs.follow.as_ref().and_then(|run| run.view) {
+        Some(view) if view.phase != FollowPhase::Following => {
+            format!("{words} · {}", look.say(phase(view.phase)))
+        }
+        _ => words,
+    }
+}

@@ -1,0 +1,120 @@
+//! Sentences of what besides the window may move the hand: streams, the gateway, a gamepad with its controls and what they do.
+
+use crate::inputs::line::LineFault;
+use crate::inputs::pad::{PadAction, PadControl};
+use crate::link::Owner;
+use crate::ui::kit::Look;
+use crate::ui::text::phrase::{Text, texts};
+
+texts! {
+    TITLE: "Inputs", "输入";
+    OWNER: "Who moves the hand", "由谁控制";
+    NOBODY_OUTSIDE: "Nobody but this window.", "仅本窗口。";
+    TAKE_BACK: "Take back", "收回控制", "Stops the hand; who moved it may no more.", "停下灵巧手，并收回对方的控制权。";
+    GRANT: "Let it move the hand", "允许控制", "One at a time may move the hand. It begins where the hand is; a click here, STOP, silence, a fault or a lost link end it.", "同一时间只允许一个来源控制。从当前位置开始；在此点击、停止、无数据、故障或断开连接都会结束控制。";
+    TAKEN: "Another moves the hand: take it back first.", "其他来源正在控制：请先收回。";
+    NO_HAND: "No hand answers.", "没有灵巧手应答。";
+    ADDRESS_WRONG: "Write an address in numbers and a port, for example 127.0.0.1:6010.", "请输入数字地址和端口，例如 127.0.0.1:6010。";
+    OPEN_TO_ALL: "Anyone in the network can reach this; 127.0.0.1 keeps it to this computer.", "网络中的任何人都能访问；使用 127.0.0.1 则仅限本机。";
+    STREAM: "Another program", "其他程序", "Lines of JSON over UDP or TCP: hand tracking, a glove, a script ('handscope help stream').", "通过 UDP 或 TCP 发送的 JSON 数据：手部追踪、手套或脚本（'handscope help stream'）。";
+    STREAM_AT: "Address for lines", "数据地址";
+    UDP: "UDP", "UDP";
+    TCP: "TCP", "TCP";
+    LISTEN: "Listen", "接收", "Takes lines at this address; nothing moves by that.", "在此地址接收数据；不会移动灵巧手。";
+    NOBODY_SENDS: "Nobody sends now.", "目前没有数据。";
+    SENDER: "Sender", "来源";
+    RATE: "Rate", "频率";
+    TAKEN_LINES: "Lines taken", "已接收";
+    NOT_GRANTED: "Not followed", "未跟随";
+    GATEWAY: "Gateway", "网关", "Several Modbus TCP programs at this hand ('handscope help share'). They read; who may move the hand you say here.", "多个 Modbus TCP 程序共用此灵巧手（'handscope help share'）。它们可以读取；由谁控制在此决定。";
+    GATEWAY_AT: "Address of the gateway", "网关地址";
+    SHARE: "Share", "共享", "Serves Modbus TCP at this address.", "在此地址提供 Modbus TCP 服务。";
+    NO_CLIENTS: "Nobody is connected.", "没有连接。";
+    MOVES: "moves the hand", "正在控制";
+    CLIENT: "{} requests/s, {} reads, {} writes, {} refused", "每秒 {} 次请求，读取 {}，写入 {}，拒绝 {}";
+    PAD: "Gamepad", "手柄", "Try it here without a hand: nothing moves until you let it. Click a control to change what it does.", "可先在此试用：未经允许不会移动灵巧手。点击控件可更改其动作。";
+    READ_PAD: "Read gamepad", "读取手柄", "Looks for a gamepad on this computer.", "在本机上查找手柄。";
+    PLUG_IN: "No gamepad yet: plug one in, or pair it.", "尚无手柄：请插入或配对。";
+    PHASE: "State", "状态";
+    LEAD_NOW: "Ahead of the joints", "领先关节";
+    DELAY: "Input to wire, 99 %", "输入到线路（99 %）";
+    LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先关节的量（满程 1000）：";
+    FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
+    PHASE_WAITING: "arming", "使能中";
+    PHASE_FOLLOWING: "follows", "跟随中";
+    PHASE_FROZEN: "tracking frozen?", "追踪已停止？";
+    PHASE_SILENT: "silent: held", "无数据：已保持";
+    PHASE_RELEASED: "not held to run", "未按住运行键";
+    NONE: "No gamepad", "没有手柄";
+    POSE: "Pose {}", "姿态：{}";
+    SINGLE: "One control must do this. Choose it at another control: the two change places.", "必须有一个控件执行此动作。请在另一个控件上选择它，两者会互换。";
+    CHANGE: "Click to change what it does.", "点击可更改其动作。";
+
+    /// Why a line was refused.
+    fn fault(LineFault) {
+        LineFault::TooLong => "Refused: too long", "拒绝：过长";
+        LineFault::NotFinite => "Refused: NaN or infinite", "拒绝：NaN 或无穷大";
+        LineFault::Malformed => "Refused: not such a line", "拒绝：格式错误";
+        LineFault::Version => "Refused: another version", "拒绝：版本不同";
+        LineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
+        LineFault::Length { .. } => "Refused: not six values", "拒绝：不是六个数值";
+        LineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
+        LineFault::Late => "Refused: late", "拒绝：迟到";
+        LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
+    }
+
+    /// What a control is called.
+    fn control(PadControl) {
+        PadControl::South => "A (bottom)", "A（下）";
+        PadControl::East => "B (right)", "B（右）";
+        PadControl::West => "X (left)", "X（左）";
+        PadControl::North => "Y (top)", "Y（上）";
+        PadControl::LeftBumper => "Left bumper", "左肩键";
+        PadControl::RightBumper => "Right bumper", "右肩键";
+        PadControl::LeftTrigger => "Left trigger", "左扳机";
+        PadControl::RightTrigger => "Right trigger", "右扳机";
+        PadControl::LeftStick => "Left stick", "左摇杆";
+        PadControl::RightStick => "Right stick", "右摇杆";
+        PadControl::LeftStickPress => "Left stick, pressed", "按下左摇杆";
+        PadControl::RightStickPress => "Right stick, pressed", "按下右摇杆";
+        PadControl::DpadUp => "Cross up", "十字键上";
+        PadControl::DpadDown => "Cross down", "十字键下";
+        PadControl::DpadLeft => "Cross left", "十字键左";
+        PadControl::DpadRight => "Cross right", "十字键右";
+        PadControl::Select => "Back", "返回键";
+        PadControl::Start => "Start", "开始键";
+        PadControl::Home => "Home", "主页键";
+    }
+
+    /// What a control does. A pose has its name in it.
+    fn action(&PadAction) {
+        PadAction::Nothing => "Nothing", "无";
+        PadAction::DeadMan => "Hold to run", "按住运行", "The dead-man: the hand follows while it is held, and stops when it is let go.", "按住时灵巧手跟随手柄；松开即停。";
+        PadAction::Stop => "STOP", "停止", "Stops the hand, with or without the button that is held to run. It is not an emergency stop.", "立即停下灵巧手，无论是否按住运行键。这不是急停。";
+        PadAction::Pose(_) => "Pose {}", "姿态：{}", "The hand goes to this pose while the button is held.", "按住时灵巧手摆出该姿态。";
+        PadAction::CloseFingers => "Close fingers", "弯曲手指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
+        PadAction::BendThumb => "Bend thumb", "弯曲拇指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
+        PadAction::RotateThumb => "Rotate thumb", "旋转拇指", "Left and right push the thumb as long as it is held; let go, the thumb stays.", "左右推动时旋转拇指；松开后拇指保持不动。";
+        PadAction::ChooseFingers => "Choose fingers", "选择手指", "At rest all four. Left, up, right and down choose index, middle, ring and little finger.", "居中时为四指；向左、上、右、下分别选择食指、中指、无名指、小拇指。";
+    }
+}
+
+/// Who may move the hand, in words.
+pub(crate) fn owner(look: Look, owner: Owner) -> String {
+    const PERSON: Text = Text::new("This window", "本窗口");
+    const TASK: Text = Text::new("A task of this window", "本窗口的任务");
+    const EXHIBITION: Text = Text::new("Exhibition", "展示");
+    const STREAM: Text = Text::new("Program", "程序");
+    const GATEWAY: Text = Text::new("Gateway client", "网关程序");
+    const MIRROR: Text = Text::new("Another hand", "另一只手");
+    match owner {
+        Owner::Person => look.say(PERSON).into(),
+        Owner::Task => look.say(TASK).into(),
+        Owner::Exhibition => look.say(EXHIBITION).into(),
+        Owner::Gamepad => look.say(PAD).into(),
+        Owner::Stream(sender) => look.told(STREAM, sender),
+        Owner::Dds => "DDS".into(),
+        Owner::Gateway(client) => look.told(GATEWAY, client),
+        Owner::Mirror => look.say(MIRROR).into(),
+    }
+}
