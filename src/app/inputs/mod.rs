@@ -8,7 +8,7 @@ use crate::inputs::follow::FollowLimits;
 use crate::inputs::pad::PadMap;
 use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
-use crate::link::{Lease, Owner};
+use crate::link::Owner;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowCommand, FollowEnd, FollowStep, FollowView};
 use std::net::SocketAddr;
@@ -66,7 +66,6 @@ pub struct FollowRun {
     pub owner: Owner,
     /// How it goes.
     pub view: Option<FollowView>,
-    pub(crate) lease: Lease,
     pub(crate) commands: mpsc::Sender<FollowCommand>,
     pub(crate) task: Running<FollowStep, FollowEnd>,
 }

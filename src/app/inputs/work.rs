@@ -197,7 +197,6 @@ impl HandState {
         self.inputs.follow = Some(FollowRun {
             owner,
             view: None,
-            lease,
             commands,
             task,
         });
