@@ -311,6 +311,7 @@ mod tests {
     use super::*;
     use crate::app::settings::Theme;
     use crate::hand::kinematics::Side;
+    use crate::link::Owner;
     use crate::params::rows::ParamId;
     use crate::tasks::Risks;
     use crate::ui::theme::Palette;
@@ -439,6 +440,7 @@ mod tests {
         vec![
             RequestError::NotConnected,
             RequestError::NotArmed,
+            RequestError::NotOwner(LeaseRefusal::Taken(Owner::Gamepad)),
             RequestError::Full { limit: 8 },
             RequestError::TooLong {
                 address: 1000,
