@@ -53,7 +53,7 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     for view in [View::Live, View::Traffic, View::Connection] {
         bench.show(view);
         send(&mut bench, &sender, to, 100);
-        assert!(bench.shows_with(&from.to_string()), "{view:?}");
+        assert!(!bench.texts_with(&from.to_string()).is_empty(), "{view:?}");
     }
     bench.click_button("STOP");
     send(&mut bench, &sender, to, 1500);
@@ -84,7 +84,7 @@ fn take_back_stops_the_hand_and_silence_is_told() {
         let hand = bench.state().hand();
         assert_eq!((hand.outside_owner(), hand.link.armed), (None, None));
     }
-    assert!(bench.shows_with("fell silent"));
+    assert!(!bench.texts_with("fell silent").is_empty());
 }
 
 #[test]
