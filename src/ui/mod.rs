@@ -4,15 +4,6 @@ mod connection;
 mod exhibit;
 mod faults;
 pub(crate) mod hand;
-#[cfg_attr(
-    not(test),
-    allow(
-        dead_code,
-        unused_imports,
-        reason = "the view that places it is to come"
-    )
-)]
-mod inputs;
 mod joints;
 pub(crate) mod kit;
 mod params;

@@ -7,7 +7,6 @@ pub(crate) mod exhibit;
 pub(crate) mod faults;
 pub(crate) mod main;
 pub(crate) mod notices;
-pub(crate) mod pad;
 pub(crate) mod panels;
 mod phrase;
 pub(crate) mod poses;

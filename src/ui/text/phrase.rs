@@ -82,8 +82,7 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::text::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, faults, main, pad, panels, poses, scan, sessions, traffic, tune,
-        window,
+        cards, device, exhibit, faults, main, panels, poses, scan, sessions, traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
@@ -93,7 +92,6 @@ mod tests {
             exhibit::ALL,
             faults::ALL,
             main::ALL,
-            pad::ALL,
             panels::ALL,
             poses::ALL,
             scan::ALL,
