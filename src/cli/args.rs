@@ -1,9 +1,9 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
 use crate::cli::doctor::DoctorArgs;
-use crate::cli::follow::FollowArgs;
 use crate::cli::help::{self, HelpArgs};
-use crate::cli::inputs::InputsArgs;
+use crate::cli::inputs::follow::FollowArgs;
+use crate::cli::inputs::show::InputsArgs;
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;

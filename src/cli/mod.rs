@@ -2,10 +2,10 @@
 
 mod args;
 mod doctor;
-mod follow;
 mod help;
 mod inputs;
 mod interrupt;
+mod listen;
 mod out;
 mod params;
 mod parse;
@@ -68,10 +68,10 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
         Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         Command::Params(args) => wait_for(params::run(&mut out, &args)),
-        Command::Inputs(args) => wait_for(inputs::run(&mut out, &args)),
+        Command::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
-        Command::Follow(args) => wait_for(follow::run(&mut out, &args)),
+        Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),
         Command::Export(args) => recordings::export::run(&mut out, &args),

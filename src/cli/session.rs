@@ -4,6 +4,7 @@ use crate::app::connect::SimDial;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
 };
+use crate::tasks::series::{self, Stop};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;
@@ -14,6 +15,12 @@ use tokio::time::{Instant, sleep};
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 /// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
+
+/// What is told where feedback does not show that a stopped hand rests, and where none comes any more.
+pub(crate) const NOT_CONFIRMED: &str =
+    "STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply";
+pub(crate) const STOP_LOST: &str =
+    "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves";
 
 /// A link that asks for nothing by itself: the line belongs to what a command asks.
 pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
@@ -65,6 +72,15 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
             bail!(unanswered(endpoint));
         }
         sleep(LOOK_EACH).await;
+    }
+}
+
+/// Stops the hand, and waits until feedback shows that it rests. The error says what to do where it does not.
+pub(crate) async fn stopped(link: &LinkHandle, records: &mut Records) -> anyhow::Result<()> {
+    match series::hold(link, records).await {
+        Stop::Confirmed { .. } => Ok(()),
+        Stop::NotConfirmed => bail!(NOT_CONFIRMED),
+        Stop::LinkLost => bail!(STOP_LOST),
     }
 }
 

@@ -1,18 +1,16 @@
 //! `share`: a Modbus TCP gateway, through which several programs use one hand, until a person ends it.
 
 use crate::cli::interrupt::Interrupt;
+use crate::cli::listen;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
 use crate::cli::session;
-use crate::cli::wires::address;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
 use crate::record::{Disarmed, LinkState};
 use crate::share::gateway::{
     ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
 };
-use crate::tasks::series::{self, Stop};
 use crate::transport::Endpoint;
-use anyhow::{anyhow, bail};
 use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -27,7 +25,7 @@ pub(crate) struct ShareArgs {
     #[arg(long, value_name = "URL")]
     hand: Endpoint,
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
-    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
     tcp: SocketAddr,
     /// Let the first client that writes move the hand, until it disconnects or falls silent
     #[arg(long)]
@@ -72,16 +70,7 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     if !moved && link.status().state != LinkState::Holding {
         return Ok(());
     }
-    let mut records = link.records();
-    match series::hold(link, &mut records).await {
-        Stop::Confirmed { .. } => Ok(()),
-        Stop::NotConfirmed => {
-            bail!("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply")
-        }
-        Stop::LinkLost => bail!(
-            "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves"
-        ),
-    }
+    session::stopped(link, &mut link.records()).await
 }
 
 fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
@@ -94,16 +83,13 @@ fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
         },
         silence: args.silence.unwrap_or(SILENCE),
     };
-    let gateway = Gateway::open(link.clone(), config, &Handle::current()).map_err(|error| {
-        anyhow!("cannot serve on {address}: {error}; choose another address or port")
-    })?;
-    let bound = gateway.address();
-    if !bound.ip().is_loopback() {
-        say(&format!(
-            "warning: anyone in the network can reach {bound} and {} this hand; 127.0.0.1 keeps it to this computer",
-            if args.writers { "move" } else { "read" }
-        ));
-    }
+    let gateway = Gateway::open(link.clone(), config, &Handle::current())
+        .map_err(|error| listen::refused(address, &error))?;
+    let can = match args.writers {
+        true => "move this hand",
+        false => "read this hand",
+    };
+    listen::warn_if_reachable(gateway.address(), can);
     Ok(gateway)
 }
 

@@ -1,6 +1,6 @@
 //! The wires that a hand is served on for other programs: which a person asks for, and a server on each.
 
-use crate::cli::out::say;
+use crate::cli::listen;
 use crate::cli::parse::number;
 use crate::sim::SimHands;
 use crate::sim::serve::modbus_tcp;
@@ -24,7 +24,7 @@ use tokio::net::TcpListener;
 #[command(group = clap::ArgGroup::new("wire").required(true).multiple(true).args(["tcp", "rs485", "rtu", "slcan", "usbcan", "can"]))]
 pub(crate) struct WireArgs {
     /// Serve Modbus TCP here, for example 127.0.0.1:6000
-    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
     tcp: Option<SocketAddr>,
     /// Create a pseudo-terminal linked here, and serve RS485 in the maker's framing on it
     #[arg(long, value_name = "LINK")]
@@ -129,17 +129,13 @@ impl WireArgs {
 }
 
 async fn serve_tcp(hands: &SimHands, address: SocketAddr) -> anyhow::Result<ServedWire> {
-    let listener = TcpListener::bind(address).await.map_err(|error| {
-        anyhow!("cannot serve on {address}: {error}; choose another address or port")
-    })?;
+    let listener = TcpListener::bind(address)
+        .await
+        .map_err(|error| listen::refused(address, &error))?;
     let bound = listener
         .local_addr()
         .context("cannot read back the address that is served")?;
-    if !bound.ip().is_loopback() {
-        say(&format!(
-            "warning: anyone in the network can reach {bound} and move the simulated hand; 127.0.0.1 keeps it to this computer"
-        ));
-    }
+    listen::warn_if_reachable(bound, "move the simulated hand");
     let closed = format!("the server on {bound} ended");
     let served = modbus_tcp::serve(hands.clone(), listener);
     Ok(ServedWire::new("tcp", bound.to_string(), closed, served))
@@ -218,11 +214,4 @@ fn serve_link(
 fn turnaround(text: &str) -> Result<Duration, String> {
     let what = "a time between 0 and 1000 milliseconds";
     number(text, 0.0..=1000.0, what).map(|ms: f64| Duration::from_secs_f64(ms / 1000.0))
-}
-
-/// An address in numbers, with a port; 0 for any free one.
-pub(crate) fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_not_one| {
-        "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()
-    })
 }

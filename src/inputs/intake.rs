@@ -4,13 +4,9 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::follow::ENDS_AFTER;
 use crate::inputs::line::{LineFault, StreamLine};
-use std::collections::{BTreeMap, VecDeque};
+use crate::link::rate::EventRate;
+use std::collections::BTreeMap;
 use std::net::SocketAddr;
-use std::time::Duration;
-
-/// The rate is that of the lines of the last second, of so many at most.
-const RATE_OVER: Duration = Duration::from_secs(1);
-const RATE_LINES: usize = 1024;
 
 /// What came in over one stream so far.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -18,7 +14,7 @@ pub struct IntakeView {
     /// Who is listened to, and when a line of theirs came last.
     pub sender: Option<(SocketAddr, Moment)>,
     /// Lines a second.
-    pub rate_hz: f32,
+    pub rate_hz: f64,
     /// Lines that were taken.
     pub taken: u64,
     /// Lines that were refused, by reason.
@@ -31,7 +27,7 @@ pub struct Intake {
     side: Side,
     view: IntakeView,
     seq: Option<u64>,
-    recent: VecDeque<Moment>,
+    rate: EventRate,
 }
 
 impl Intake {
@@ -42,7 +38,7 @@ impl Intake {
             side,
             view: IntakeView::default(),
             seq: None,
-            recent: VecDeque::new(),
+            rate: EventRate::default(),
         }
     }
 
@@ -61,10 +57,7 @@ impl Intake {
         match &taken {
             Ok(_) => {
                 self.view.taken += 1;
-                if self.recent.len() >= RATE_LINES {
-                    self.recent.pop_front();
-                }
-                self.recent.push_back(now);
+                self.rate.hit(now);
             }
             Err(fault) => self.refuse(*fault),
         }
@@ -73,11 +66,6 @@ impl Intake {
 
     /// Counts what was refused before it was a line.
     pub fn refuse(&mut self, fault: LineFault) {
-        // Wrong lengths are one reason, however wrong.
-        let fault = match fault {
-            LineFault::Length { .. } => LineFault::Length { got: 0 },
-            fault => fault,
-        };
         *self.view.refused.entry(fault).or_default() += 1;
     }
 
@@ -107,20 +95,7 @@ impl Intake {
 
     /// What came in, as of now.
     pub fn view(&mut self, now: Moment) -> &IntakeView {
-        while self
-            .recent
-            .front()
-            .is_some_and(|at| now.since(*at) > RATE_OVER)
-        {
-            self.recent.pop_front();
-        }
-        let span = self.recent.front().zip(self.recent.back());
-        let span = span.map_or(0.0, |(first, last)| last.since(*first).as_secs_f32());
-        let gaps = u16::try_from(self.recent.len().saturating_sub(1)).unwrap_or(u16::MAX);
-        self.view.rate_hz = match span > 0.0 {
-            true => f32::from(gaps) / span,
-            false => 0.0,
-        };
+        self.view.rate_hz = self.rate.hz(now);
         &self.view
     }
 }

@@ -44,11 +44,8 @@ pub enum LineFault {
     #[error("nothing in it is for this hand's side")]
     OtherSide,
     /// Not six values.
-    #[error("a hand has six joints, not {got}")]
-    Length {
-        /// How many.
-        got: usize,
-    },
+    #[error("a hand has six joints")]
+    Length,
     /// A value that is not from 0 to 1.
     #[error("a value is not from 0 (bent) to 1 (open)")]
     Range,
@@ -70,7 +67,7 @@ impl LineFault {
             Self::Malformed => "malformed",
             Self::Version => "version",
             Self::OtherSide => "other_side",
-            Self::Length { .. } => "length",
+            Self::Length => "length",
             Self::Range => "range",
             Self::Late => "late",
             Self::OtherSender => "other_sender",
@@ -98,7 +95,7 @@ impl StreamLine {
         if line.len() > LINE_MAX {
             return Err(LineFault::TooLong);
         }
-        let raw: Raw = serde_json::from_slice(line).map_err(|_unread| malformed(line))?;
+        let raw: Raw = serde_json::from_slice(line).map_err(|unread| malformed(line, &unread))?;
         if raw.v.is_some_and(|version| version != LINE_VERSION) {
             return Err(LineFault::Version);
         }
@@ -111,11 +108,10 @@ impl StreamLine {
             None if raw.stop => vec![None; Dof::ALL.len()],
             values => values.ok_or(LineFault::OtherSide)?,
         };
-        let got = values.len();
         let mut aims = PerDof::splat(None);
         let mut hasher = DefaultHasher::new();
-        if got != Dof::ALL.len() {
-            return Err(LineFault::Length { got });
+        if values.len() != Dof::ALL.len() {
+            return Err(LineFault::Length);
         }
         for (dof, value) in Dof::ALL.into_iter().zip(values) {
             value.map(f64::to_bits).hash(&mut hasher);
@@ -132,9 +128,6 @@ impl StreamLine {
 }
 
 fn angle(share: f64) -> Result<Angle, LineFault> {
-    if !share.is_finite() {
-        return Err(LineFault::NotFinite);
-    }
     if !(0.0..=1.0).contains(&share) {
         return Err(LineFault::Range);
     }
@@ -143,11 +136,12 @@ fn angle(share: f64) -> Result<Angle, LineFault> {
     Angle::new(counts).map_err(|_out| LineFault::Range)
 }
 
-/// JSON has no word for NaN; many senders write one anyway.
-fn malformed(line: &[u8]) -> LineFault {
-    let words: [&[u8]; 3] = [b"NaN", b"Infinity", b"1e999"];
+/// JSON has no word for what is no finite number; many senders write one anyway, or a number that is too large to be one.
+fn malformed(line: &[u8], unread: &serde_json::Error) -> LineFault {
+    let words: [&[u8]; 2] = [b"NaN", b"Infinity"];
     let has = |word: &&[u8]| line.windows(word.len()).any(|part| part == *word);
-    match words.iter().any(has) {
+    let is_too_large = unread.to_string().starts_with("number out of range");
+    match is_too_large || words.iter().any(has) {
         true => LineFault::NotFinite,
         false => LineFault::Malformed,
     }
@@ -180,8 +174,8 @@ mod tests {
             (r#"{"right":[0,0,0,0,0,1e999]}"#, LineFault::NotFinite),
             (r#"{"right":[0,0,0,0,0,1.001]}"#, LineFault::Range),
             (r#"{"right":[0,0,0,0,0,-0.001]}"#, LineFault::Range),
-            (r#"{"right":[0,0,0,0,0]}"#, LineFault::Length { got: 5 }),
-            (r#"{"right":[0,0,0,0,0,0,0]}"#, LineFault::Length { got: 7 }),
+            (r#"{"right":[0,0,0,0,0]}"#, LineFault::Length),
+            (r#"{"right":[0,0,0,0,0,0,0]}"#, LineFault::Length),
             (r#"{"left":[0,0,0,0,0,0]}"#, LineFault::OtherSide),
             (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, LineFault::Version),
             (r#"{"right":"fist"}"#, LineFault::Malformed),

@@ -1,6 +1,12 @@
-//! What a source asks of a hand at a moment.
+//! What a source asks of a hand at a moment, and the way from a source to whoever follows it.
 
 use crate::hand::{Angle, Moment, PerDof};
+use std::sync::Arc;
+use tokio::sync::mpsc::error::TrySendError;
+use tokio::sync::{mpsc, watch};
+
+/// Offers that may wait to be followed: one follows faster than this fills.
+const OFFERS_MAX: usize = 64;
 
 /// Where a source wants the joints, each time that it says so. No default: absent is not zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,4 +19,31 @@ pub struct Offer {
     pub held: Option<bool>,
     /// The same for targets that are the same to the last bit; `None` for a source that may rightly stand still.
     pub mark: Option<u64>,
+}
+
+/// Where the offers of a source go: to whoever follows it, if anybody does. Copies are the same place.
+#[derive(Debug, Clone)]
+pub(crate) struct OfferOutlet(Arc<watch::Sender<Option<mpsc::Sender<Offer>>>>);
+
+impl Default for OfferOutlet {
+    fn default() -> Self {
+        Self(Arc::new(watch::Sender::new(None)))
+    }
+}
+
+impl OfferOutlet {
+    /// All offers from now on; whoever followed before does no more.
+    pub(crate) fn follow(&self) -> mpsc::Receiver<Offer> {
+        let (offers, followed) = mpsc::channel(OFFERS_MAX);
+        self.0.send_replace(Some(offers));
+        followed
+    }
+
+    /// Gives an offer away; false if nobody follows. A follower that is not fast enough takes the next one.
+    pub(crate) fn offer(&self, offer: Offer) -> bool {
+        let followed = self.0.borrow();
+        followed
+            .as_ref()
+            .is_some_and(|offers| !matches!(offers.try_send(offer), Err(TrySendError::Closed(_))))
+    }
 }

@@ -4,7 +4,7 @@
 use crate::hand::kinematics::Side;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineFault};
-use crate::inputs::offer::Offer;
+use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::{Clock, Wake};
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -23,8 +23,6 @@ const LINE_WITHIN: Duration = Duration::from_secs(10);
 const TELL_EACH: Duration = Duration::from_millis(50);
 /// Lines that may wait to be looked at.
 const LINES_MAX: usize = 64;
-/// Offers that may wait to be followed: one follows faster than this fills.
-const OFFERS_MAX: usize = 64;
 
 /// Where lines come in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -69,7 +67,7 @@ pub struct StreamView {
 pub struct StreamSource {
     local: SocketAddr,
     view: watch::Receiver<StreamView>,
-    follower: watch::Sender<Option<mpsc::Sender<Offer>>>,
+    outlet: OfferOutlet,
     abort: AbortHandle,
 }
 
@@ -87,12 +85,12 @@ impl StreamSource {
     pub fn open(config: StreamConfig, runtime: &tokio::runtime::Handle) -> std::io::Result<Self> {
         let _entered = runtime.enter();
         let (told, view) = watch::channel(StreamView::default());
-        let (follower, followed) = watch::channel(None);
+        let outlet = OfferOutlet::default();
         let listening = Listening {
             intake: Intake::new(config.side),
             view: StreamView::default(),
             config: config.clone(),
-            followed,
+            outlet: outlet.clone(),
             told,
             is_news: false,
         };
@@ -115,7 +113,7 @@ impl StreamSource {
         Ok(Self {
             local,
             view,
-            follower,
+            outlet,
             abort: task.abort_handle(),
         })
     }
@@ -135,9 +133,7 @@ impl StreamSource {
     /// Its targets from now on, for whoever follows; whoever did before does no more.
     #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
-        let (offers, followed) = mpsc::channel(OFFERS_MAX);
-        self.follower.send_replace(Some(offers));
-        followed
+        self.outlet.follow()
     }
 }
 
@@ -145,7 +141,7 @@ struct Listening {
     intake: Intake,
     view: StreamView,
     config: StreamConfig,
-    followed: watch::Receiver<Option<mpsc::Sender<Offer>>>,
+    outlet: OfferOutlet,
     told: watch::Sender<StreamView>,
     is_news: bool,
 }
@@ -215,15 +211,7 @@ impl Listening {
             mark: Some(line.mark),
         };
         self.view.newest = Some(offer);
-        let followed = self.followed.borrow();
-        // A follower that is not fast enough takes the next one; one that is gone follows no more.
-        let is_followed = followed.as_ref().is_some_and(|offers| {
-            !matches!(
-                offers.try_send(offer),
-                Err(mpsc::error::TrySendError::Closed(_))
-            )
-        });
-        self.view.not_granted += u64::from(!is_followed);
+        self.view.not_granted += u64::from(!self.outlet.offer(offer));
     }
 
     fn tell(&mut self) {

@@ -18,24 +18,14 @@ pub enum Owner {
     Gamepad,
     /// Lines of JSON from this sender.
     Stream(SocketAddr),
-    /// A writer of the DDS control topic.
-    Dds,
     /// A client of the gateway.
     Gateway(SocketAddr),
-    /// Another hand, which this one follows.
-    Mirror,
 }
 
 impl Owner {
     /// True if it may go on after this without a person. An exhibition clears what can be cleared, and counts it.
     const fn outlives(self, end: Disarmed) -> bool {
         matches!((self, end), (Self::Exhibition, Disarmed::Fault))
-    }
-
-    /// True for one outside this program: it is told in every view, with its end in reach.
-    #[must_use]
-    pub const fn is_outside(self) -> bool {
-        !matches!(self, Self::Person | Self::Task | Self::Exhibition)
     }
 }
 

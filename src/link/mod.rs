@@ -14,6 +14,7 @@ pub mod latency;
 pub mod lease;
 pub mod poll;
 pub mod quirks;
+pub(crate) mod rate;
 pub mod recent;
 pub mod request;
 pub mod scan;

@@ -5,12 +5,11 @@ use crate::link::wanted::PendingControl;
 use crate::record::Disarmed;
 use fastrand::Rng;
 
-const OWNERS: [Owner; 5] = [
+const OWNERS: [Owner; 4] = [
     Owner::Person,
     Owner::Task,
     Owner::Exhibition,
     Owner::Gamepad,
-    Owner::Dds,
 ];
 const ENDS: [Disarmed; 5] = [
     Disarmed::Fault,

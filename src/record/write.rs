@@ -58,7 +58,7 @@ pub enum WriteCause {
     Hold,
     /// The limits of speed and force that arming begins with.
     Arming,
-    /// A setpoint of whoever has the turn at moving the hand.
+    /// A setpoint of whoever may move the hand.
     Setpoint,
     /// A single request: a gesture, clearing errors.
     Request,

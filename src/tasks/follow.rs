@@ -3,7 +3,9 @@
 
 use crate::hand::{AngleReading, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use crate::inputs::Offer;
-use crate::inputs::follow::{Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase};
+use crate::inputs::follow::{
+    Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
+};
 use crate::link::{ArmRequest, Clock, Lease, LeaseRefusal};
 use crate::record::{Disarmed, Record, WriteCause};
 use crate::tasks::hand::Hand;
@@ -30,21 +32,10 @@ pub struct FollowStart {
     pub limits: FollowLimits,
     /// Speeds and forces to arm with.
     pub arm: ArmRequest,
-    /// Joints that are left alone.
-    pub locked: PerDof<bool>,
     /// What was read until now.
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
-}
-
-/// What a person may want meanwhile.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum FollowCommand {
-    /// Other limits.
-    Limit(FollowLimits),
-    /// Leave these joints alone.
-    Lock(PerDof<bool>),
 }
 
 /// What is shown of it.
@@ -56,15 +47,6 @@ pub struct FollowView {
     pub lead: u16,
     /// From a target's arrival to its first byte on the wire, 99 of 100.
     pub delay_p99: Option<Duration>,
-}
-
-/// What is told on the way.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FollowStep {
-    /// Something else goes on, or its figures changed.
-    View(FollowView),
-    /// The hand was told this.
-    Sent(Setpoints),
 }
 
 /// Why it ended. The hand was stopped, by this or by what ended it.
@@ -83,15 +65,13 @@ pub async fn follow<H: Hand>(
     hand: &H,
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
-    mut commands: mpsc::Receiver<FollowCommand>,
-    mut tell: impl FnMut(FollowStep),
+    mut tell: impl FnMut(FollowView),
 ) -> FollowEnd {
     let clock = start.clock;
     let mut records = hand.records();
     let mut at = AtHand {
         follow: Follow::new(start.limits, clock.now()),
         sample: start.seen,
-        locked: start.locked,
         delays: Delays::default(),
         hand,
         start,
@@ -100,10 +80,6 @@ pub async fn follow<H: Hand>(
     loop {
         tokio::select! {
             biased;
-            Some(command) = commands.recv() => match command {
-                FollowCommand::Limit(limits) => at.follow.limit(limits),
-                FollowCommand::Lock(locked) => at.locked = locked,
-            },
             offer = offers.recv() => match offer {
                 Some(offer) => at.take(offer),
                 None => {
@@ -124,14 +100,14 @@ pub async fn follow<H: Hand>(
         if let Err(refused) = hand.check(at.start.lease) {
             return FollowEnd::Lease(refused);
         }
-        if let Some(end) = at.go_on(&mut tell) {
+        if let Some(end) = at.go_on() {
             return end;
         }
         let now = clock.now();
         let is_due = |(phase, when)| phase != at.follow.phase() || now.since(when) >= TELL_EACH;
         if told.is_none_or(is_due) {
             told = Some((at.follow.phase(), now));
-            tell(FollowStep::View(at.view()));
+            tell(at.view());
         }
     }
 }
@@ -141,14 +117,16 @@ struct AtHand<'a, H> {
     start: FollowStart,
     follow: Follow,
     sample: HandSample,
-    locked: PerDof<bool>,
     delays: Delays,
 }
 
 impl<H: Hand> AtHand<'_, H> {
-    fn take(&mut self, mut offer: Offer) {
-        for (dof, aim) in offer.aims.iter_mut() {
-            *aim = aim.filter(|_| !self.locked[dof]);
+    fn take(&mut self, offer: Offer) {
+        if offer.held == Some(true) {
+            // Should this task hang, the link stops the hand by itself. A lease that ended is seen in the next step.
+            let _put_off = self
+                .hand
+                .run_until(self.start.lease, offer.at.plus(HOLDS_AFTER));
         }
         self.follow.offer(offer);
         self.delays.offered = Some(offer.at);
@@ -173,7 +151,7 @@ impl<H: Hand> AtHand<'_, H> {
     }
 
     /// Does what is to be done now; why it ended, if it did.
-    fn go_on(&mut self, tell: &mut impl FnMut(FollowStep)) -> Option<FollowEnd> {
+    fn go_on(&mut self) -> Option<FollowEnd> {
         let status = self.hand.status();
         let seen = FollowInput {
             state: status.state,
@@ -193,7 +171,6 @@ impl<H: Hand> AtHand<'_, H> {
                 let set = self.hand.set(lease, &setpoints);
                 if set.is_ok() {
                     self.delays.set();
-                    tell(FollowStep::Sent(setpoints));
                 }
                 set
             }

@@ -67,7 +67,7 @@ pub(crate) async fn drive(
     };
     let report = series::series(&link, start, ended, |step| results.take(step)).await?;
     if report.stop == Some(Stop::NotConfirmed) {
-        say("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply");
+        say(session::NOT_CONFIRMED);
     }
     disarm(&link).await;
     let trials = results.close(report.aborted)?;

@@ -1,5 +1,6 @@
 //! Trials and series as JSON, a contract with scripts, and as lines of text. Pure.
 
+use crate::cli::session::STOP_LOST;
 use crate::cli::trial::args::TrialArgs;
 use crate::hand::Dof;
 use crate::tasks::series::{SeriesReport, Stop};
@@ -112,9 +113,7 @@ pub(crate) fn stop_words(stop: Option<Stop>) -> String {
             format!("; stopped: feedback shows rest after {after_s:.2} s")
         }
         Some(Stop::NotConfirmed) => "; the stop is not confirmed by feedback".into(),
-        Some(Stop::LinkLost) => {
-            "; the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves".into()
-        }
+        Some(Stop::LinkLost) => format!("; {STOP_LOST}"),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A gamepad as a source that a hand can follow: reports in, offers out, STOP at once.
 
 use crate::hand::{Angle, AngleReading, PerDof};
-use crate::inputs::offer::Offer;
+use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::inputs::pad::device::PadReader;
 use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput};
 use crate::inputs::pad::report::PadNews;
@@ -16,8 +16,6 @@ use tokio::time::{MissedTickBehavior, interval};
 
 /// How often a gamepad says where it wants the hand, whether it was moved or not.
 const OFFER_EACH: Duration = Duration::from_millis(10);
-/// Offers that may wait to be followed.
-const OFFERS_MAX: usize = 64;
 
 /// What a gamepad is followed with.
 pub struct PadSourceConfig {
@@ -54,7 +52,7 @@ pub struct PadView {
 #[derive(Debug)]
 pub struct PadSource {
     view: watch::Receiver<PadView>,
-    follower: watch::Sender<Option<mpsc::Sender<Offer>>>,
+    outlet: OfferOutlet,
     abort: AbortHandle,
 }
 
@@ -69,11 +67,11 @@ impl PadSource {
     #[must_use]
     pub fn open(config: PadSourceConfig) -> Self {
         let (told, view) = watch::channel(PadView::default());
-        let (follower, followed) = watch::channel(None);
-        let task = tokio::spawn(run(config, told, followed));
+        let outlet = OfferOutlet::default();
+        let task = tokio::spawn(run(config, told, outlet.clone()));
         Self {
             view,
-            follower,
+            outlet,
             abort: task.abort_handle(),
         }
     }
@@ -87,17 +85,11 @@ impl PadSource {
     /// Its targets from now on, for whoever follows; whoever did before does no more.
     #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
-        let (offers, followed) = mpsc::channel(OFFERS_MAX);
-        self.follower.send_replace(Some(offers));
-        followed
+        self.outlet.follow()
     }
 }
 
-async fn run(
-    mut config: PadSourceConfig,
-    told: watch::Sender<PadView>,
-    followed: watch::Receiver<Option<mpsc::Sender<Offer>>>,
-) {
+async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: OfferOutlet) {
     let mut tick = interval(OFFER_EACH);
     tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let mut view = PadView::default();
@@ -145,10 +137,8 @@ async fn run(
         }) {
             (config.wake)();
         }
-        let offer = config.input.offer(now);
-        if let Some((offer, offers)) = offer.zip(followed.borrow().as_ref()) {
-            // A follower that is not fast enough takes the next one; one that is gone follows no more.
-            let _taken = offers.try_send(offer);
+        if let Some(offer) = config.input.offer(now) {
+            outlet.offer(offer);
         }
     }
 }

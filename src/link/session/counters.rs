@@ -2,16 +2,13 @@
 
 use crate::hand::{Finger, Group, Groups, Moment};
 use crate::link::poll::meter::LineMeter;
+use crate::link::rate::EventRate;
 use crate::link::stats::{LineUse, LinkStats};
 use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Round trips that the percentiles look back on.
 const ROUND_TRIPS: usize = 512;
-/// Rates count over this time.
-const RATE_OVER: Duration = Duration::from_secs(1);
-/// Most events a rate can hold: more a second than any wire gives.
-const RATE_EVENTS: usize = 16_384;
 /// Percentiles are worked out this often.
 const DIGEST_EACH: Duration = Duration::from_millis(250);
 
@@ -20,8 +17,8 @@ const DIGEST_EACH: Duration = Duration::from_millis(250);
 pub(crate) struct Counters {
     pub(crate) stats: LinkStats,
     round_trips: VecDeque<Duration>,
-    state: Rate,
-    tactile: Rate,
+    state: EventRate,
+    tactile: EventRate,
     sweep: Sweep,
     pub(crate) line: LineMeter,
     digested: Moment,
@@ -64,8 +61,8 @@ impl Counters {
     /// A lost link has no rate and no round trip; its counts stay.
     pub(crate) fn lost(&mut self) {
         self.round_trips.clear();
-        self.state = Rate::default();
-        self.tactile = Rate::default();
+        self.state = EventRate::default();
+        self.tactile = EventRate::default();
         self.sweep = Sweep::default();
         self.line = LineMeter::default();
         self.stats.state_hz = 0.0;
@@ -103,45 +100,6 @@ impl Sweep {
 fn percentile(sorted: &[Duration], percent: usize) -> Option<Duration> {
     let last = sorted.len().checked_sub(1)?;
     sorted.get(last * percent / 100).copied()
-}
-
-#[derive(Debug, Default)]
-struct Rate {
-    hits: VecDeque<Moment>,
-}
-
-impl Rate {
-    fn hit(&mut self, now: Moment) {
-        if self.hits.len() == RATE_EVENTS {
-            self.hits.pop_front();
-        }
-        self.hits.push_back(now);
-        self.forget(now);
-    }
-
-    fn forget(&mut self, now: Moment) {
-        while self
-            .hits
-            .front()
-            .is_some_and(|hit| now.since(*hit) > RATE_OVER)
-        {
-            self.hits.pop_front();
-        }
-    }
-
-    /// Events a second between the oldest and the newest of the last second.
-    fn hz(&mut self, now: Moment) -> f64 {
-        self.forget(now);
-        let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else {
-            return 0.0;
-        };
-        let (span, steps) = (
-            last.since(*first).as_secs_f64(),
-            self.hits.len().saturating_sub(1),
-        );
-        let steps = f64::from(u32::try_from(steps).unwrap_or(u32::MAX));
-        if span > 0.0 { steps / span } else { 0.0 }
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::link::{self, Clock, Lease, LinkHandle, Owner, Records};
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::sim::SimConfig;
-use handscope::tasks::follow::{FollowEnd, FollowStart, FollowStep, follow};
+use handscope::tasks::follow::{FollowEnd, FollowStart, FollowView, follow};
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
@@ -82,28 +82,24 @@ impl Stage {
         JoinHandle<(FollowEnd, Vec<FollowPhase>)>,
     ) {
         let (offers, taken) = mpsc::channel(64);
-        let (_none, commands) = mpsc::channel(1);
         let (link, start) = (
             self.link.clone(),
             FollowStart {
                 lease,
                 limits: LIMITS,
                 arm: gentle(),
-                locked: PerDof::splat(false),
                 seen: self.sample(),
                 clock: self.clock,
             },
         );
         let task = tokio::spawn(async move {
             let mut phases = Vec::new();
-            let tell = |step| {
-                if let FollowStep::View(view) = step
-                    && phases.last() != Some(&view.phase)
-                {
+            let tell = |view: FollowView| {
+                if phases.last() != Some(&view.phase) {
                     phases.push(view.phase);
                 }
             };
-            let end = follow(&link, start, taken, commands, tell).await;
+            let end = follow(&link, start, taken, tell).await;
             (end, phases)
         });
         (offers, task)
@@ -180,7 +176,7 @@ fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         let mut stage = Stage::begin().await;
         let open = stage.sample().angle.unwrap().value[Dof::Index].raw();
         // It asks for a fist in its first message.
-        let (offers, task) = stage.start(stage.link.grant(Owner::Dds));
+        let (offers, task) = stage.start(stage.link.grant(Owner::Gamepad));
         stage
             .send(&offers, |n| i16::try_from(n % 7).unwrap(), 700)
             .await;
@@ -205,7 +201,7 @@ fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         let before = moved.len();
         stage.pass(1000).await;
         assert_eq!(stage.index().len(), before);
-        let (offers, task) = stage.start(stage.link.grant(Owner::Dds));
+        let (offers, task) = stage.start(stage.link.grant(Owner::Gamepad));
         stage
             .send(&offers, |n| 900 + i16::try_from(n % 3).unwrap(), 1000)
             .await;

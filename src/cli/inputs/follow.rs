@@ -1,33 +1,18 @@
 //! `follow`: a hand follows the lines of JSON that another program sends, or a gamepad, once a person lets it.
 
-use crate::cli::inputs::map_of;
+use crate::cli::inputs::source::{FollowSource, SourceArgs};
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{self, number};
 use crate::cli::session;
-use crate::cli::wires::address;
-use crate::hand::kinematics::Side;
 use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
-use crate::inputs::Offer;
-use crate::inputs::follow::{FollowLimits, FollowPhase, HOLDS_AFTER};
-use crate::inputs::pad::device::{FOLDER, PadReader};
-use crate::inputs::pad::source::{PadSource, PadSourceConfig};
-use crate::inputs::pad::{PadInput, PadMap};
-use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
-use crate::poses::starter::starter;
 use crate::record::{Disarmed, Record};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowStep, FollowView, follow};
-use crate::tasks::series::{self, Stop};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowView, follow};
 use crate::transport::Endpoint;
-use anyhow::{anyhow, bail};
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::net::SocketAddr;
-use std::path::PathBuf;
-use std::sync::Arc;
+use anyhow::bail;
 use std::time::Duration;
-use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep, timeout};
 
@@ -39,32 +24,15 @@ const LOOK_EACH: Duration = Duration::from_millis(20);
 const READY_WITHIN: Duration = Duration::from_secs(5);
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad"]))]
 pub(crate) struct FollowArgs {
     /// The hand that follows
     #[arg(long, value_name = "URL")]
     hand: Endpoint,
-    /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
-    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
-    udp: Option<SocketAddr>,
-    /// Take lines over TCP connections here
-    #[arg(long, value_name = "ADDR:PORT", value_parser = address)]
-    tcp: Option<SocketAddr>,
-    /// Follow the gamepad of this computer ('handscope help gamepad')
-    #[arg(long)]
-    gamepad: bool,
-    /// With --gamepad: look for it in this folder
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp"], default_value = FOLDER)]
-    devices: PathBuf,
-    /// With --gamepad: take what the controls do from this file
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp"])]
-    map: Option<PathBuf>,
+    #[command(flatten)]
+    from: SourceArgs,
     /// Move the hand: nothing is in its way, and the 24 V switch is in reach. Without, what arrives is only shown
     #[arg(long)]
     arm: bool,
-    /// Which values of a line are for this hand: right or left
-    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
-    side: Side,
     /// How far a target may be ahead of its joint, 20 to 500 counts of 1000
     #[arg(long, value_name = "COUNTS", default_value_t = FollowLimits::default().lead, value_parser = lead)]
     lead: u16,
@@ -80,14 +48,6 @@ pub(crate) struct FollowArgs {
     /// Print JSON: an object a second, and one at each change
     #[arg(long)]
     json: bool,
-}
-
-fn side(text: &str) -> Result<Side, String> {
-    match text {
-        "right" => Ok(Side::Right),
-        "left" => Ok(Side::Left),
-        _ => Err("write right or left".into()),
-    }
 }
 
 fn lead(text: &str) -> Result<u16, String> {
@@ -128,7 +88,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         () = interrupt.wished() => return Ok(()),
         seen = known(&link, &mut records, &args.hand) => seen?,
     };
-    let source = open(&link, args, clock)?;
+    let source = FollowSource::open(&args.from, &link, clock)?;
     out.line(&source.ready())?;
     out.flush()?;
     let mut at = AtHand {
@@ -149,7 +109,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         ended = at.go_on() => ended?,
     }
     match args.arm {
-        true => stopped(&at.link, &mut records).await,
+        true => session::stopped(&at.link, &mut records).await,
         false => Ok(()),
     }
 }
@@ -173,138 +133,6 @@ async fn known(
     bail!("the hand at {hand} does not tell its angles and faults")
 }
 
-fn open(link: &LinkHandle, args: &FollowArgs, clock: Clock) -> anyhow::Result<FollowSource> {
-    let stops = link.clone();
-    let stop = Arc::new(move || stops.stop());
-    let udp = args.udp.map(StreamPlace::Udp);
-    let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
-        let map = args.map.as_deref().map_or(Ok(PadMap::usual()), map_of)?;
-        let mut input = PadInput::new(map);
-        let poses = starter().poses.iter();
-        let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
-        input.set_poses(poses.collect());
-        return Ok(FollowSource::Pad(PadSource::open(PadSourceConfig {
-            reader: PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?,
-            input,
-            records: link.records(),
-            clock,
-            stop,
-            wake: Arc::new(|| ()),
-        })));
-    };
-    let config = StreamConfig {
-        place,
-        side: args.side,
-        clock,
-        stop,
-        wake: Arc::new(|| ()),
-    };
-    let source = StreamSource::open(config, &Handle::current()).map_err(|error| {
-        let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
-        anyhow!("cannot listen on {at}: {error}; choose another address or port")
-    })?;
-    if !source.local().ip().is_loopback() {
-        let at = source.local();
-        say(&format!(
-            "warning: anyone in the network can send to {at}; 127.0.0.1 keeps it to this computer"
-        ));
-    }
-    Ok(FollowSource::Stream(place, source))
-}
-
-/// What the hand follows.
-enum FollowSource {
-    Stream(StreamPlace, StreamSource),
-    Pad(PadSource),
-}
-
-impl FollowSource {
-    /// The line that says that it can be used.
-    fn ready(&self) -> String {
-        match self {
-            Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
-            Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
-            Self::Pad(_) => "ready gamepad".into(),
-        }
-    }
-
-    fn follow(&self) -> mpsc::Receiver<Offer> {
-        match self {
-            Self::Stream(_, source) => source.follow(),
-            Self::Pad(source) => source.follow(),
-        }
-    }
-
-    /// Who would move the hand now, and what it is called.
-    fn owner(&self, now: Moment) -> Option<(Owner, String)> {
-        match self {
-            Self::Stream(_, source) => {
-                let (sender, last) = source.view().intake.sender?;
-                let is_fresh = now.since(last) < HOLDS_AFTER;
-                is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
-            }
-            Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
-        }
-    }
-
-    /// How it goes, in words and as an object.
-    fn told(&self) -> (String, Value) {
-        match self {
-            Self::Stream(_, source) => {
-                let StreamView {
-                    intake,
-                    not_granted,
-                    ..
-                } = source.view();
-                let refused: BTreeMap<&str, u64> = intake
-                    .refused
-                    .iter()
-                    .map(|(fault, count)| (fault.name(), *count))
-                    .collect();
-                let words = format!(
-                    "{:6.1} lines/s  {} taken  {} refused",
-                    intake.rate_hz,
-                    intake.taken,
-                    refused.values().sum::<u64>()
-                );
-                let object = json!({
-                    "sender": intake.sender.map(|(sender, _)| sender.to_string()),
-                    "rate_hz": intake.rate_hz,
-                    "taken": intake.taken,
-                    "refused": refused,
-                    "not_granted": not_granted,
-                });
-                (words, object)
-            }
-            Self::Pad(source) => {
-                let view = source.view();
-                let held = if view.is_held { "held" } else { "not held" };
-                let words = match (&view.name, &view.trouble) {
-                    (Some(name), _) => format!("{name}, dead-man {held}"),
-                    (None, Some(trouble)) => trouble.clone(),
-                    (None, None) => "no gamepad yet: plug one in, or pair it".into(),
-                };
-                let object =
-                    json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
-                (words, object)
-            }
-        }
-    }
-}
-
-/// Does not leave before the hand is seen to rest.
-async fn stopped(link: &LinkHandle, records: &mut Records) -> anyhow::Result<()> {
-    match series::hold(link, records).await {
-        Stop::Confirmed { .. } => Ok(()),
-        Stop::NotConfirmed => {
-            bail!("STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply")
-        }
-        Stop::LinkLost => bail!(
-            "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves"
-        ),
-    }
-}
-
 struct AtHand<'a> {
     link: LinkHandle,
     seen: HandSample,
@@ -325,20 +153,16 @@ impl AtHand<'_> {
                 lease,
                 limits: self.args.limits(),
                 arm: self.args.arm_request(),
-                locked: PerDof::splat(false),
                 seen: self.seen,
                 clock: self.clock,
             };
-            let (_limits, commands) = mpsc::channel(1);
             let (source, teller, clock) = (self.source, &mut self.teller, self.clock);
             let mut trouble = None;
-            let tell = |step| {
-                if let FollowStep::View(view) = step {
-                    let told = teller.tell(source, Some(view), clock.now());
-                    trouble = trouble.take().or(told.err());
-                }
+            let tell = |view| {
+                let told = teller.tell(source, Some(view), clock.now());
+                trouble = trouble.take().or(told.err());
             };
-            let end = follow(&self.link, start, offers, commands, tell).await;
+            let end = follow(&self.link, start, offers, tell).await;
             if let Some(trouble) = trouble {
                 return Err(trouble);
             }

@@ -1,22 +1,20 @@
 //! `inputs`: the gamepads of this computer, and what the controls of one ask of a hand, without a hand. Moves nothing.
 
+use crate::cli::inputs::source::pad_input;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::Offer;
 use crate::inputs::pad::device::{FOLDER, PadReader, find};
-use crate::inputs::pad::file;
 use crate::inputs::pad::state::FULL;
 use crate::inputs::pad::{
     ControlKind, PadAction, PadControl, PadEvent, PadFacts, PadInput, PadMap, PadNews, PadReport,
     PadState, PadTrouble,
 };
 use crate::link::Clock;
-use crate::poses::starter::starter;
-use crate::store::toml_file;
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use serde_json::{Map, Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Where the joints of the hand are that is not there, before a control moved them.
@@ -65,11 +63,11 @@ fn list(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
 }
 
 async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
-    let map = args.map.as_deref().map_or(Ok(PadMap::usual()), map_of)?;
+    let input = pad_input(args.map.as_deref())?;
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let mut reader = PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?;
-    let mut printer = PadPrinter::new(map, args.json);
+    let mut printer = PadPrinter::new(input, args.json);
     let hint = dead_man_name(printer.input.map());
     say(&format!(
         "waiting for a gamepad; hold {hint} to see where the joints would go; Ctrl-C ends"
@@ -96,11 +94,6 @@ async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     }
 }
 
-pub(crate) fn map_of(path: &Path) -> anyhow::Result<PadMap> {
-    let read = toml_file::load(path, file::BYTES_MAX, file::read);
-    read.with_context(|| path.display().to_string())
-}
-
 fn dead_man_name(map: &PadMap) -> &'static str {
     let dead_man = map.doing(&PadAction::DeadMan).next();
     dead_man.map_or("nothing", PadControl::name)
@@ -123,14 +116,7 @@ struct PadPrinter {
 }
 
 impl PadPrinter {
-    fn new(map: PadMap, as_json: bool) -> Self {
-        let mut input = PadInput::new(map);
-        let poses = starter().poses.iter();
-        input.set_poses(
-            poses
-                .map(|pose| (pose.name.clone(), pose.targets()))
-                .collect(),
-        );
+    fn new(mut input: PadInput, as_json: bool) -> Self {
         let actual = PerDof::splat(BEGIN);
         input.set_actual(actual.map(Some));
         Self {
@@ -306,7 +292,7 @@ mod tests {
 
     /// What is printed for each of these, 50 ms apart.
     fn printed(as_json: bool, news: &[PadNews]) -> Vec<String> {
-        let mut printer = PadPrinter::new(PadMap::usual(), as_json);
+        let mut printer = PadPrinter::new(pad_input(None).unwrap(), as_json);
         let found = PadNews::Found {
             pad: PAD,
             facts: facts(),

@@ -1,0 +1,176 @@
+//! What a hand follows from the command line: lines of JSON at an address, or the gamepad of this computer.
+
+use crate::cli::listen;
+use crate::hand::Moment;
+use crate::hand::kinematics::Side;
+use crate::inputs::Offer;
+use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::pad::device::{FOLDER, PadReader};
+use crate::inputs::pad::source::{PadSource, PadSourceConfig};
+use crate::inputs::pad::{PadInput, PadMap, file};
+use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use crate::link::{Clock, LinkHandle, Owner};
+use crate::poses::starter::starter;
+use crate::store::toml_file;
+use anyhow::Context as _;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+
+#[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad"]))]
+pub(super) struct SourceArgs {
+    /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
+    udp: Option<SocketAddr>,
+    /// Take lines over TCP connections here
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
+    tcp: Option<SocketAddr>,
+    /// Follow the gamepad of this computer ('handscope help gamepad')
+    #[arg(long)]
+    gamepad: bool,
+    /// With --gamepad: look for it in this folder
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp"], default_value = FOLDER)]
+    devices: PathBuf,
+    /// With --gamepad: take what the controls do from this file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp"])]
+    map: Option<PathBuf>,
+    /// Which values of a line are for this hand: right or left
+    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
+    side: Side,
+}
+
+fn side(text: &str) -> Result<Side, String> {
+    match text {
+        "right" => Ok(Side::Right),
+        "left" => Ok(Side::Left),
+        _ => Err("write right or left".into()),
+    }
+}
+
+/// What the hand follows.
+pub(super) enum FollowSource {
+    Stream(StreamPlace, StreamSource),
+    Pad(PadSource),
+}
+
+impl FollowSource {
+    /// Opens what the person named.
+    pub(super) fn open(args: &SourceArgs, link: &LinkHandle, clock: Clock) -> anyhow::Result<Self> {
+        let stops = link.clone();
+        let stop = Arc::new(move || stops.stop());
+        let udp = args.udp.map(StreamPlace::Udp);
+        let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
+            let input = pad_input(args.map.as_deref())?;
+            return Ok(Self::Pad(PadSource::open(PadSourceConfig {
+                reader: PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?,
+                input,
+                records: link.records(),
+                clock,
+                stop,
+            })));
+        };
+        let config = StreamConfig {
+            place,
+            side: args.side,
+            clock,
+            stop,
+            wake: Arc::new(|| ()),
+        };
+        let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
+        let source = StreamSource::open(config, &Handle::current())
+            .map_err(|error| listen::refused(at, &error))?;
+        listen::warn_if_reachable(source.local(), "send to this hand");
+        Ok(Self::Stream(place, source))
+    }
+
+    /// The line that says that it can be used.
+    pub(super) fn ready(&self) -> String {
+        match self {
+            Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
+            Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
+            Self::Pad(_) => "ready gamepad".into(),
+        }
+    }
+
+    pub(super) fn follow(&self) -> mpsc::Receiver<Offer> {
+        match self {
+            Self::Stream(_, source) => source.follow(),
+            Self::Pad(source) => source.follow(),
+        }
+    }
+
+    /// Who would move the hand now, and what it is called.
+    pub(super) fn owner(&self, now: Moment) -> Option<(Owner, String)> {
+        match self {
+            Self::Stream(_, source) => {
+                let (sender, last) = source.view().intake.sender?;
+                let is_fresh = now.since(last) < HOLDS_AFTER;
+                is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
+            }
+            Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
+        }
+    }
+
+    /// How it goes, in words and as an object.
+    pub(super) fn told(&self) -> (String, Value) {
+        match self {
+            Self::Stream(_, source) => {
+                let StreamView {
+                    intake,
+                    not_granted,
+                    ..
+                } = source.view();
+                let refused: BTreeMap<&str, u64> = intake
+                    .refused
+                    .iter()
+                    .map(|(fault, count)| (fault.name(), *count))
+                    .collect();
+                let words = format!(
+                    "{:6.1} lines/s  {} taken  {} refused",
+                    intake.rate_hz,
+                    intake.taken,
+                    refused.values().sum::<u64>()
+                );
+                let object = json!({
+                    "sender": intake.sender.map(|(sender, _)| sender.to_string()),
+                    "rate_hz": intake.rate_hz,
+                    "taken": intake.taken,
+                    "refused": refused,
+                    "not_granted": not_granted,
+                });
+                (words, object)
+            }
+            Self::Pad(source) => {
+                let view = source.view();
+                let held = if view.is_held { "held" } else { "not held" };
+                let words = match (&view.name, &view.trouble) {
+                    (Some(name), _) => format!("{name}, dead-man {held}"),
+                    (None, Some(trouble)) => trouble.clone(),
+                    (None, None) => "no gamepad yet: plug one in, or pair it".into(),
+                };
+                let object =
+                    json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
+                (words, object)
+            }
+        }
+    }
+}
+
+/// A gamepad with what its controls do and where its poses are: of a file, else as delivered.
+pub(super) fn pad_input(map: Option<&Path>) -> anyhow::Result<PadInput> {
+    let map = match map {
+        None => PadMap::usual(),
+        Some(path) => toml_file::load(path, file::BYTES_MAX, file::read)
+            .with_context(|| path.display().to_string())?,
+    };
+    let mut input = PadInput::new(map);
+    let poses = starter().poses.iter();
+    let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
+    input.set_poses(poses.collect());
+    Ok(input)
+}

@@ -1,0 +1,27 @@
+//! Addresses that a command listens at: how they are written, and what a person is told of them.
+
+use crate::cli::out::say;
+use anyhow::anyhow;
+use std::io;
+use std::net::SocketAddr;
+
+/// An address in numbers, with a port; 0 for any free one.
+pub(crate) fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_not_one| {
+        "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()
+    })
+}
+
+/// Nobody can listen there.
+pub(crate) fn refused(at: SocketAddr, error: &io::Error) -> anyhow::Error {
+    anyhow!("cannot listen on {at}: {error}; choose another address or port")
+}
+
+/// Warns of an address that other computers reach: what anyone there can do, in words.
+pub(crate) fn warn_if_reachable(at: SocketAddr, can: &str) {
+    if !at.ip().is_loopback() {
+        say(&format!(
+            "warning: anyone in the network can reach {at} and {can}; 127.0.0.1 keeps it to this computer"
+        ));
+    }
+}
