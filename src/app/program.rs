@@ -178,7 +178,7 @@ impl App {
         for hand in hands.iter_mut() {
             hand.take_news(notices, now);
             hand.tick_sequence();
-            hand.tick_inputs(notices);
+            hand.tick_inputs(notices, settings);
             hand.tick_requests(notices);
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);

@@ -136,6 +136,11 @@ impl Follow {
         &self.sent
     }
 
+    /// Other limits from now on.
+    pub fn limit(&mut self, limits: FollowLimits) {
+        self.limits = limits.within();
+    }
+
     /// Takes a newer target.
     pub fn offer(&mut self, offer: Offer) {
         let before = self.newest.replace(offer);

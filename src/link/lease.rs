@@ -23,6 +23,12 @@ pub enum Owner {
 }
 
 impl Owner {
+    /// True for one outside this program: it is told in every view, with its end in reach.
+    #[must_use]
+    pub const fn is_outside(self) -> bool {
+        !matches!(self, Self::Person | Self::Task | Self::Exhibition)
+    }
+
     /// True if it may go on after this without a person. An exhibition clears what can be cleared, and counts it.
     const fn outlives(self, end: Disarmed) -> bool {
         matches!((self, end), (Self::Exhibition, Disarmed::Fault))

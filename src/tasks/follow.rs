@@ -1,7 +1,7 @@
 //! A hand that follows a source under a lease that a person granted: gamepad, stream, another hand. When it moves, and how far, is decided
 //! in `inputs`; here it is done.
 
-use crate::hand::{AngleReading, Dof, HandSample, Moment, PerDof, Setpoints, Target};
+use crate::hand::{Angle, AngleReading, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use crate::inputs::Offer;
 use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
@@ -11,7 +11,7 @@ use crate::record::{Disarmed, Record, WriteCause};
 use crate::tasks::hand::Hand;
 use std::collections::VecDeque;
 use std::time::Duration;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
 /// How often time is looked at where nothing is offered or read.
@@ -23,13 +23,22 @@ const DELAYS: usize = 512;
 /// How often the view is told while only its figures change.
 const TELL_EACH: Duration = Duration::from_millis(100);
 
+/// What a person allows a source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FollowTerms {
+    /// How far and how fast.
+    pub limits: FollowLimits,
+    /// Joints that stay where they are.
+    pub locked: PerDof<bool>,
+}
+
 /// What following begins with.
 #[derive(Debug, Clone)]
 pub struct FollowStart {
     /// The right to move the hand, granted by a person for this source.
     pub lease: Lease,
-    /// How far and how fast.
-    pub limits: FollowLimits,
+    /// What a person allows, also while it goes on.
+    pub terms: watch::Receiver<FollowTerms>,
     /// Speeds and forces to arm with.
     pub arm: ArmRequest,
     /// What was read until now.
@@ -43,6 +52,8 @@ pub struct FollowStart {
 pub struct FollowView {
     /// What goes on.
     pub phase: FollowPhase,
+    /// Where the joints were sent.
+    pub sent: PerDof<Option<Angle>>,
     /// Counts that targets are ahead of their joints, at most.
     pub lead: u16,
     /// From a target's arrival to its first byte on the wire, 99 of 100.
@@ -69,14 +80,15 @@ pub async fn follow<H: Hand>(
 ) -> FollowEnd {
     let clock = start.clock;
     let mut records = hand.records();
+    let limits = start.terms.borrow().limits;
     let mut at = AtHand {
-        follow: Follow::new(start.limits, clock.now()),
+        follow: Follow::new(limits, clock.now()),
         sample: start.seen,
         delays: Delays::default(),
         hand,
         start,
     };
-    let mut told: Option<(FollowPhase, Moment)> = None;
+    let mut told: Option<(FollowView, Moment)> = None;
     loop {
         tokio::select! {
             biased;
@@ -104,10 +116,15 @@ pub async fn follow<H: Hand>(
             return end;
         }
         let now = clock.now();
-        let is_due = |(phase, when)| phase != at.follow.phase() || now.since(when) >= TELL_EACH;
+        let is_due = |(view, when): (FollowView, Moment)| {
+            view.phase != at.follow.phase()
+                || view.sent != *at.follow.sent()
+                || now.since(when) >= TELL_EACH
+        };
         if told.is_none_or(is_due) {
-            told = Some((at.follow.phase(), now));
-            tell(at.view());
+            let view = at.view();
+            told = Some((view, now));
+            tell(view);
         }
     }
 }
@@ -121,7 +138,11 @@ struct AtHand<'a, H> {
 }
 
 impl<H: Hand> AtHand<'_, H> {
-    fn take(&mut self, offer: Offer) {
+    fn take(&mut self, mut offer: Offer) {
+        let locked = self.start.terms.borrow().locked;
+        for (dof, aim) in offer.aims.iter_mut() {
+            *aim = aim.filter(|_| !locked[dof]);
+        }
         if offer.held == Some(true) {
             // Should this task hang, the link stops the hand by itself. A lease that ended is seen in the next step.
             let _put_off = self
@@ -143,7 +164,7 @@ impl<H: Hand> AtHand<'_, H> {
     }
 
     /// Where each joint is, if that is known freshly.
-    fn pose(&self) -> PerDof<Option<crate::hand::Angle>> {
+    fn pose(&self) -> PerDof<Option<Angle>> {
         let now = self.start.clock.now();
         let angle = self.sample.angle;
         let angle = angle.filter(|angle| angle.age(now) <= FRESH_FOR);
@@ -152,6 +173,7 @@ impl<H: Hand> AtHand<'_, H> {
 
     /// Does what is to be done now; why it ended, if it did.
     fn go_on(&mut self) -> Option<FollowEnd> {
+        self.follow.limit(self.start.terms.borrow().limits);
         let status = self.hand.status();
         let seen = FollowInput {
             state: status.state,
@@ -191,6 +213,7 @@ impl<H: Hand> AtHand<'_, H> {
         };
         FollowView {
             phase: self.follow.phase(),
+            sent: *self.follow.sent(),
             lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
             delay_p99: self.delays.p99(),
         }

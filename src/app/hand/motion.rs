@@ -9,7 +9,6 @@ use crate::history::MarkKind;
 use crate::link::ArmRequest;
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::LinkState;
-use crate::tasks::follow::FollowCommand;
 use crate::trials::Abort;
 
 impl HandState {
@@ -104,7 +103,6 @@ impl HandState {
         self.steered[dof] = false;
         self.follow();
         self.tell_locks();
-        self.command(FollowCommand::Lock(self.joints.map(|joint| joint.locked)));
         if freed && self.is_free(dof) {
             self.send(|setpoints| {
                 setpoints.force[dof] = Some(force);

@@ -10,9 +10,9 @@ use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
-use crate::tasks::follow::{FollowCommand, FollowEnd, FollowStep, FollowView};
+use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
 use std::net::SocketAddr;
-use tokio::sync::mpsc;
+use tokio::sync::watch;
 
 /// What a person asks of inputs and of the gateway.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,8 +66,8 @@ pub struct FollowRun {
     pub owner: Owner,
     /// How it goes.
     pub view: Option<FollowView>,
-    pub(crate) commands: mpsc::Sender<FollowCommand>,
-    pub(crate) task: Running<FollowStep, FollowEnd>,
+    pub(crate) terms: watch::Sender<FollowTerms>,
+    pub(crate) task: Running<FollowView, FollowEnd>,
 }
 
 impl HandInputs {

@@ -6,7 +6,7 @@ use crate::app::inputs::{FollowRun, HandInputs, InputAction};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::running::Running;
 use crate::app::settings::Settings;
-use crate::hand::{Dof, Setpoints, Target};
+use crate::hand::{Angle, Dof, PerDof};
 use crate::inputs::Offer;
 use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::pad::PadInput;
@@ -16,14 +16,11 @@ use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::link::{ArmRequest, Owner};
 use crate::record::Disarmed;
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
-use crate::tasks::follow::{FollowCommand, FollowEnd, FollowStart, FollowStep, follow};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use tokio::sync::mpsc;
-
-/// Wishes that may wait: a person cannot press faster than a task takes them.
-const COMMANDS_MAX: usize = 16;
+use tokio::sync::{mpsc, watch};
 
 impl HandState {
     /// Does what a person asked for.
@@ -42,7 +39,6 @@ impl HandState {
             InputAction::TakeBack => self.take_back(),
             InputAction::Limit(limits) => {
                 settings.follow = limits.within();
-                self.command(FollowCommand::Limit(settings.follow));
             }
             InputAction::Map(map) => {
                 settings.pad_map = Some(crate::inputs::pad::file::write(&map));
@@ -178,26 +174,25 @@ impl HandState {
         }
         let Some(open) = &self.open else { return };
         let lease = open.link.grant(owner);
+        let (terms, watched) = watch::channel(self.follow_terms(settings));
         let start = FollowStart {
             lease,
-            limits: settings.follow,
+            terms: watched,
             arm: ArmRequest {
                 speed: self.joints.map(|joint| joint.speed),
                 force: self.joints.map(|joint| joint.force),
             },
-            locked: self.joints.map(|joint| joint.locked),
             seen: self.sample,
             clock: env.clock,
         };
-        let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
         let link = open.link.clone();
-        let task = Running::start(env, |steps| async move {
-            follow(&link, start, offers, wanted, |step| steps.tell(step)).await
+        let task = Running::start(env, |views| async move {
+            follow(&link, start, offers, |view| views.tell(view)).await
         });
         self.inputs.follow = Some(FollowRun {
             owner,
             view: None,
-            commands,
+            terms,
             task,
         });
     }
@@ -213,15 +208,16 @@ impl HandState {
         }
     }
 
-    pub(crate) fn command(&self, command: FollowCommand) {
-        if let Some(run) = &self.inputs.follow {
-            // A full queue means that the newest of many is on its way.
-            let _told = run.commands.try_send(command);
+    fn follow_terms(&self, settings: &Settings) -> FollowTerms {
+        FollowTerms {
+            limits: settings.follow,
+            locked: self.joints.map(|joint| joint.locked),
         }
     }
 
     /// Takes in what inputs and clients did.
-    pub(crate) fn tick_inputs(&mut self, notices: &mut Notices) {
+    pub(crate) fn tick_inputs(&mut self, notices: &mut Notices, settings: &Settings) {
+        let terms = self.follow_terms(settings);
         let HandInputs {
             stream,
             stream_view,
@@ -238,18 +234,13 @@ impl HandState {
         *pad_view = pad.as_ref().map(PadSource::view);
         *clients = gateway.as_ref().map(Gateway::clients).unwrap_or_default();
         let Some(run) = follow else { return };
-        let (steps, end) = run.task.news();
+        let (views, end) = run.task.news();
         let owner = run.owner;
-        let mut sent = Vec::new();
-        for (_, step) in steps {
-            match step {
-                FollowStep::View(view) => run.view = Some(view),
-                FollowStep::Sent(setpoints) => sent.push(setpoints),
-            }
-        }
-        for setpoints in sent {
-            self.commanded = true;
-            self.show_sent(&setpoints);
+        run.terms
+            .send_if_modified(|told| std::mem::replace(told, terms) != terms);
+        if let Some((_, view)) = views.into_iter().last() {
+            run.view = Some(view);
+            self.show_sent(view.sent);
         }
         if let Some(end) = end {
             self.inputs.follow = None;
@@ -261,11 +252,12 @@ impl HandState {
     }
 
     /// The sliders stand where the source sent the joints.
-    fn show_sent(&mut self, sent: &Setpoints) {
+    fn show_sent(&mut self, sent: PerDof<Option<Angle>>) {
         for dof in Dof::ALL {
-            if let Some(Target::Go(to)) = sent.angle[dof] {
+            if let Some(to) = sent[dof] {
                 self.joints[dof].target = Some(to);
                 self.steered[dof] = true;
+                self.commanded = true;
             }
         }
     }

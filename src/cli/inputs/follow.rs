@@ -9,11 +9,11 @@ use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
 use crate::record::{Disarmed, Record};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowView, follow};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::time::Duration;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep, timeout};
 
 /// How often it is told how it goes.
@@ -61,10 +61,13 @@ fn rate(text: &str) -> Result<u16, String> {
 }
 
 impl FollowArgs {
-    fn limits(&self) -> FollowLimits {
-        FollowLimits {
-            lead: self.lead,
-            rate: self.rate,
+    fn terms(&self) -> FollowTerms {
+        FollowTerms {
+            limits: FollowLimits {
+                lead: self.lead,
+                rate: self.rate,
+            },
+            locked: PerDof::splat(false),
         }
     }
 
@@ -151,7 +154,7 @@ impl AtHand<'_> {
             let (offers, lease) = (self.source.follow(), self.link.grant(owner));
             let start = FollowStart {
                 lease,
-                limits: self.args.limits(),
+                terms: watch::Sender::new(self.args.terms()).subscribe(),
                 arm: self.args.arm_request(),
                 seen: self.seen,
                 clock: self.clock,

@@ -72,6 +72,7 @@ impl FollowSource {
                 records: link.records(),
                 clock,
                 stop,
+                wake: Arc::new(|| ()),
             })));
         };
         let config = StreamConfig {

@@ -403,7 +403,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
         Owner::Gateway(address) => {
             let mut clients = hand.inputs.clients.iter();
             let client = clients.find(|client| client.address == address);
-            client.map(|client| f32::from(u16::try_from(client.hz).unwrap_or(u16::MAX)))
+            client.map(|client| f64::from(client.hz))
         }
         _ => None,
     };

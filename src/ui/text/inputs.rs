@@ -57,7 +57,7 @@ texts! {
         LineFault::Malformed => "Refused: not such a line", "拒绝：格式错误";
         LineFault::Version => "Refused: another version", "拒绝：版本不同";
         LineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
-        LineFault::Length { .. } => "Refused: not six values", "拒绝：不是六个数值";
+        LineFault::Length => "Refused: not six values", "拒绝：不是六个数值";
         LineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
         LineFault::Late => "Refused: late", "拒绝：迟到";
         LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
@@ -106,15 +106,12 @@ pub(crate) fn owner(look: Look, owner: Owner) -> String {
     const EXHIBITION: Text = Text::new("Exhibition", "展示");
     const STREAM: Text = Text::new("Program", "程序");
     const GATEWAY: Text = Text::new("Gateway client", "网关程序");
-    const MIRROR: Text = Text::new("Another hand", "另一只手");
     match owner {
         Owner::Person => look.say(PERSON).into(),
         Owner::Task => look.say(TASK).into(),
         Owner::Exhibition => look.say(EXHIBITION).into(),
         Owner::Gamepad => look.say(PAD).into(),
         Owner::Stream(sender) => look.told(STREAM, sender),
-        Owner::Dds => "DDS".into(),
         Owner::Gateway(client) => look.told(GATEWAY, client),
-        Owner::Mirror => look.say(MIRROR).into(),
     }
 }

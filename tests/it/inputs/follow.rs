@@ -10,10 +10,10 @@ use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::link::{self, Clock, Lease, LinkHandle, Owner, Records};
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::sim::SimConfig;
-use handscope::tasks::follow::{FollowEnd, FollowStart, FollowView, follow};
+use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use std::time::Duration;
 use tokio::runtime::Handle;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
@@ -82,11 +82,15 @@ impl Stage {
         JoinHandle<(FollowEnd, Vec<FollowPhase>)>,
     ) {
         let (offers, taken) = mpsc::channel(64);
+        let terms = FollowTerms {
+            limits: LIMITS,
+            ..FollowTerms::default()
+        };
         let (link, start) = (
             self.link.clone(),
             FollowStart {
                 lease,
-                limits: LIMITS,
+                terms: watch::Sender::new(terms).subscribe(),
                 arm: gentle(),
                 seen: self.sample(),
                 clock: self.clock,

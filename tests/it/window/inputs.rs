@@ -47,7 +47,11 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     assert_eq!(hand.link.state, LinkState::Armed);
     let from = sender.local_addr().unwrap();
     assert_eq!(hand.outside_owner(), Some(Owner::Stream(from)));
-    assert!((bench.angle(Dof::Index) - open).abs() > 20, "{}", bench.angle(Dof::Index));
+    assert!(
+        (bench.angle(Dof::Index) - open).abs() > 20,
+        "{}",
+        bench.angle(Dof::Index)
+    );
     // Its sliders are not a person's now.
     assert!(bench.is_disabled(Role::Slider, "Index angle target"));
     for view in [View::Live, View::Traffic, View::Connection] {
@@ -62,7 +66,12 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     let before = bench.writes().len();
     send(&mut bench, &sender, to, 500);
     assert_eq!(bench.writes().len(), before, "nothing after a stop");
-    assert!(bench.writes().iter().any(|write| write.address == ANGLE_SET));
+    assert!(
+        bench
+            .writes()
+            .iter()
+            .any(|write| write.address == ANGLE_SET)
+    );
 }
 
 #[test]
