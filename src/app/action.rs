@@ -2,6 +2,7 @@
 
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
+use crate::app::hand::hold_to_run::HoldKey;
 use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::inputs::InputAction;
@@ -34,6 +35,10 @@ pub enum Action {
     Arm,
     /// Let none pass any more; the hand keeps what it was told.
     Disarm,
+    /// Let the hand move only while the key for it is held, or whenever it is armed.
+    HoldToRun(bool),
+    /// What is done with the key for it.
+    HoldKey(HoldKey),
     /// Where a joint should go. Ignored unless armed and the joint is not locked.
     Target(Dof, Angle),
     /// Force threshold of one joint or of all: sent when armed, kept for arming otherwise.

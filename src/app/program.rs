@@ -179,6 +179,7 @@ impl App {
             hand.take_news(notices, now);
             hand.tick_sequence();
             hand.tick_inputs(notices, settings);
+            hand.tick_hold(settings.hold_to_run);
             hand.tick_requests(notices);
             hand.tick_params(env, notices);
             hand.tick_series(trials, notices);
@@ -279,7 +280,7 @@ impl App {
             hand.recorder.person(done, now);
         }
         match action {
-            Action::Arm if self.closing.is_some() => {}
+            Action::Arm | Action::HoldKey(_) if self.closing.is_some() => {}
             Action::Session(action) => {
                 let on = [
                     SessionAction::Record(true),
@@ -330,6 +331,11 @@ impl App {
                 }
             }
             Action::Arm => hand.arm(notices),
+            Action::HoldKey(key) => hand.hold_key(key, notices),
+            Action::HoldToRun(on) => {
+                settings.hold_to_run = on;
+                hand.tick_hold(on);
+            }
             Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
             Action::Force(dof, force) => each(dof).for_each(|dof| hand.force(dof, force)),

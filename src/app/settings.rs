@@ -312,6 +312,8 @@ pub struct Settings {
     pub read_first: PollPriority,
     /// What is recorded, and where.
     pub sessions: SessionSettings,
+    /// The hand moves only while a person holds a key.
+    pub hold_to_run: bool,
     /// How far and how fast a hand follows a source.
     pub follow: FollowLimits,
     /// What the controls of a gamepad do, as a file of it says; as delivered if nothing changed that.

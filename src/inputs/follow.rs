@@ -76,6 +76,8 @@ pub struct FollowInput {
     pub state: LinkState,
     /// Where the joints are; `None` where that is not known freshly.
     pub pose: PerDof<Option<Angle>>,
+    /// Whether a person here holds what has to be held, if that has to be.
+    pub held: Option<bool>,
 }
 
 /// What is to be done at the hand.
@@ -165,7 +167,8 @@ impl Follow {
         }
         let offer = self.newest?;
         let is_silent = age >= HOLDS_AFTER;
-        if offer.held == Some(false) || is_silent && offer.held.is_some() {
+        let is_let_go = [offer.held, seen.held].contains(&Some(false));
+        if is_let_go || is_silent && offer.held.is_some() {
             let phase = match is_silent {
                 true => FollowPhase::Silent,
                 false => FollowPhase::Released,

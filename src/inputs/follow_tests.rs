@@ -21,6 +21,7 @@ fn ms(ms: u64) -> Moment {
 
 fn at(angle: i16) -> FollowInput {
     FollowInput {
+        held: None,
         state: LinkState::Armed,
         pose: PerDof::splat(Some(Angle::nearest(angle))),
     }
@@ -190,6 +191,7 @@ impl Joints {
         #[expect(clippy::cast_possible_truncation, reason = "in range")]
         let pose = self.at.map(|at| Angle::nearest(at.round() as i64));
         FollowInput {
+            held: None,
             state: self.state,
             pose: pose.map(|at| (rng.f32() >= 0.01).then_some(at)),
         }

@@ -4,7 +4,7 @@ use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::clock::Clock;
 use crate::link::config::LinkConfig;
 use crate::link::image::RegisterImage;
-use crate::link::lease::{Lease, LeaseRefusal, Owner};
+use crate::link::lease::{HoldToRun, Lease, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
@@ -157,6 +157,14 @@ impl LinkHandle {
     /// Nothing is changed under a lease that does not hold.
     pub fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| wanted.runs_until = Some(until))
+    }
+
+    /// Whether a person has to hold something while the hand moves. Let go, an armed hand is stopped and disarmed before anything
+    /// else; leases outlast that.
+    pub fn hold_to_run(&self, hold: HoldToRun) {
+        self.0
+            .wanted
+            .send_if_modified(|wanted| std::mem::replace(&mut wanted.hold_to_run, hold) != hold);
     }
 
     /// Stops the hand where it is, before anything else, and disarms. The lease outlasts it.

@@ -1,6 +1,7 @@
 //! Who may move a hand: one at a time, granted by a person, seen by everyone. Pure; the slot of what is wanted holds it, so that
 //! a grant, an end and what is sent under it happen in one order.
 
+use crate::hand::Moment;
 use crate::record::Disarmed;
 use std::net::SocketAddr;
 
@@ -38,6 +39,35 @@ impl Owner {
 /// The right to move one hand, as granted once. Worth nothing once another was granted, or it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Lease(u64);
+
+/// Whether motion passes only while a person holds a key: whoever has the right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HoldToRun {
+    /// Nothing has to be held.
+    #[default]
+    Off,
+    /// It is not held: nothing may be armed.
+    Released,
+    /// It was held, which is believed until then.
+    Held(Moment),
+}
+
+impl HoldToRun {
+    /// When motion passes no more, if it ever does.
+    pub(crate) const fn until(self) -> Option<Moment> {
+        match self {
+            Self::Off => None,
+            Self::Released => Some(Moment::ZERO),
+            Self::Held(until) => Some(until),
+        }
+    }
+
+    /// Whether it is held, if it has to be.
+    #[must_use]
+    pub fn is_held(self, now: Moment) -> Option<bool> {
+        self.until().map(|until| now < until)
+    }
+}
 
 /// Who has the right now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -32,7 +32,7 @@ pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
 pub use handle::{LinkHandle, LinkObserver, Records, open};
 pub use latency::Ticks;
-pub use lease::{Lease, LeaseHolder, LeaseRefusal, Owner};
+pub use lease::{HoldToRun, Lease, LeaseHolder, LeaseRefusal, Owner};
 pub use poll::line_time::line_time;
 pub use poll::plan::{PollPriority, PollRates};
 pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};

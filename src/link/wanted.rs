@@ -2,7 +2,7 @@
 
 use crate::hand::{Moment, Setpoints};
 use crate::link::image::RegisterImage;
-use crate::link::lease::{Lease, LeaseBook, LeaseRefusal, Owner};
+use crate::link::lease::{HoldToRun, Lease, LeaseBook, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
 use crate::link::request::Request;
 use crate::link::stats::LinkStats;
@@ -30,6 +30,8 @@ pub(crate) struct PendingControl {
     pub(crate) book: LeaseBook,
     /// Motion passes only until then; it is put off while a person holds what has to be held.
     pub(crate) runs_until: Option<Moment>,
+    /// What a person at the window has to hold, whoever moves the hand.
+    pub(crate) hold_to_run: HoldToRun,
     /// What is read first while something moves.
     pub(crate) priority: PollPriority,
 }
@@ -39,6 +41,17 @@ impl PendingControl {
     pub(crate) const fn is_any(&self) -> bool {
         let moves = self.arm.is_some() || self.setpoints.is_some() || self.handed_over;
         self.stop || self.disarm || self.closed || moves || self.rates.is_some()
+    }
+
+    /// When motion passes no more, if nobody puts that off.
+    pub(crate) fn ends(&self) -> Option<Moment> {
+        let ends = [self.runs_until, self.hold_to_run.until()];
+        ends.into_iter().flatten().min()
+    }
+
+    /// True if nothing may move now, because what has to be held is not.
+    pub(crate) fn is_let_go(&self, now: Moment) -> bool {
+        self.ends().is_some_and(|end| end <= now)
     }
 
     /// Gives out what is wanted; what outlasts it stays.
@@ -57,6 +70,7 @@ impl PendingControl {
             rates: self.rates,
             book: self.book,
             runs_until: self.runs_until,
+            hold_to_run: self.hold_to_run,
             priority: self.priority,
             ..Self::default()
         }

@@ -125,6 +125,9 @@ pub enum ArmRefusal {
     /// The hand saves or calibrates: the line is left to it, so nobody looks where its joints are.
     #[error("the hand writes its flash or calibrates: wait until that is over")]
     HandBusy,
+    /// What has to be held while the hand moves is not held.
+    #[error("what has to be held to run is not held")]
+    LetGo,
     /// The hand did not acknowledge its speed and force limits.
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,

@@ -6,7 +6,7 @@ use crate::inputs::Offer;
 use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
 };
-use crate::link::{ArmRequest, Clock, Lease, LeaseRefusal};
+use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LeaseRefusal};
 use crate::record::{Disarmed, Record, WriteCause};
 use crate::tasks::hand::Hand;
 use std::collections::VecDeque;
@@ -30,6 +30,8 @@ pub struct FollowTerms {
     pub limits: FollowLimits,
     /// Joints that stay where they are.
     pub locked: PerDof<bool>,
+    /// What a person here has to hold.
+    pub hold: HoldToRun,
 }
 
 /// What following begins with.
@@ -173,11 +175,13 @@ impl<H: Hand> AtHand<'_, H> {
 
     /// Does what is to be done now; why it ended, if it did.
     fn go_on(&mut self) -> Option<FollowEnd> {
-        self.follow.limit(self.start.terms.borrow().limits);
+        let terms = *self.start.terms.borrow();
+        self.follow.limit(terms.limits);
         let status = self.hand.status();
         let seen = FollowInput {
             state: status.state,
             pose: self.pose(),
+            held: terms.hold.is_held(self.start.clock.now()),
         };
         let lease = self.start.lease;
         let done = match self.follow.tick(seen, self.start.clock.now())? {

@@ -38,6 +38,7 @@ impl HandState {
 
     fn put_down(&mut self, state: LinkState) {
         self.disarmed_at = Some(self.now);
+        self.held.forget_press();
         if self.is_armed() {
             self.link.state = state;
         }

@@ -1,5 +1,6 @@
 //! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
 
+use crate::app::hand::hold_to_run::HeldKey;
 use crate::app::hand::joint::JointControl;
 use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
@@ -90,6 +91,8 @@ pub struct HandState {
     pub(crate) steered: PerDof<bool>,
     /// No arming from before this moment counts, whatever the link still says.
     pub(crate) disarmed_at: Option<Moment>,
+    /// What a person holds to let the hand move.
+    pub(crate) held: HeldKey,
     /// Something was sent on this connection that may move the hand.
     pub(crate) commanded: bool,
     /// Angles received before this belong to a connection that is gone.
@@ -171,6 +174,9 @@ impl HandState {
     pub fn arm_refusal(&self) -> Option<ArmRefusal> {
         let saves = self.link.state.is_live() && self.params.is_saving();
         let busy = saves.then_some(ArmRefusal::HandBusy);
-        busy.or_else(|| arm_refusal(self.link.state, &self.sample, self.now))
+        let refusal = || arm_refusal(self.link.state, &self.sample, self.now);
+        let is_let_go = !self.is_armed() && self.held.is_let_go(self.now);
+        let let_go = is_let_go.then_some(ArmRefusal::LetGo);
+        busy.or_else(refusal).or(let_go)
     }
 }

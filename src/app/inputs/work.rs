@@ -14,7 +14,7 @@ use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::link::{ArmRequest, Owner};
-use crate::record::Disarmed;
+use crate::record::{ArmRefusal, Disarmed};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use std::net::SocketAddr;
@@ -166,7 +166,8 @@ impl HandState {
         settings: &Settings,
         env: &Env,
     ) {
-        if !self.may_grant() || self.arm_refusal().is_some() {
+        let refusal = self.arm_refusal();
+        if !self.may_grant() || refusal.is_some_and(|refusal| refusal != ArmRefusal::LetGo) {
             return;
         }
         if let Some(run) = &mut self.sequence {
@@ -212,6 +213,7 @@ impl HandState {
         FollowTerms {
             limits: settings.follow,
             locked: self.joints.map(|joint| joint.locked),
+            hold: self.hold_to_run(),
         }
     }
 

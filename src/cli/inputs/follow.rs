@@ -67,7 +67,7 @@ impl FollowArgs {
                 lead: self.lead,
                 rate: self.rate,
             },
-            locked: PerDof::splat(false),
+            ..FollowTerms::default()
         }
     }
 

@@ -42,6 +42,8 @@ pub struct PadView {
     pub trouble: Option<String>,
     /// Its dead-man is held.
     pub is_held: bool,
+    /// Where it wants the joints, while its dead-man is held.
+    pub aims: PerDof<Option<Angle>>,
     /// Where its controls are.
     pub state: PadState,
     /// The fingers that a trigger closes.
@@ -128,6 +130,8 @@ async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: 
         view.is_held = config.input.is_held(now);
         view.state.clone_from(config.input.state());
         view.fingers = config.input.fingers();
+        let offer = config.input.offer(now);
+        view.aims = offer.map(|offer| offer.aims).unwrap_or_default();
         if told.send_if_modified(|shown| {
             let is_news = *shown != view;
             if is_news {
@@ -137,7 +141,7 @@ async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: 
         }) {
             (config.wake)();
         }
-        if let Some(offer) = config.input.offer(now) {
+        if let Some(offer) = offer {
             outlet.offer(offer);
         }
     }

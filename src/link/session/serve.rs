@@ -109,14 +109,16 @@ impl Session {
             .motion
             .next_send(now)
             .map_or(read, |send| send.min(read));
-        let armed_until = self.ends.wanted.borrow().runs_until;
-        let armed_until = armed_until.filter(|_| self.status.armed.is_some());
-        let due = armed_until.map_or(due, |until| until.min(due));
+        let is_armed = self.status.armed.is_some();
+        let ends = self.ends.wanted.borrow().ends().filter(|_| is_armed);
+        let due = ends.map_or(due, |end| end.min(due));
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
+        let is_news =
+            |wanted: &PendingControl| wanted.is_any() || is_armed && wanted.is_let_go(now);
         tokio::select! {
             biased;
-            _ = wanted.wait_for(PendingControl::is_any) => {}
+            _ = wanted.wait_for(is_news) => {}
             Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
             () = sleep_until(due) => {}
         }
@@ -162,7 +164,8 @@ impl Session {
     /// True if what is being armed for is not to be any more.
     fn arming_is_over(&self, lease: Lease) -> bool {
         let wanted = self.ends.wanted.borrow();
-        wanted.stop || wanted.disarm || wanted.closed || wanted.book.check(lease).is_err()
+        let is_ended = wanted.book.check(lease).is_err() || wanted.is_let_go(self.now());
+        wanted.stop || wanted.disarm || wanted.closed || is_ended
     }
 
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
@@ -177,8 +180,10 @@ impl Session {
             return Ok(());
         }
         let busy = self.leaves_line.then_some(ArmRefusal::HandBusy);
+        let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
+        let let_go = is_let_go.then_some(ArmRefusal::LetGo);
         let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        if let Some(reason) = busy.or_else(refusal) {
+        if let Some(reason) = busy.or(let_go).or_else(refusal) {
             self.refuse_arm(reason);
             return Ok(());
         }
@@ -244,8 +249,7 @@ impl Session {
             self.disarm(Disarmed::Stale);
         }
         let now = self.now();
-        let runs_until = self.ends.wanted.borrow().runs_until;
-        if self.status.armed.is_some() && runs_until.is_some_and(|until| until <= now) {
+        if self.status.armed.is_some() && self.ends.wanted.borrow().is_let_go(now) {
             self.begin_hold(Disarmed::Released);
         }
         if let Some(hold) = &mut self.motion.hold

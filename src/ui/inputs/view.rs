@@ -2,18 +2,22 @@
 
 use crate::app::action::Action;
 use crate::app::inputs::InputAction;
-use crate::hand::Moment;
+use crate::app::settings::Language;
+use crate::hand::{Angle, Moment, PerDof};
 use crate::inputs::follow::{FollowLimits, FollowPhase, HOLDS_AFTER};
 use crate::inputs::pad::PadControl;
+use crate::inputs::pad::source::PadView;
 use crate::inputs::stream::StreamPlace;
 use crate::link::Owner;
 use crate::poses::starter::starter;
+use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
+use crate::ui::hand::panel::pose_ui;
 use crate::ui::inputs::{PadShown, PoseName, pad_picture_ui, pad_table_ui};
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::text::{inputs, words};
 use crate::ui::theme;
-use egui::{Grid, ScrollArea, Ui, vec2};
+use egui::{Grid, Panel, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -22,6 +26,11 @@ const STREAM_FIRST: &str = "127.0.0.1:6010";
 const SHARE_FIRST: &str = "127.0.0.1:6001";
 /// A view as wide as this has the gamepad beside the rest.
 const WIDE: f32 = 1000.0;
+/// Width of what is beside the gamepad.
+const SOURCES: f32 = 420.0;
+/// The drawn hand needs at least this width, and has this height.
+const HAND_LEAST: f32 = 180.0;
+const HAND: f32 = 380.0;
 
 /// What was typed and chosen.
 #[derive(Debug)]
@@ -46,18 +55,18 @@ impl Default for InputsView {
 impl InputsView {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let is_wide = ui.available_width() >= WIDE;
-        ui.columns(if is_wide { 2 } else { 1 }, |columns| match columns {
-            [left, right] => {
-                scroll_ui(left, "inputs", |ui| self.sources_ui(ui, pane));
-                scroll_ui(right, "pad", |ui| self.pad_ui(ui, pane));
-            }
-            [only] => scroll_ui(only, "inputs", |ui| {
+        if ui.available_width() < WIDE {
+            scroll_ui(ui, "inputs", |ui| {
                 self.sources_ui(ui, pane);
                 self.pad_ui(ui, pane);
-            }),
-            _ => {}
+            });
+            return;
+        }
+        let sources = Panel::left("sources");
+        kit::bare(sources, SOURCES, theme::GAP_RIGHT).show(ui, |ui| {
+            scroll_ui(ui, "inputs", |ui| self.sources_ui(ui, pane));
         });
+        scroll_ui(ui, "pad", |ui| self.pad_ui(ui, pane));
     }
 
     fn sources_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -122,38 +131,8 @@ impl InputsView {
             let view = pane.state.hand().inputs.pad_view.clone();
             kit::head_ui(ui, look, look.say(inputs::PAD), |_| ());
             kit::say_ui(ui, look.tip(inputs::PAD), look.palette.muted);
-            ui.horizontal_wrapped(|ui| {
-                let is_read = view.is_some();
-                let button = Button::said(look, inputs::READ_PAD).selected(is_read);
-                let button = button.disabled(no_hand(pane)).large();
-                let action = InputAction::ReadPad(!is_read);
-                button.sends(ui, pane, Action::Input(action));
-                let name = view.as_ref().and_then(|view| view.name.clone());
-                let missing = name.is_none().then_some(look.say(inputs::NONE));
-                grant_ui(ui, pane, InputAction::GrantPad, missing);
-            });
-            if let Some(view) = &view {
-                let (text, color) = match (&view.name, &view.trouble) {
-                    (Some(name), _) => (name.as_str(), look.palette.text),
-                    (None, Some(trouble)) => (trouble.as_str(), look.palette.warn),
-                    (None, None) => (look.say(inputs::PLUG_IN), look.palette.muted),
-                };
-                Label::new(text, color).wrap().ui(ui);
-            }
-            let map = pane.state.settings.pad_map();
-            let poses: Vec<PoseName> = starter()
-                .poses
-                .iter()
-                .map(|pose| PoseName {
-                    name: pose.name.clone(),
-                    shown: match look.language {
-                        crate::app::settings::Language::Zh if !pose.name_zh.is_empty() => {
-                            pose.name_zh.clone()
-                        }
-                        _ => pose.name.clone(),
-                    },
-                })
-                .collect();
+            pad_switch_ui(ui, pane, view.as_ref());
+            let (map, poses) = (pane.state.settings.pad_map(), pose_names(look));
             let there = view.as_ref().filter(|view| view.name.is_some());
             let shown = PadShown {
                 state: there.map(|view| &view.state),
@@ -162,19 +141,76 @@ impl InputsView {
                 fingers: there.map(|view| view.fingers).unwrap_or_default(),
                 poses: &poses,
             };
-            let clicked = ScrollArea::horizontal()
-                .id_salt("pad picture")
-                .show(ui, |ui| pad_picture_ui(ui, look, &shown))
-                .inner;
-            if clicked.is_some() {
-                self.chosen = clicked;
-            }
+            let picture = ScrollArea::horizontal().id_salt("pad picture");
+            let clicked = picture.show(ui, |ui| pad_picture_ui(ui, look, &shown));
+            self.chosen = clicked.inner.or(self.chosen);
             ui.add_space(theme::STEP);
-            if let Some(map) = pad_table_ui(ui, look, &shown) {
-                pane.actions.push(Action::Input(InputAction::Map(map)));
-            }
+            ui.horizontal_top(|ui| {
+                let changed = ui.vertical(|ui| pad_table_ui(ui, look, &shown)).inner;
+                let map = changed.map(|map| Action::Input(InputAction::Map(map)));
+                pane.actions.extend(map);
+                dry_run_ui(ui, pane, there);
+            });
         });
     }
+}
+
+/// The poses that a button can have.
+fn pose_names(look: Look) -> Vec<PoseName> {
+    let poses = starter().poses.iter();
+    let named = poses.map(|pose| PoseName {
+        name: pose.name.clone(),
+        shown: match look.language {
+            Language::Zh if !pose.name_zh.is_empty() => pose.name_zh.clone(),
+            _ => pose.name.clone(),
+        },
+    });
+    named.collect()
+}
+
+/// Whether gamepads are looked for, which one is there, and whether it may move the hand.
+fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
+    let look = pane.look;
+    ui.horizontal_wrapped(|ui| {
+        let button = Button::said(look, inputs::READ_PAD).selected(view.is_some());
+        let button = button.disabled(no_hand(pane)).large();
+        let action = InputAction::ReadPad(view.is_none());
+        button.sends(ui, pane, Action::Input(action));
+        let is_there = view.is_some_and(|view| view.name.is_some());
+        let missing = (!is_there).then_some(look.say(inputs::NONE));
+        grant_ui(ui, pane, InputAction::GrantPad, missing);
+    });
+    let Some(view) = view else { return };
+    let (text, color) = match (&view.name, &view.trouble) {
+        (Some(name), _) => (name.as_str(), look.palette.text),
+        (None, Some(trouble)) => (trouble.as_str(), look.palette.warn),
+        (None, None) => (look.say(inputs::PLUG_IN), look.palette.muted),
+    };
+    Label::new(text, color).wrap().ui(ui);
+}
+
+/// Where the gamepad wants the hand, drawn, whether it may move it or not; joints that it leaves alone are where they are.
+fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: Option<&PadView>) {
+    let room = ui.available_width();
+    if room < HAND_LEAST {
+        return;
+    }
+    let look = pane.look;
+    let angle = pane.state.hand().sample.angle;
+    let shares = PerDof::from_fn(|dof| {
+        let wanted = view.and_then(|view| view.aims[dof]);
+        let wanted = wanted
+            .map(Angle::get)
+            .and_then(|aim| i16::try_from(aim).ok());
+        let raw = wanted.or(angle?.value[dof].documented())?;
+        Some(f32::from(raw) / f32::from(Angle::MAX.get()))
+    });
+    ui.vertical(|ui| {
+        kit::say_ui(ui, look.say(inputs::DRY_RUN), look.palette.muted);
+        let (rect, response) = ui.allocate_exact_size(vec2(room, HAND), Sense::hover());
+        pose_ui(ui, look, rect, &shares);
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(inputs::DRY_RUN)));
+    });
 }
 
 fn scroll_ui(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
@@ -232,9 +268,10 @@ fn switch_ui(
 fn grant_ui(ui: &mut Ui, pane: &mut Pane<'_>, action: InputAction, missing: Option<&str>) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let refusal = hand
-        .arm_refusal()
-        .map(|reason| words::refusal(look, reason));
+    // What has to be held can still be held once it may.
+    let refusal = hand.arm_refusal();
+    let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
+    let refusal = refusal.map(|reason| words::refusal(look, reason));
     let taken = hand.outside_owner().map(|_| look.say(inputs::TAKEN));
     let reason = no_hand(pane).or(taken).or(missing);
     let reason = reason.map(ToOwned::to_owned).or(refusal);
@@ -358,7 +395,24 @@ fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             figures_ui(ui, look, "follow figures", &rows);
         }
         limits_ui(ui, pane);
+        hold_ui(ui, pane);
     });
+}
+
+/// Whether a key has to be held while the hand moves.
+fn hold_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let mut on = pane.state.settings.hold_to_run;
+    let switch = ui.checkbox(&mut on, look.say(inputs::HOLD_TO_RUN));
+    if switch
+        .on_hover_text(look.tip(inputs::HOLD_TO_RUN))
+        .changed()
+    {
+        pane.actions.push(Action::HoldToRun(on));
+    }
+    if on {
+        kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
+    }
 }
 
 fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -37,6 +37,7 @@ texts! {
     KEYS_CLOSE: "Close the list of keys", "关闭快捷键列表";
     KEY_ENTRY: "Fist; so each tile by its letter or digit", "握拳；其他图块按其字母或数字";
     KEY_STOP: "STOP, from everywhere", "停止（任何时候）";
+    KEY_HOLD: "Held: the hand moves, with hold to run on", "按住：灵巧手运动（已开启“按住运行”时）";
     KEY_ARM: "Arm or disarm", "使能或取消使能";
     KEY_LINK: "Link the fingers", "四指联动";
     KEY_UNIT: "Unit of angles", "角度单位";

@@ -34,6 +34,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::Holding => look.say(main::REFUSED_HOLDING).into(),
         ArmRefusal::Fault => look.say(main::REFUSED_FAULT).into(),
         ArmRefusal::HandBusy => look.say(main::REFUSED_BUSY).into(),
+        ArmRefusal::LetGo => look.say(main::REFUSED_LET_GO).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
             look.told(main::REFUSED_POSE, look.say(dof(joint)))

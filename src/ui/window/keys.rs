@@ -1,6 +1,7 @@
 //! Every key that acts everywhere: one table for what it does, what it is called, and the list that shows it. Keys of
 //! one control, such as the arrows of a track, are that control's own. Carries nothing out.
 
+use crate::app::hand::hold_to_run::HoldKey;
 use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::Opens;
@@ -15,6 +16,8 @@ pub(crate) enum Wish {
     Stop,
     /// Arm, or disarm.
     ArmOrNot,
+    /// The hand moves while this key is held, if that is asked for.
+    HoldToRun,
     /// All joints open.
     Open,
     /// All joints half closed.
@@ -72,12 +75,15 @@ const NONE: Modifiers = Modifiers::NONE;
 /// What may let the hand move wants two keys, so that a book on the keyboard moves nothing.
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
+/// What is held to run.
+const HOLD_TO_RUN: Key = Key::H;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 32] = [
+pub(crate) static ROWS: [KeyRow; 33] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
+    row(NONE, HOLD_TO_RUN, Wish::HoldToRun),
     row(SHIFT, Key::O, Wish::Open),
     row(SHIFT, Key::H, Wish::Half),
     row(SHIFT, Key::C, Wish::Close),
@@ -162,6 +168,7 @@ impl Wish {
         match self {
             Self::Stop => window::KEY_STOP,
             Self::ArmOrNot => window::KEY_ARM,
+            Self::HoldToRun => window::KEY_HOLD,
             Self::Open => main::OPEN,
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
@@ -187,6 +194,7 @@ impl Wish {
         match self {
             Self::Stop
             | Self::ArmOrNot
+            | Self::HoldToRun
             | Self::Open
             | Self::Half
             | Self::Close
@@ -212,6 +220,17 @@ impl Wish {
 pub(crate) fn take(ui: &Ui, escape: Escape) -> Vec<Wish> {
     let typing = ui.ctx().text_edit_focused();
     ui.input_mut(|input| take_from(input, typing, escape))
+}
+
+/// What is done with the key that is held to run.
+pub(crate) fn hold_key(ui: &Ui, wishes: &[Wish]) -> HoldKey {
+    let typing = ui.ctx().text_edit_focused();
+    let is_down = ui.input(|input| input.focused && input.key_down(HOLD_TO_RUN));
+    match is_down && !typing {
+        true if wishes.contains(&Wish::HoldToRun) => HoldKey::Pressed,
+        true => HoldKey::Held,
+        false => HoldKey::LetGo,
+    }
 }
 
 /// While a series of trials runs any key is a stop: all are taken out of the input. A key that was held down before does

@@ -23,7 +23,9 @@ pub(crate) mod status;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
+use crate::app::hand::hold_to_run::HoldKey;
 use crate::app::hand::{Play, Preset};
+use crate::app::inputs::InputAction;
 use crate::app::layout::WindowRoom;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::ProcedureAction;
@@ -167,6 +169,7 @@ impl Window {
         });
         actions.extend(dropped.map(|path| Action::Session(SessionAction::Open(path))));
         let stopped = wishes.contains(&Wish::Stop);
+        actions.extend(held(ui, state, &wishes));
         let mut typing = std::mem::take(&mut self.typing);
         let mut opens = None;
         let mut pane = Pane {
@@ -196,7 +199,7 @@ impl Window {
         let preset = |preset| armed.then_some(Action::Preset(preset));
         let action = match wish {
             // Goes ahead of all others, at the end of the frame.
-            Wish::Stop => None,
+            Wish::Stop | Wish::HoldToRun => None,
             Wish::ArmOrNot if armed => Some(Action::Disarm),
             Wish::ArmOrNot => Some(Action::Arm),
             Wish::Open => preset(Preset::Open),
@@ -504,6 +507,22 @@ fn is_covered(state: &State) -> bool {
         || state.leave.is_some()
 }
 
+/// What is done with the key that is held to run, if that is asked for.
+fn held(ui: &Ui, state: &State, wishes: &[Wish]) -> Option<Action> {
+    if !state.settings.hold_to_run || state.timeline.is_some() {
+        return None;
+    }
+    let key = match is_covered(state) {
+        true => HoldKey::LetGo,
+        false => keys::hold_key(ui, wishes),
+    };
+    let is_held = key != HoldKey::LetGo;
+    if is_held {
+        ui.request_repaint();
+    }
+    (is_held || state.hand().is_key_held()).then_some(Action::HoldKey(key))
+}
+
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.
 fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
     if !stopped && !actions.contains(&Action::Stop) {
@@ -514,6 +533,10 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
             action,
             Action::Stop
                 | Action::Arm
+                | Action::HoldKey(HoldKey::Pressed)
+                | Action::Input(
+                    InputAction::GrantStream | InputAction::GrantPad | InputAction::GrantClient(_)
+                )
                 | Action::Target(..)
                 | Action::Preset(_)
                 | Action::Gesture(_)
@@ -541,6 +564,9 @@ mod tests {
         let moves = || {
             vec![
                 Action::Arm,
+                Action::HoldKey(HoldKey::Pressed),
+                Action::Input(InputAction::GrantStream),
+                Action::Input(InputAction::GrantPad),
                 Action::Target(Dof::Index, Angle::MAX),
                 Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),

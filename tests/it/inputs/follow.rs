@@ -7,8 +7,8 @@ use crate::setup::time::in_virtual_time;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use handscope::inputs::Offer;
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
-use handscope::link::{self, Clock, Lease, LinkHandle, Owner, Records};
-use handscope::record::{Disarmed, Record, WriteCause};
+use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
+use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
 use handscope::sim::SimConfig;
 use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use std::time::Duration;
@@ -291,5 +291,46 @@ fn motion_ends_with_the_time_that_a_person_holds_what_has_to_be_held() {
             "{hold:?}"
         );
         assert!(stage.link.check(lease).is_ok());
+    });
+}
+
+#[test]
+fn nobody_arms_or_goes_on_while_what_has_to_be_held_at_the_window_is_not() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let lease = stage.link.grant(Owner::Stream(([127, 0, 0, 1], 9).into()));
+        stage.link.hold_to_run(HoldToRun::Released);
+        stage.link.arm(lease, gentle()).unwrap();
+        stage.pass(200).await;
+        assert_eq!(stage.link.status().armed, None);
+        let refused = |record: &Record| {
+            matches!(
+                record,
+                Record::ArmRefused {
+                    reason: ArmRefusal::LetGo,
+                    ..
+                }
+            )
+        };
+        assert!(stage.seen.iter().any(refused));
+        let held = stage.clock.now().plus(Duration::from_millis(300));
+        stage.link.hold_to_run(HoldToRun::Held(held));
+        stage.link.arm(lease, gentle()).unwrap();
+        stage.pass(150).await;
+        assert!(stage.link.status().armed.is_some());
+        let let_go = stage.clock.now();
+        stage.link.hold_to_run(HoldToRun::Released);
+        stage.pass(50).await;
+        let hold = *stage.index().last().unwrap();
+        assert_eq!(hold.cause, WriteCause::Hold);
+        let took = hold.at.since(let_go);
+        assert!(took <= Duration::from_millis(50), "{took:?}");
+        // The lease outlasts it, and another that is granted has to be held, too.
+        assert!(stage.link.check(lease).is_ok());
+        let person = stage.link.grant(Owner::Person);
+        stage.pass(500).await;
+        stage.link.arm(person, gentle()).unwrap();
+        stage.pass(200).await;
+        assert_eq!(stage.link.status().armed, None);
     });
 }

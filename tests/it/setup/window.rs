@@ -519,6 +519,30 @@ impl Bench {
         self.harness.step();
     }
 
+    /// A key goes down and stays down.
+    pub(crate) fn key_down(&mut self, key: Key) {
+        self.harness.key_down(key);
+        self.harness.step();
+    }
+
+    /// It comes up again.
+    pub(crate) fn key_up(&mut self, key: Key) {
+        self.harness.key_up(key);
+        self.harness.step();
+    }
+
+    /// Another window has the keyboard now.
+    pub(crate) fn lose_focus(&mut self) {
+        self.harness.event(egui::Event::WindowFocused(false));
+        self.harness.step();
+    }
+
+    /// Time passes, and the window neither draws nor looks at anything.
+    pub(crate) fn hang(&mut self, millis: u64) {
+        let program = &mut self.harness.state_mut().program;
+        program.tick(Duration::from_millis(millis));
+    }
+
     /// Drags along a track, from one part of its length to another, and lets go.
     pub(crate) fn drag(&mut self, name: &str, from: f32, to: f32) {
         let rect = self.rect(Role::Slider, name);

@@ -2,11 +2,14 @@
 //! every view says who does and ends it.
 
 use crate::setup::window::{ANGLE_SET, Bench, Role};
-use handscope::hand::Dof;
+use egui::Key;
+use handscope::app::action::Action;
+use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
 use handscope::record::LinkState;
 use handscope::ui::View;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::time::Duration;
 
 /// Listens for datagrams on a free port, as a person does it; where that is.
 fn listening(bench: &mut Bench) -> SocketAddr {
@@ -113,4 +116,86 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     bench.run(1500);
     assert!(!bench.state().hand().inputs.is_open());
     assert!(TcpStream::connect(at).is_err());
+}
+
+/// When the first angle was written that holds the joints, after this moment.
+fn held_after(bench: &Bench, at: Moment) -> Moment {
+    let writes = bench.writes();
+    let mut holds = writes.iter().filter(|write| write.address == ANGLE_SET);
+    holds.find(|write| write.at >= at).unwrap().at
+}
+
+#[test]
+fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
+    let mut bench = Bench::live();
+    bench.act(Action::HoldToRun(true));
+    bench.run(100);
+    assert!(bench.is_disabled(Role::Button, "Arm the hand"));
+    for ends in ["let go", "lost focus", "hung"] {
+        bench.key_down(Key::H);
+        bench.run(1500);
+        assert!(bench.state().hand().is_armed(), "{ends}");
+        let to = Angle::nearest(if ends == "lost focus" { 900 } else { 100 });
+        bench.act(Action::Target(Dof::Index, to));
+        bench.run(100);
+        let let_go = bench.now();
+        match ends {
+            "let go" => bench.key_up(Key::H),
+            "lost focus" => bench.lose_focus(),
+            _ => bench.hang(600),
+        }
+        let within = if ends == "hung" { 350 } else { 50 };
+        bench.key_up(Key::H);
+        bench.run(100);
+        let held = held_after(&bench, let_go).since(let_go);
+        assert!(held <= Duration::from_millis(within), "{ends}: {held:?}");
+        let hand = bench.state().hand();
+        assert_eq!(hand.link.armed, None, "{ends}");
+        bench.run(1500);
+        let away = (bench.angle(Dof::Index) - i16::try_from(to.get()).unwrap()).abs();
+        assert!(away > 100, "{ends}: it went on to {away}");
+    }
+}
+
+#[test]
+fn a_stop_while_the_key_is_held_is_not_undone_by_it() {
+    let mut bench = Bench::live();
+    bench.act(Action::HoldToRun(true));
+    bench.run(100);
+    bench.key_down(Key::H);
+    bench.run(300);
+    assert!(bench.state().hand().is_armed());
+    bench.click_button("STOP");
+    bench.run(3000);
+    assert!(!bench.state().hand().is_armed());
+    bench.key_up(Key::H);
+    bench.key_down(Key::H);
+    bench.run(300);
+    assert!(bench.state().hand().is_armed(), "pressed anew");
+}
+
+#[test]
+fn a_program_too_moves_the_hand_only_while_the_key_is_held() {
+    let mut bench = Bench::live();
+    bench.act(Action::HoldToRun(true));
+    let to = listening(&mut bench);
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    send(&mut bench, &sender, to, 300);
+    bench.click_button("Let it move the hand");
+    send(&mut bench, &sender, to, 600);
+    let owner = Some(Owner::Stream(sender.local_addr().unwrap()));
+    assert_eq!(bench.state().hand().outside_owner(), owner);
+    assert_eq!(bench.writes(), [], "not held yet");
+    for _ in 0..2 {
+        bench.key_down(Key::H);
+        send(&mut bench, &sender, to, 1500);
+        assert!(bench.state().hand().is_armed());
+        bench.key_up(Key::H);
+        send(&mut bench, &sender, to, 1500);
+        let hand = bench.state().hand();
+        assert_eq!((hand.link.armed, hand.outside_owner()), (None, owner));
+        let before = bench.writes().len();
+        send(&mut bench, &sender, to, 500);
+        assert_eq!(bench.writes().len(), before);
+    }
 }
