@@ -2,7 +2,7 @@
 
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
-use crate::app::hand::hold_to_run::HoldKey;
+use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
 use crate::app::inputs::InputAction;

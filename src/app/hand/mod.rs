@@ -1,7 +1,8 @@
 //! One hand: everything about it in one value, and what a person asks of it.
 
 pub mod connection;
-pub mod hold_to_run;
+pub mod held_key;
+mod hold_to_run;
 pub mod joint;
 pub mod motion;
 pub mod mover;

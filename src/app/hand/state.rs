@@ -1,6 +1,6 @@
 //! Everything about one hand in one value: its link, the newest readings, what was measured, faults, setpoints, tasks.
 
-use crate::app::hand::hold_to_run::HeldKey;
+use crate::app::hand::held_key::HeldKey;
 use crate::app::hand::joint::JointControl;
 use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;

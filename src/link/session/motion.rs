@@ -8,8 +8,8 @@ use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Setpoint rounds a second at most: more than a person's hand gives, less than would crowd a serial line.
-pub const SETPOINT_HZ_MAX: u32 = 50;
+/// Setpoint rounds a second at most: as soon as hand tracking has a new target. Before each the pose is looked at.
+pub const SETPOINT_HZ_MAX: u32 = 200;
 /// Angles older than this are neither armed with nor held to.
 pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 /// An armed hand whose angles grow this old is disarmed.
@@ -269,10 +269,10 @@ mod tests {
         assert_eq!(sent, [1528, 1504, 1486]);
         motion.asked(true);
         motion.want(&wish, Some(epoch));
-        assert_eq!(motion.next_write(now.plus(Duration::from_millis(19))), None);
+        assert_eq!(motion.next_write(now.plus(Duration::from_millis(4))), None);
         assert!(
             motion
-                .next_write(now.plus(Duration::from_millis(20)))
+                .next_write(now.plus(Duration::from_millis(5)))
                 .is_some()
         );
     }

@@ -25,7 +25,7 @@ use std::time::Duration;
 const STREAM_FIRST: &str = "127.0.0.1:6010";
 const SHARE_FIRST: &str = "127.0.0.1:6001";
 /// A view as wide as this has the gamepad beside the rest.
-const WIDE: f32 = 1000.0;
+const WIDE: f32 = 1160.0;
 /// Width of what is beside the gamepad.
 const SOURCES: f32 = 420.0;
 /// The drawn hand needs at least this width, and has this height.
@@ -95,7 +95,13 @@ impl InputsView {
             ui.horizontal_wrapped(|ui| {
                 let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
                 switch_ui(ui, pane, at, (inputs::LISTEN, action, wanted.is_none()));
-                grant_ui(ui, pane, InputAction::GrantStream, silence(pane));
+                let missing = silence(pane);
+                grant_ui(
+                    ui,
+                    pane,
+                    (look.say(inputs::STREAM), InputAction::GrantStream),
+                    missing,
+                );
             });
             if at.is_some() {
                 stream_figures_ui(ui, pane);
@@ -178,7 +184,12 @@ fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
         button.sends(ui, pane, Action::Input(action));
         let is_there = view.is_some_and(|view| view.name.is_some());
         let missing = (!is_there).then_some(look.say(inputs::NONE));
-        grant_ui(ui, pane, InputAction::GrantPad, missing);
+        grant_ui(
+            ui,
+            pane,
+            (look.say(inputs::PAD), InputAction::GrantPad),
+            missing,
+        );
     });
     let Some(view) = view else { return };
     let (text, color) = match (&view.name, &view.trouble) {
@@ -265,7 +276,12 @@ fn switch_ui(
 }
 
 /// Lets a source move the hand.
-fn grant_ui(ui: &mut Ui, pane: &mut Pane<'_>, action: InputAction, missing: Option<&str>) {
+fn grant_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (source, action): (&str, InputAction),
+    missing: Option<&str>,
+) {
     let look = pane.look;
     let hand = pane.state.hand();
     // What has to be held can still be held once it may.
@@ -275,7 +291,9 @@ fn grant_ui(ui: &mut Ui, pane: &mut Pane<'_>, action: InputAction, missing: Opti
     let taken = hand.outside_owner().map(|_| look.say(inputs::TAKEN));
     let reason = no_hand(pane).or(taken).or(missing);
     let reason = reason.map(ToOwned::to_owned).or(refusal);
+    let name = look.pair(look.say(inputs::GRANT), source);
     let button = Button::said(look, inputs::GRANT)
+        .named(&name)
         .weight(Weight::Strong)
         .large();
     let button = button.disabled(reason.as_deref());
@@ -336,7 +354,12 @@ fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
         if holds {
             Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
         } else {
-            grant_ui(ui, pane, InputAction::GrantClient(client.id), None);
+            grant_ui(
+                ui,
+                pane,
+                (&address, InputAction::GrantClient(client.id)),
+                None,
+            );
         }
     });
     let words = look.fill(
@@ -451,7 +474,7 @@ const fn phase(phase: FollowPhase) -> crate::ui::text::Text {
 pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let look = pane.look;
     let hand = pane.state.hand();
-    let name = inputs::owner(look, owner);
+    let name = words::owner(look, owner);
     let rate = match owner {
         Owner::Stream(_) => Some(hand.inputs.stream_view.intake.rate_hz),
         Owner::Gateway(address) => {

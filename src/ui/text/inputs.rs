@@ -2,9 +2,7 @@
 
 use crate::inputs::line::LineFault;
 use crate::inputs::pad::{PadAction, PadControl};
-use crate::link::Owner;
-use crate::ui::kit::Look;
-use crate::ui::text::phrase::{Text, texts};
+use crate::ui::text::phrase::texts;
 
 texts! {
     TITLE: "Inputs", "输入";
@@ -98,22 +96,5 @@ texts! {
         PadAction::BendThumb => "Bend thumb", "弯曲拇指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
         PadAction::RotateThumb => "Rotate thumb", "旋转拇指", "Left and right push the thumb as long as it is held; let go, the thumb stays.", "左右推动时旋转拇指；松开后拇指保持不动。";
         PadAction::ChooseFingers => "Choose fingers", "选择手指", "At rest all four. Left, up, right and down choose index, middle, ring and little finger.", "居中时为四指；向左、上、右、下分别选择食指、中指、无名指、小拇指。";
-    }
-}
-
-/// Who may move the hand, in words.
-pub(crate) fn owner(look: Look, owner: Owner) -> String {
-    const PERSON: Text = Text::new("This window", "本窗口");
-    const TASK: Text = Text::new("A task of this window", "本窗口的任务");
-    const EXHIBITION: Text = Text::new("Exhibition", "展示");
-    const STREAM: Text = Text::new("Program", "程序");
-    const GATEWAY: Text = Text::new("Gateway client", "网关程序");
-    match owner {
-        Owner::Person => look.say(PERSON).into(),
-        Owner::Task => look.say(TASK).into(),
-        Owner::Exhibition => look.say(EXHIBITION).into(),
-        Owner::Gamepad => look.say(PAD).into(),
-        Owner::Stream(sender) => look.told(STREAM, sender),
-        Owner::Gateway(client) => look.told(GATEWAY, client),
     }
 }

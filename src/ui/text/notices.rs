@@ -9,7 +9,7 @@ use crate::record::file::OpenError;
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
-use crate::ui::text::{errors, inputs, main, panels, poses, scan, sessions, tune, window, words};
+use crate::ui::text::{errors, main, panels, poses, scan, sessions, tune, window, words};
 use std::path::Path;
 
 /// Title, cause and advice of what is wrong with a drive.
@@ -87,7 +87,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
         NoticeKind::SourceSilent(owner) => {
-            look.fill(panels::SOURCE_SILENT, &[&inputs::owner(look, *owner)])
+            look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
         }
         NoticeKind::ArmRefused(why) => told(panels::NOTICE_ARM, &words::refusal(look, *why)),
         NoticeKind::Fault { dof, what } => {

@@ -2,9 +2,10 @@
 
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
+use crate::link::Owner;
 use crate::record::ArmRefusal;
 use crate::ui::kit::Look;
-use crate::ui::text::main;
+use crate::ui::text::{inputs, main};
 use crate::ui::text::phrase::Text;
 
 /// The name of a joint.
@@ -103,6 +104,23 @@ chinese! {
         Fault::Unknown(5) => "未知故障，第 5 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
         Fault::Unknown(6) => "未知故障，第 6 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
         Fault::Unknown(_) => "未知故障，第 7 位", "手册没有列出此故障位。", "请停止使用，并记录代码联系厂家。";
+    }
+}
+
+/// Who may move the hand, in words.
+pub(crate) fn owner(look: Look, owner: Owner) -> String {
+    const PERSON: Text = Text::new("This window", "本窗口");
+    const TASK: Text = Text::new("A task of this window", "本窗口的任务");
+    const EXHIBITION: Text = Text::new("Exhibition", "展示");
+    const STREAM: Text = Text::new("Program", "程序");
+    const GATEWAY: Text = Text::new("Gateway client", "网关程序");
+    match owner {
+        Owner::Person => look.say(PERSON).into(),
+        Owner::Task => look.say(TASK).into(),
+        Owner::Exhibition => look.say(EXHIBITION).into(),
+        Owner::Gamepad => look.say(inputs::PAD).into(),
+        Owner::Stream(sender) => look.told(STREAM, sender),
+        Owner::Gateway(client) => look.told(GATEWAY, client),
     }
 }
 

@@ -23,7 +23,7 @@ pub(crate) mod status;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
-use crate::app::hand::hold_to_run::HoldKey;
+use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::{Play, Preset};
 use crate::app::inputs::InputAction;
 use crate::app::layout::WindowRoom;
