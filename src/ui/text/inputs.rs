@@ -33,6 +33,8 @@ texts! {
     PAD: "Gamepad", "手柄", "Try it here first: nothing moves until you let it. Click a control to change what it does.", "可先在此试用：未经允许不会移动灵巧手。点击控件可更改其动作。";
     DRY_RUN: "Where it wants the hand, while it is held to run:", "按住运行键时，手柄所指的姿态：";
     HOLD_TO_RUN: "Hold to run (H key)", "按住运行（H 键）", "Whoever moves the hand: it moves only while H is held here. Let go, or in another window, it stops at once.", "无论由谁控制：只有在此按住 H 键时灵巧手才会运动。松开或切换窗口即停。";
+    SHARED: "Shared", "共享中", "Others can reach this hand: press to see who, and to end it.", "其他程序可以访问此灵巧手：点击查看或结束。";
+    LISTENING: "Listening", "接收中";
     READ_PAD: "Read gamepad", "读取手柄", "Looks for a gamepad on this computer.", "在本机上查找手柄。";
     PLUG_IN: "No gamepad yet: plug one in, or pair it.", "尚无手柄：请插入或配对。";
     PHASE: "State", "状态";

@@ -5,8 +5,8 @@ use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::link::Owner;
 use crate::record::ArmRefusal;
 use crate::ui::kit::Look;
-use crate::ui::text::{inputs, main};
 use crate::ui::text::phrase::Text;
+use crate::ui::text::{inputs, main};
 
 /// The name of a joint.
 pub(crate) const fn dof(dof: Dof) -> Text {

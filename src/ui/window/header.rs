@@ -7,7 +7,7 @@ use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
-use crate::ui::text::{Text, faults, main, sessions, window, words};
+use crate::ui::text::{Text, faults, inputs, main, sessions, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
@@ -29,6 +29,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
         kit::left_ui(ui, |ui| {
             badge_ui(ui, pane);
             link_ui(ui, pane);
+            sharing_ui(ui, pane);
             recording_ui(ui, pane);
             figures_ui(ui, pane);
         });
@@ -212,6 +213,27 @@ fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
         pane.open(Opens::View(View::Connection));
+    }
+}
+
+/// What listens to others or serves them, as long as it does.
+fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let open = &pane.state.hand().inputs;
+    let parts = [
+        (open.gateway_at.is_some(), inputs::SHARED),
+        (open.stream_at.is_some(), inputs::LISTENING),
+        (open.pad_view.is_some(), inputs::PAD),
+    ];
+    let words = parts.iter().filter(|(is_open, _)| *is_open);
+    let words: Vec<&str> = words.map(|(_, text)| look.say(*text)).collect();
+    if words.is_empty() {
+        return;
+    }
+    let words = words.join(" · ");
+    let button = Button::new(&words, look.tip(inputs::SHARED)).weight(Weight::Quiet);
+    if lamp_button_ui(ui, look, button, look.palette.accent).clicked() {
+        pane.open(Opens::View(View::Inputs));
     }
 }
 

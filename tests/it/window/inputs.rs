@@ -112,9 +112,16 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(TcpStream::connect(at).is_ok());
     bench.show(View::Connection);
     bench.run(100);
+    // A badge in every view leads to where it can be ended.
+    bench.click_button("Shared");
+    bench.run(100);
+    assert_eq!(bench.view(), View::Inputs);
+    bench.show(View::Connection);
+    bench.run(100);
     bench.click_button("Disconnect");
     bench.run(1500);
     assert!(!bench.state().hand().inputs.is_open());
+    assert!(bench.buttons_with("Shared").is_empty());
     assert!(TcpStream::connect(at).is_err());
 }
 
