@@ -336,12 +336,18 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// The newest message that nobody read and that is still so, while it is new. A fault has a warning and a list of its own.
+/// The gravest message that nobody read and that is still so, while it is new; of equal ones the newest. A fault has a warning and a
+/// list of its own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
-    let newest = pane.state.notices.iter().next()?;
+    let now = pane.state.now;
+    let all = pane.state.notices.iter();
+    let new = all.take_while(|notice| now.since(notice.at) < NEWS_FOR);
+    let gravest = new.reduce(|newer, older| match older.level > newer.level {
+        true => older,
+        false => newer,
+    })?;
     let moves = pane.state.hand().mover().is_some();
-    let is_new = pane.state.now.since(newest.at) < NEWS_FOR;
-    (is_new && (newest.level > Level::Info || !moves)).then_some(newest)
+    (gravest.level > Level::Info || !moves).then_some(gravest)
 }
 
 /// Without a warning: the newest message, else what moves the hand, else that nothing does.

@@ -133,6 +133,38 @@ fn the_sender_of_the_manual_moves_a_hand() {
 }
 
 #[test]
+fn recorded_hand_tracking_is_retargeted_to_a_hand_that_holds_while_nobody_sees_it() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/");
+    let mut command = Command::new("python3");
+    command.arg(format!("{root}assets/retarget.py"));
+    command.arg(format!("{root}tests/interop/hand_tracking.csv"));
+    let probe = Command::new("python3").arg("--version").output();
+    if !probe.is_ok_and(|output| output.status.success()) {
+        skipped("a sender in Python", "this machine has no python3");
+        return;
+    }
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let (mut running, place) = following(&hand, &["--arm", "--rate", "1700", "--lead", "500"]);
+    command.arg(&place).env("PYTHONDONTWRITEBYTECODE", "1");
+    let sends = listen(command);
+    running.until(|line| phase(line) == "following");
+    // As a fist, then open again; with thumb and index towards one another when the tracker loses sight of it, and at last open.
+    let mut seen = vec![angle(&hand)];
+    running.until(|line| {
+        seen.push(angle(&hand));
+        phase(line) == "silent"
+    });
+    assert!(*seen.iter().min().unwrap() < 300, "{seen:?}");
+    running.until(|line| phase(line) == "following");
+    sends.end().ok();
+    let told = running.until(|line| phase(line) == "silent");
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(told["taken"], 165, "{told}");
+    assert_eq!(told["refused"], serde_json::json!({}), "{told}");
+    assert!(angle(&hand) > 900, "{}", angle(&hand));
+}
+
+#[test]
 fn wrong_use_is_told_in_one_sentence() {
     for (args, code, words) in [
         (&["--hand", "sim:"][..], 2, "--udp"),

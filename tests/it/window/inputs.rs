@@ -56,6 +56,8 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
         bench.angle(Dof::Index)
     );
     // Its sliders are not a person's now.
+    bench.show(View::Live);
+    send(&mut bench, &sender, to, 100);
     assert!(bench.is_disabled(Role::Slider, "Index angle target"));
     for view in [View::Live, View::Traffic, View::Connection] {
         bench.show(view);
