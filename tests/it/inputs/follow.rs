@@ -5,7 +5,7 @@ use crate::setup::hand;
 use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
-use handscope::inputs::Offer;
+use handscope::inputs::{Offer, OfferLimits};
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::link::{self, Clock, Lease, LinkHandle, Owner, Records};
 use handscope::record::{Disarmed, Record, WriteCause};
@@ -112,6 +112,7 @@ impl Stage {
             let _sent = offers.try_send(Offer {
                 at: self.clock.now(),
                 aims: PerDof::splat(Some(Angle::nearest(aim))),
+                limits: OfferLimits::NONE,
                 held: None,
                 mark: Some(aim.unsigned_abs().into()),
             });
