@@ -34,9 +34,7 @@ impl InspireState {
     pub fn of(sample: &HandSample, now: Moment) -> Option<Self> {
         let memory = |group: Group| {
             let (asked, _) = sample.times(group)?;
-            sample
-                .memory(group)
-                .filter(|_| now.since(asked) <= OLDEST)
+            sample.memory(group).filter(|_| now.since(asked) <= OLDEST)
         };
         let mut state = Self {
             shorts: [[0; Dof::ALL.len()]; 4],

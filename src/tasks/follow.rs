@@ -4,10 +4,10 @@
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, HandSample, Moment, PerDof, Setpoints, Target,
 };
-use crate::inputs::{Offer, OfferLimits};
 use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
 };
+use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, Lease, LeaseRefusal};
 use crate::record::{Disarmed, Record, WriteCause};
 use crate::tasks::hand::Hand;
@@ -184,11 +184,7 @@ impl<H: Hand> AtHand<'_, H> {
     }
 
     /// Sends targets, and limits that the hand was not told under this arming yet.
-    fn set(
-        &mut self,
-        epoch: ArmEpoch,
-        aims: &PerDof<Option<Angle>>,
-    ) -> Result<(), LeaseRefusal> {
+    fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Result<(), LeaseRefusal> {
         let mut setpoints = Setpoints::none(epoch);
         setpoints.angle = aims.map(|aim| aim.map(Target::Go));
         if self.limited != Some((epoch, self.limits)) {

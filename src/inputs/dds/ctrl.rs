@@ -209,7 +209,10 @@ mod tests {
     #[test]
     fn what_cyclonedds_writes_is_read() {
         let angles = [1000, -1, 500, 0, 1, 999];
-        assert_eq!(bytes(CYCLONE), message([&[0; 6], &angles, &[0; 6], &[0; 6]], 1));
+        assert_eq!(
+            bytes(CYCLONE),
+            message([&[0; 6], &angles, &[0; 6], &[0; 6]], 1)
+        );
         for hex in [CYCLONE, EMPTY] {
             // Padding at the end belongs to the wire.
             let padded = [bytes(hex), vec![0; 3]].concat();
@@ -248,8 +251,16 @@ mod tests {
             ([none, six, &[500; 7], none], 1, CtrlFault::Length),
             ([&[500; 7], six, none, none], 1, CtrlFault::Length),
             ([none, six, none, none], 5, CtrlFault::Length),
-            ([none, &[1001, 0, 0, 0, 0, 0], none, none], 1, CtrlFault::Range),
-            ([none, &[-2, 0, 0, 0, 0, 0], none, none], 1, CtrlFault::Range),
+            (
+                [none, &[1001, 0, 0, 0, 0, 0], none, none],
+                1,
+                CtrlFault::Range,
+            ),
+            (
+                [none, &[-2, 0, 0, 0, 0, 0], none, none],
+                1,
+                CtrlFault::Range,
+            ),
             ([none, &[i16::MIN; 6], none, none], 1, CtrlFault::Range),
             ([none, none, &[3001; 6], none], 4, CtrlFault::Range),
             ([none, none, &[-1; 6], none], 4, CtrlFault::Range),

@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::inputs::dds::ctrl::{CtrlFault, CtrlMessage};
-use crate::inputs::follow::ENDS_AFTER;
+use crate::inputs::follow::{ENDS_AFTER, HOLDS_AFTER};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::rate::EventRate;
 use crate::link::{ArmRequest, Clock, Wake};
@@ -122,6 +122,11 @@ impl Taking {
                 return;
             }
         };
+        let is_new = self
+            .told
+            .borrow()
+            .sender
+            .is_none_or(|(told, last)| told != message.from || now.since(last) >= HOLDS_AFTER);
         self.view.taken += 1;
         self.rate.hit(now);
         let offer = Offer {
@@ -132,6 +137,10 @@ impl Taking {
             mark: Some(asked.mark),
         };
         self.view.not_granted += u64::from(!self.outlet.offer(offer));
+        if is_new {
+            // Somebody may wait for one to follow.
+            self.tell();
+        }
     }
 
     /// One sender is listened to until it is silent; Unitree's programs do not number their messages.
