@@ -222,3 +222,83 @@ impl Telling {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Reply;
+
+    /// CycloneDDS 0.10.2 wrote this of the lists below.
+    const CYCLONE: &str = "000100000600000001000200030004000500faff06000000e803e703e603e503e403e30306000000dfff0100020003000400b80b0600000000000100020003000400d007060000000004000000010000060000000202050203020000060000001f2021222324";
+    const SHORTS: [[i16; 6]; 4] = [
+        [1, 2, 3, 4, 5, -6],
+        [1000, 999, 998, 997, 996, 995],
+        [-33, 1, 2, 3, 4, 3000],
+        [0, 1, 2, 3, 4, 2000],
+    ];
+    const BYTES: [[u8; 6]; 3] = [
+        [0, 4, 0, 0, 0, 1],
+        [2, 2, 5, 2, 3, 2],
+        [31, 32, 33, 34, 35, 36],
+    ];
+
+    fn ms(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    /// All lists in the type's order, with their groups, as memory.
+    fn lists() -> Vec<(Group, Vec<u8>)> {
+        let shorts = InspireState::SHORTS.into_iter().zip(SHORTS);
+        let shorts = shorts.map(|(group, list)| (group, list.map(i16::to_le_bytes).concat()));
+        let bytes = InspireState::BYTES.into_iter().zip(BYTES);
+        let bytes = bytes.map(|(group, list)| (group, list.to_vec()));
+        shorts.chain(bytes).collect()
+    }
+
+    fn take(sample: &mut HandSample, (group, bytes): &(Group, Vec<u8>), asked: Moment) {
+        sample.take(&Reply {
+            span: group.span(),
+            bytes,
+            asked,
+            received: asked.plus(Duration::from_millis(2)),
+        });
+    }
+
+    #[test]
+    fn a_state_is_what_cyclonedds_writes() {
+        let mut sample = HandSample::default();
+        lists()
+            .iter()
+            .for_each(|list| take(&mut sample, list, ms(0)));
+        let state = InspireState::of(&sample, ms(5)).unwrap();
+        let message = state.message();
+        let hex = message.iter().map(|byte| format!("{byte:02x}"));
+        assert_eq!(hex.collect::<String>(), CYCLONE);
+    }
+
+    #[test]
+    fn what_was_never_read_or_long_ago_makes_no_state() {
+        for left_out in 0..lists().len() {
+            let mut sample = HandSample::default();
+            for (nth, list) in lists().iter().enumerate() {
+                if nth != left_out {
+                    take(&mut sample, list, ms(1000));
+                }
+            }
+            assert_eq!(InspireState::of(&sample, ms(1001)), None, "{left_out}");
+            take(&mut sample, &lists()[left_out], ms(500));
+            assert!(InspireState::of(&sample, ms(1500)).is_some());
+            assert_eq!(InspireState::of(&sample, ms(1501)), None, "{left_out}");
+        }
+    }
+
+    #[test]
+    fn topics_of_ros_are_named_as_ros_names_them() {
+        let joints = ros_topic(Topic::Joints);
+        assert_eq!(joints.name, "rt/joint_states");
+        assert_eq!(joints.type_name, "sensor_msgs::msg::dds_::JointState_");
+        let touch = ros_topic(Topic::Touch(Finger::Thumb));
+        assert_eq!(touch.name, "rt/handscope/touch/thumb");
+        assert_eq!(touch.type_name, "handscope_msgs::msg::dds_::Touch_");
+    }
+}

@@ -18,8 +18,10 @@ use tokio::sync::mpsc;
 
 /// The highest domain whose ports exist (RTPS 9.6.2.3).
 pub const DOMAIN_MAX: u16 = 232;
-/// Messages that may wait to be looked at; beyond, the oldest give way.
+/// Messages that may wait to be looked at; a reader keeps the newest of those beyond.
 const MESSAGES_MAX: usize = 64;
+/// Messages that a reader keeps until they are taken, of each topic: two thirds of a second of commands.
+const KEPT: i32 = 64;
 /// The head of a message in little-endian CDR, which DDS keeps apart from its body.
 const HEAD: usize = 4;
 
@@ -139,7 +141,10 @@ impl DdsNode {
             .build();
         let topic = self.topic(topic, &reliably)?;
         let writer = self.publisher.create_datawriter_no_key(&topic, None)?;
-        Ok(DdsWriter(writer))
+        Ok(DdsWriter {
+            writer,
+            _participant: self.participant.clone(),
+        })
     }
 
     /// The messages of a topic from now on, of every writer, reliable or not. Must be called within a tokio runtime.
@@ -149,14 +154,19 @@ impl DdsNode {
     pub fn reader(&self, topic: &DdsTopic) -> Result<mpsc::Receiver<DdsMessage>, DdsError> {
         let anyhow = QosPolicyBuilder::new()
             .durability(Durability::Volatile)
-            .history(History::KeepLast { depth: 16 })
+            .history(History::KeepLast { depth: KEPT })
             .reliability(Reliability::BestEffort)
             .build();
         let topic = self.topic(topic, &anyhow)?;
         let reader: DataReader<RawMessage, Cdr> =
             self.subscriber.create_datareader_no_key(&topic, None)?;
         let (messages, taken) = mpsc::channel(MESSAGES_MAX);
-        tokio::spawn(read(reader, messages));
+        let participant = self.participant.clone();
+        tokio::spawn(async move {
+            read(reader, messages).await;
+            // It does not read without.
+            drop(participant);
+        });
         Ok(taken)
     }
 
@@ -200,7 +210,11 @@ async fn read(reader: DataReader<RawMessage, Cdr>, messages: mpsc::Sender<DdsMes
 }
 
 /// A writer. Dropped, it is gone for its readers.
-pub struct DdsWriter(DataWriter<Bytes, Cdr>);
+pub struct DdsWriter {
+    writer: DataWriter<Bytes, Cdr>,
+    /// It does not write without.
+    _participant: DomainParticipant,
+}
 
 impl fmt::Debug for DdsWriter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -213,7 +227,7 @@ impl DdsWriter {
     #[must_use]
     pub fn send(&self, mut message: Vec<u8>) -> bool {
         let body = message.split_off(HEAD.min(message.len()));
-        self.0.write(Bytes::from(body), None).is_ok()
+        self.writer.write(Bytes::from(body), None).is_ok()
     }
 }
 

@@ -159,6 +159,9 @@ fn wrong_use_is_told_in_one_sentence() {
             2,
             "--map",
         ),
+        (&["--hand", "sim:", "--dds", "--domain", "233"], 2, "232"),
+        (&["--hand", "sim:", "--dds", "--gamepad"], 2, "--dds"),
+        (&["--hand", "sim:", "--dds=nowhere0"], 1, "nowhere0"),
         (
             &["--hand", "sim:", "--gamepad", "--map", "/none.toml"],
             1,
