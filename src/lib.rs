@@ -9,15 +9,15 @@
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
-//! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, in-memory wires with faults |
+//! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
 //! | 1 | [`record`] | what happened at a hand, as typed values; session files, written by a thread of its own and read back; the formats of others |
 //! | 1 | [`store`] | files, and the calendar that their names use |
 //! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
-//! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams; what they ask for, checked, and how a hand follows it |
-//! | 4 | [`share`] | one hand for several programs: gateway |
+//! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams, DDS; what they ask for, checked, and how a hand follows it |
+//! | 4 | [`share`] | one hand for several programs: gateway, DDS |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |

@@ -37,6 +37,7 @@ topics! {
     gamepad: "driving a hand with a gamepad: controls, files, permission";
     exhibit: "a hand that visitors of a booth play with, and what staff do";
     stream: "a hand that follows another program, by lines of JSON";
+    dds: "a hand on DDS: Unitree's programs and ROS 2";
     share: "one hand for several programs: reads, writes, who may move it";
     json: "what the commands print with --json";
     figures: "how fast it is, and what each wire can carry";

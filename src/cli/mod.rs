@@ -1,6 +1,7 @@
 //! The command line: one file a command, each of which carries out its command and reports the outcome.
 
 mod args;
+mod dds;
 mod doctor;
 mod help;
 mod inputs;

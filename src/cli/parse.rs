@@ -1,5 +1,6 @@
 //! Values as a person types them on the command line. The error is the sentence that clap shows.
 
+use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};
 use crate::hand::{Angle, Dof, Force, HandId, Speed};
 use std::ops::RangeInclusive;
@@ -37,6 +38,14 @@ pub(crate) fn dof(text: &str) -> Result<Dof, String> {
         let known = Dof::ALL.map(Dof::name).join(", ");
         format!("'{text}' is not a joint: choose {known}")
     })
+}
+
+pub(crate) fn side(text: &str) -> Result<Side, String> {
+    match text {
+        "right" => Ok(Side::Right),
+        "left" => Ok(Side::Left),
+        _ => Err("write right or left".into()),
+    }
 }
 
 pub(crate) fn whole(text: &str) -> Result<i64, String> {

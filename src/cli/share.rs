@@ -1,10 +1,12 @@
-//! `share`: a Modbus TCP gateway, through which several programs use one hand, until a person ends it.
+//! `share`: one hand for several programs, over Modbus TCP and DDS, until a person ends it.
 
+use crate::cli::dds::DdsArgs;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
 use crate::cli::out::{Out, say};
-use crate::cli::parse::number;
+use crate::cli::parse::{number, side};
 use crate::cli::session;
+use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
 use crate::record::{Disarmed, LinkState};
 use crate::share::gateway::{
@@ -20,15 +22,21 @@ use tokio::time::interval;
 const LOOK_EACH: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds"]))]
 pub(crate) struct ShareArgs {
     /// The hand to share
     #[arg(long, value_name = "URL")]
     hand: Endpoint,
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
-    tcp: SocketAddr,
-    /// Let the first client that writes move the hand, until it disconnects or falls silent
-    #[arg(long)]
+    tcp: Option<SocketAddr>,
+    #[command(flatten)]
+    dds: DdsArgs,
+    /// With --dds: which hand it is, right or left
+    #[arg(long, value_name = "SIDE", requires = "dds", default_value = "right", value_parser = side)]
+    side: Side,
+    /// With --tcp: let the first client that writes move the hand, until it disconnects or falls silent
+    #[arg(long, requires = "tcp")]
     writers: bool,
     /// With --writers: after so many seconds without a request the client may no longer move the hand [default: 10]
     #[arg(long, value_name = "SECONDS", requires = "writers", value_parser = silence)]
@@ -51,15 +59,25 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => return Ok(()),
         answered = session::answered(&link, &args.hand) => answered?,
     }
-    let gateway = open(&link, args)?;
-    out.line(&format!("ready tcp {}", gateway.address()))?;
+    let gateway = args.tcp.map(|address| open(&link, args, address));
+    let gateway = gateway.transpose()?;
+    if let Some(gateway) = &gateway {
+        out.line(&format!("ready tcp {}", gateway.address()))?;
+    }
+    let dds = args.dds.open(&link, args.side)?;
+    if let Some(dds) = &dds {
+        out.line(&dds.ready())?;
+    }
     out.flush()?;
     tokio::select! {
         biased;
         () = interrupt.wished() => {}
-        () = tell(&link, &gateway, &args.hand) => {}
+        () = tell(&link, gateway.as_ref(), &args.hand) => {}
     }
-    end(&link, gateway).await
+    match gateway {
+        Some(gateway) => end(&link, gateway).await,
+        None => Ok(()),
+    }
 }
 
 /// Closes, and does not leave before a hand that a client could move is seen to rest.
@@ -73,8 +91,7 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     session::stopped(link, &mut link.records()).await
 }
 
-fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
-    let address = args.tcp;
+fn open(link: &LinkHandle, args: &ShareArgs, address: SocketAddr) -> anyhow::Result<Gateway> {
     let config = GatewayConfig {
         address,
         writers: match args.writers {
@@ -94,14 +111,16 @@ fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
 }
 
 /// Tells what a person has to know, for as long as it is shared.
-async fn tell(link: &LinkHandle, gateway: &Gateway, hand: &Endpoint) {
+async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     let mut told = Told::default();
     let mut tick = interval(LOOK_EACH);
     loop {
         tick.tick().await;
         told.link(link, hand);
-        told.turned_away(gateway);
-        told.leases(gateway);
+        if let Some(gateway) = gateway {
+            told.turned_away(gateway);
+            told.leases(gateway);
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::inputs::follow::{
     ENDS_AFTER, FROZEN_AFTER, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
     HOLDS_AFTER,
 };
-use crate::inputs::offer::Offer;
+use crate::inputs::offer::{Offer, OfferLimits};
 use crate::record::LinkState;
 use fastrand::Rng;
 use std::time::Duration;
@@ -31,6 +31,7 @@ fn offer(when: u64, angle: i16) -> Offer {
     Offer {
         at: ms(when),
         aims: PerDof::splat(Some(Angle::nearest(angle))),
+        limits: OfferLimits::NONE,
         held: None,
         mark: Some(angle.unsigned_abs().into()),
     }
@@ -208,6 +209,7 @@ fn next_offer(now: Moment, before: Option<Offer>, rng: &mut Rng) -> Option<Offer
     }
     Some(Offer {
         at: now,
+        limits: OfferLimits::NONE,
         aims: PerDof::from_fn(|_| {
             let aim = Angle::nearest(rng.i16(0..=1000));
             (rng.f32() >= 0.1).then_some(aim)

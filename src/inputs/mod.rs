@@ -1,5 +1,6 @@
 //! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
 
+pub mod dds;
 pub mod follow;
 #[cfg(test)]
 mod follow_tests;
@@ -9,4 +10,4 @@ pub mod offer;
 pub mod pad;
 pub mod stream;
 
-pub use offer::Offer;
+pub use offer::{Offer, OfferLimits};

@@ -1,6 +1,7 @@
 //! What a source asks of a hand at a moment, and the way from a source to whoever follows it.
 
-use crate::hand::{Angle, Moment, PerDof};
+use crate::hand::{Angle, Force, Moment, PerDof, Speed};
+use crate::link::ArmRequest;
 use std::sync::Arc;
 use tokio::sync::mpsc::error::TrySendError;
 use tokio::sync::{mpsc, watch};
@@ -15,10 +16,44 @@ pub struct Offer {
     pub at: Moment,
     /// Where each joint should go; `None` leaves it alone.
     pub aims: PerDof<Option<Angle>>,
+    /// How fast and how firmly.
+    pub limits: OfferLimits,
     /// Whether its dead-man is held; `None` for a source without one.
     pub held: Option<bool>,
     /// The same for targets that are the same to the last bit; `None` for a source that may rightly stand still.
     pub mark: Option<u64>,
+}
+
+/// The speeds and force thresholds that a source asks for; `None` keeps what the joint has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OfferLimits {
+    /// Force thresholds.
+    pub force: PerDof<Option<Force>>,
+    /// Speeds.
+    pub speed: PerDof<Option<Speed>>,
+}
+
+impl OfferLimits {
+    /// Asks for none.
+    pub const NONE: Self = Self {
+        force: PerDof::splat(None),
+        speed: PerDof::splat(None),
+    };
+
+    /// Whether no joint goes faster or firmer than a person allowed.
+    #[must_use]
+    pub fn within(&self, allowed: &ArmRequest) -> bool {
+        let mut forces = self.force.iter();
+        let mut speeds = self.speed.iter();
+        forces.all(|(dof, force)| force.is_none_or(|force| force <= allowed.force[dof]))
+            && speeds.all(|(dof, speed)| speed.is_none_or(|speed| speed <= allowed.speed[dof]))
+    }
+
+    /// Puts newer ones over older ones, joint by joint.
+    pub fn merge(&mut self, newer: &Self) {
+        self.force = PerDof::from_fn(|dof| newer.force[dof].or(self.force[dof]));
+        self.speed = PerDof::from_fn(|dof| newer.speed[dof].or(self.speed[dof]));
+    }
 }
 
 /// Where the offers of a source go: to whoever follows it, if anybody does. Copies are the same place.

@@ -4,7 +4,7 @@
 use crate::hand::kinematics::Side;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineFault};
-use crate::inputs::offer::{Offer, OfferOutlet};
+use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
 use crate::link::{Clock, Wake};
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -207,6 +207,7 @@ impl Listening {
         let offer = Offer {
             at: now,
             aims: line.aims,
+            limits: OfferLimits::NONE,
             held: line.held,
             mark: Some(line.mark),
         };

@@ -19,6 +19,8 @@ pub enum Owner {
     Gamepad,
     /// Lines of JSON from this sender.
     Stream(SocketAddr),
+    /// A program that sends over DDS.
+    Dds,
     /// A client of the gateway.
     Gateway(SocketAddr),
 }

@@ -1,11 +1,13 @@
 //! A hand that follows a source under a lease that a person granted: gamepad, stream, another hand. When it moves, and how far, is decided
 //! in `inputs`; here it is done.
 
-use crate::hand::{Angle, AngleReading, Dof, HandSample, Moment, PerDof, Setpoints, Target};
-use crate::inputs::Offer;
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Dof, HandSample, Moment, PerDof, Setpoints, Target,
+};
 use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
 };
+use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LeaseRefusal};
 use crate::record::{Disarmed, Record, WriteCause};
 use crate::tasks::hand::Hand;
@@ -87,6 +89,8 @@ pub async fn follow<H: Hand>(
         follow: Follow::new(limits, clock.now()),
         sample: start.seen,
         delays: Delays::default(),
+        limits: OfferLimits::NONE,
+        limited: None,
         hand,
         start,
     };
@@ -137,6 +141,10 @@ struct AtHand<'a, H> {
     follow: Follow,
     sample: HandSample,
     delays: Delays,
+    /// What the source asked for last.
+    limits: OfferLimits,
+    /// What the hand was told of it, under which arming.
+    limited: Option<(ArmEpoch, OfferLimits)>,
 }
 
 impl<H: Hand> AtHand<'_, H> {
@@ -151,6 +159,7 @@ impl<H: Hand> AtHand<'_, H> {
                 .hand
                 .run_until(self.start.lease, offer.at.plus(HOLDS_AFTER));
         }
+        self.limits.merge(&offer.limits);
         self.follow.offer(offer);
         self.delays.offered = Some(offer.at);
     }
@@ -184,24 +193,38 @@ impl<H: Hand> AtHand<'_, H> {
             held: terms.hold.is_held(self.start.clock.now()),
         };
         let lease = self.start.lease;
-        let done = match self.follow.tick(seen, self.start.clock.now())? {
-            FollowOrder::Arm => self.hand.arm(lease, self.start.arm),
-            FollowOrder::Halt => self.hand.halt(lease),
-            FollowOrder::End => {
+        let done = match self.follow.tick(seen, self.start.clock.now()) {
+            Some(FollowOrder::Arm) => self.hand.arm(lease, self.start.arm),
+            Some(FollowOrder::Halt) => self.hand.halt(lease),
+            Some(FollowOrder::End) => {
                 self.give_back();
                 return Some(FollowEnd::Silent);
             }
-            FollowOrder::Aim(aims) => {
-                let mut setpoints = Setpoints::none(status.armed?);
-                setpoints.angle = aims.map(|aim| aim.map(Target::Go));
-                let set = self.hand.set(lease, &setpoints);
-                if set.is_ok() {
-                    self.delays.set();
-                }
-                set
+            Some(FollowOrder::Aim(aims)) => self.set(status.armed?, &aims),
+            None if self.follow.phase() == FollowPhase::Following => {
+                self.set(status.armed?, &PerDof::splat(None))
             }
+            None => return None,
         };
         done.err().map(FollowEnd::Lease)
+    }
+
+    /// Sends targets, and limits that the hand was not told under this arming yet.
+    fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Result<(), LeaseRefusal> {
+        let mut setpoints = Setpoints::none(epoch);
+        setpoints.angle = aims.map(|aim| aim.map(Target::Go));
+        if self.limited != Some((epoch, self.limits)) {
+            (setpoints.force, setpoints.speed) = (self.limits.force, self.limits.speed);
+        }
+        if setpoints.is_empty() {
+            return Ok(());
+        }
+        self.hand.set(self.start.lease, &setpoints)?;
+        self.limited = Some((epoch, self.limits));
+        if aims.iter().any(|(_, aim)| aim.is_some()) {
+            self.delays.set();
+        }
+        Ok(())
     }
 
     /// The hand is stopped and the source may move it no more; if it may not any more already, it was.

@@ -3,6 +3,7 @@
 #[cfg(target_os = "linux")]
 pub mod can;
 pub mod can_facts;
+pub mod dds;
 pub mod dial;
 pub mod endpoint;
 #[cfg(target_os = "linux")]

@@ -1,4 +1,4 @@
-//! `follow`: a hand follows the lines of JSON that another program sends, or a gamepad, once a person lets it.
+//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, or a gamepad, once a person lets it.
 
 use crate::cli::inputs::source::{FollowSource, SourceArgs};
 use crate::cli::interrupt::Interrupt;
@@ -91,7 +91,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         () = interrupt.wished() => return Ok(()),
         seen = known(&link, &mut records, &args.hand) => seen?,
     };
-    let source = FollowSource::open(&args.from, &link, clock)?;
+    let source = FollowSource::open(&args.from, &link, clock, args.arm_request())?;
     out.line(&source.ready())?;
     out.flush()?;
     let mut at = AtHand {

@@ -1,15 +1,18 @@
-//! What a hand follows from the command line: lines of JSON at an address, or the gamepad of this computer.
+//! What a hand follows from the command line: lines of JSON at an address, programs on DDS, or the gamepad of this computer.
 
-use crate::cli::listen;
+use crate::cli::dds::{DdsArgs, DdsOut};
+use crate::cli::{listen, parse};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
+use crate::inputs::dds::ctrl;
+use crate::inputs::dds::source::{DdsSource, DdsSourceConfig, DdsView};
 use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
-use crate::link::{Clock, LinkHandle, Owner};
+use crate::link::{ArmRequest, Clock, LinkHandle, Owner};
 use crate::poses::starter::starter;
 use crate::store::toml_file;
 use anyhow::Context as _;
@@ -22,7 +25,7 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad"]))]
+#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "dds", "gamepad"]))]
 pub(super) struct SourceArgs {
     /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
@@ -30,37 +33,46 @@ pub(super) struct SourceArgs {
     /// Take lines over TCP connections here
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
     tcp: Option<SocketAddr>,
+    #[command(flatten)]
+    dds: DdsArgs,
     /// Follow the gamepad of this computer ('handscope help gamepad')
     #[arg(long)]
     gamepad: bool,
     /// With --gamepad: look for it in this folder
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp"], default_value = FOLDER)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp", "dds"], default_value = FOLDER)]
     devices: PathBuf,
     /// With --gamepad: take what the controls do from this file
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp", "dds"])]
     map: Option<PathBuf>,
-    /// Which values of a line are for this hand: right or left
-    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
+    /// Which values of a line, or which topics, are for this hand: right or left
+    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = parse::side)]
     side: Side,
-}
-
-fn side(text: &str) -> Result<Side, String> {
-    match text {
-        "right" => Ok(Side::Right),
-        "left" => Ok(Side::Left),
-        _ => Err("write right or left".into()),
-    }
 }
 
 /// What the hand follows.
 pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
+    Dds(DdsSource, DdsOut),
     Pad(PadSource),
 }
 
 impl FollowSource {
-    /// Opens what the person named.
-    pub(super) fn open(args: &SourceArgs, link: &LinkHandle, clock: Clock) -> anyhow::Result<Self> {
+    /// Opens what the person named; nothing it takes goes beyond what is allowed.
+    pub(super) fn open(
+        args: &SourceArgs,
+        link: &LinkHandle,
+        clock: Clock,
+        allowed: ArmRequest,
+    ) -> anyhow::Result<Self> {
+        if let Some(out) = args.dds.open(link, args.side)? {
+            let messages = out.node.reader(&ctrl::topic(args.side))?;
+            let config = DdsSourceConfig {
+                allowed,
+                clock,
+                wake: Arc::new(|| ()),
+            };
+            return Ok(Self::Dds(DdsSource::open(config, messages), out));
+        }
         let stops = link.clone();
         let stop = Arc::new(move || stops.stop());
         let udp = args.udp.map(StreamPlace::Udp);
@@ -94,6 +106,7 @@ impl FollowSource {
         match self {
             Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
+            Self::Dds(_, out) => out.ready(),
             Self::Pad(_) => "ready gamepad".into(),
         }
     }
@@ -101,6 +114,7 @@ impl FollowSource {
     pub(super) fn follow(&self) -> mpsc::Receiver<Offer> {
         match self {
             Self::Stream(_, source) => source.follow(),
+            Self::Dds(source, _) => source.follow(),
             Self::Pad(source) => source.follow(),
         }
     }
@@ -112,6 +126,11 @@ impl FollowSource {
                 let (sender, last) = source.view().intake.sender?;
                 let is_fresh = now.since(last) < HOLDS_AFTER;
                 is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
+            }
+            Self::Dds(source, _) => {
+                let (sender, last) = source.view().sender?;
+                let is_fresh = now.since(last) < HOLDS_AFTER;
+                is_fresh.then(|| (Owner::Dds, format!("the program on DDS ({sender})")))
             }
             Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
         }
@@ -146,6 +165,7 @@ impl FollowSource {
                 });
                 (words, object)
             }
+            Self::Dds(source, out) => told_of_dds(&source.view(), out),
             Self::Pad(source) => {
                 let view = source.view();
                 let held = if view.is_held { "held" } else { "not held" };
@@ -160,6 +180,35 @@ impl FollowSource {
             }
         }
     }
+}
+
+fn told_of_dds(view: &DdsView, out: &DdsOut) -> (String, Value) {
+    let refused: BTreeMap<&str, u64> = view
+        .refused
+        .iter()
+        .map(|(fault, count)| (fault.name(), *count))
+        .collect();
+    let newest = view.refused.keys().next_back();
+    let told = out.told();
+    let words = format!(
+        "{:6.1} messages/s  {} taken  {} refused{}  {} states out",
+        view.rate_hz,
+        view.taken,
+        refused.values().sum::<u64>(),
+        newest.map_or_else(String::new, |fault| format!(" ({fault})")),
+        told.states,
+    );
+    let object = json!({
+        "sender": view.sender.map(|(sender, _)| sender.to_string()),
+        "rate_hz": view.rate_hz,
+        "taken": view.taken,
+        "refused": refused,
+        "not_granted": view.not_granted,
+        "states": told.states,
+        "incomplete": told.incomplete,
+        "lost": told.lost,
+    });
+    (words, object)
 }
 
 /// A gamepad with what its controls do and where its poses are: of a file, else as delivered.

@@ -1,7 +1,7 @@
 //! One gamepad that a hand follows: reports in, what it asks of the hand out. It never keeps what it no longer knows.
 
 use crate::hand::{Angle, Dof, Moment, PerDof};
-use crate::inputs::Offer;
+use crate::inputs::offer::{Offer, OfferLimits};
 use crate::inputs::pad::control::{ControlKind, PadControl};
 use crate::inputs::pad::map::{PadAction, PadMap};
 use crate::inputs::pad::report::{KernelEvent, PadId, PadNews, PadReport};
@@ -187,6 +187,7 @@ impl PadInput {
         Some(Offer {
             at,
             aims,
+            limits: OfferLimits::NONE,
             held: Some(is_held),
             // Controls that are held still are no frozen tracking.
             mark: None,

@@ -120,6 +120,7 @@ pub(crate) fn owner(look: Look, owner: Owner) -> String {
         Owner::Exhibition => look.say(EXHIBITION).into(),
         Owner::Gamepad => look.say(inputs::PAD).into(),
         Owner::Stream(sender) => look.told(STREAM, sender),
+        Owner::Dds => "DDS".into(),
         Owner::Gateway(client) => look.told(GATEWAY, client),
     }
 }

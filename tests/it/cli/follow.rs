@@ -4,6 +4,7 @@ use crate::setup::process::{Running, listen, run, sim_on_tcp, start};
 use crate::setup::skipped::skipped;
 use nix::sys::signal::Signal;
 use serde_json::Value;
+use std::cell::RefCell;
 use std::net::UdpSocket;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -149,11 +150,12 @@ fn recorded_hand_tracking_is_retargeted_to_a_hand_that_holds_while_nobody_sees_i
     let sends = listen(command);
     running.until(|line| phase(line) == "following");
     // As a fist, then open again; with thumb and index towards one another when the tracker loses sight of it, and at last open.
-    let mut seen = vec![angle(&hand)];
+    let seen = RefCell::new(vec![angle(&hand)]);
     running.until(|line| {
-        seen.push(angle(&hand));
+        seen.borrow_mut().push(angle(&hand));
         phase(line) == "silent"
     });
+    let seen = seen.into_inner();
     assert!(*seen.iter().min().unwrap() < 300, "{seen:?}");
     running.until(|line| phase(line) == "following");
     sends.end().ok();
@@ -191,6 +193,9 @@ fn wrong_use_is_told_in_one_sentence() {
             2,
             "--map",
         ),
+        (&["--hand", "sim:", "--dds", "--domain", "233"], 2, "232"),
+        (&["--hand", "sim:", "--dds", "--gamepad"], 2, "--dds"),
+        (&["--hand", "sim:", "--dds=nowhere0"], 1, "nowhere0"),
         (
             &["--hand", "sim:", "--gamepad", "--map", "/none.toml"],
             1,

@@ -5,8 +5,8 @@ use crate::setup::hand;
 use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
-use handscope::inputs::Offer;
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
+use handscope::inputs::{Offer, OfferLimits};
 use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
 use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
 use handscope::sim::SimConfig;
@@ -25,7 +25,7 @@ const LIMITS: FollowLimits = FollowLimits {
 const EACH: Duration = Duration::from_millis(10);
 
 /// A hand, its link, and all that was told of it.
-struct Stage {
+pub(super) struct Stage {
     link: LinkHandle,
     records: Records,
     clock: Clock,
@@ -33,16 +33,16 @@ struct Stage {
 }
 
 /// What is sent and where the joint was, in order.
-#[derive(Debug, Clone, Copy)]
-struct Sent {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sent {
     at: Moment,
-    to: i16,
+    pub(super) to: i16,
     actual: i16,
-    cause: WriteCause,
+    pub(super) cause: WriteCause,
 }
 
 impl Stage {
-    async fn begin() -> Self {
+    pub(super) async fn begin() -> Self {
         let hand = hand::begin(hand::free(SimConfig::default()));
         let config = crate::setup::link::config("rs485:x", to_hand(hand));
         let clock = config.clock;
@@ -58,13 +58,13 @@ impl Stage {
     }
 
     /// Time passes, and what is told is taken in.
-    async fn pass(&mut self, ms: u64) {
+    pub(super) async fn pass(&mut self, ms: u64) {
         sleep(Duration::from_millis(ms)).await;
         self.seen
             .extend(std::iter::from_fn(|| self.records.try_next()));
     }
 
-    fn sample(&self) -> HandSample {
+    pub(super) fn sample(&self) -> HandSample {
         let mut all = self.seen.iter().rev();
         let newest = all.find_map(|record| match record {
             Record::Reading { sample, .. } => Some(**sample),
@@ -73,15 +73,24 @@ impl Stage {
         newest.expect("the hand was read")
     }
 
-    /// A person lets this source move the hand.
-    fn start(
+    pub(super) fn link(&self) -> &LinkHandle {
+        &self.link
+    }
+
+    pub(super) fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    pub(super) fn records(&self) -> &[Record] {
+        &self.seen
+    }
+
+    /// A person lets what is offered here move the hand.
+    pub(super) fn follow(
         &self,
         lease: Lease,
-    ) -> (
-        mpsc::Sender<Offer>,
-        JoinHandle<(FollowEnd, Vec<FollowPhase>)>,
-    ) {
-        let (offers, taken) = mpsc::channel(64);
+        taken: mpsc::Receiver<Offer>,
+    ) -> JoinHandle<(FollowEnd, Vec<FollowPhase>)> {
         let terms = FollowTerms {
             limits: LIMITS,
             ..FollowTerms::default()
@@ -96,7 +105,7 @@ impl Stage {
                 clock: self.clock,
             },
         );
-        let task = tokio::spawn(async move {
+        tokio::spawn(async move {
             let mut phases = Vec::new();
             let tell = |view: FollowView| {
                 if phases.last() != Some(&view.phase) {
@@ -105,8 +114,19 @@ impl Stage {
             };
             let end = follow(&link, start, taken, tell).await;
             (end, phases)
-        });
-        (offers, task)
+        })
+    }
+
+    /// A person lets this source move the hand.
+    fn start(
+        &self,
+        lease: Lease,
+    ) -> (
+        mpsc::Sender<Offer>,
+        JoinHandle<(FollowEnd, Vec<FollowPhase>)>,
+    ) {
+        let (offers, taken) = mpsc::channel(64);
+        (offers, self.follow(lease, taken))
     }
 
     /// Sends this for a while, a hundred times a second.
@@ -116,6 +136,7 @@ impl Stage {
             let _sent = offers.try_send(Offer {
                 at: self.clock.now(),
                 aims: PerDof::splat(Some(Angle::nearest(aim))),
+                limits: OfferLimits::NONE,
                 held: None,
                 mark: Some(aim.unsigned_abs().into()),
             });
@@ -124,7 +145,7 @@ impl Stage {
     }
 
     /// Every target of the index that went out.
-    fn index(&self) -> Vec<Sent> {
+    pub(super) fn index(&self) -> Vec<Sent> {
         let mut actual = 0;
         let mut all = Vec::new();
         for record in &self.seen {
@@ -155,7 +176,7 @@ impl Stage {
 
 /// No target of a source goes further than its limits let it in the time since the one before, or is ahead by more than the lead
 /// and what the joint moved since it was read.
-fn check(all: &[Sent]) {
+pub(super) fn check(all: &[Sent]) {
     let mut before: Option<Sent> = None;
     for sent in all.iter().filter(|sent| sent.cause == WriteCause::Setpoint) {
         let is_entry = sent.to.abs_diff(sent.actual) <= 25;

@@ -1,4 +1,5 @@
 //! A hand that follows what another program sends.
 
+mod dds;
 mod follow;
 mod stream;

@@ -141,6 +141,9 @@ fn what_cannot_be_shared_is_told_in_one_sentence() {
     let taken = listener.local_addr().unwrap().to_string();
     for (args, code, words) in [
         (&["--hand", "sim:"][..], 2, "--tcp"),
+        (&["--hand", "sim:"], 2, "--dds"),
+        (&["--hand", "sim:", "--dds", "--writers"], 2, "--tcp"),
+        (&["--hand", "sim:", "--dds=nowhere0"], 1, "nowhere0"),
         (&["--tcp", "127.0.0.1:0"], 2, "--hand"),
         (
             &["--hand", "sim:", "--tcp", "localhost:6001"],

@@ -3,6 +3,8 @@
 #[cfg(unix)]
 mod cli;
 mod clients;
+#[cfg(target_os = "linux")]
+mod dds;
 mod place;
 mod reads;
 mod writes;

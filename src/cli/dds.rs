@@ -1,0 +1,65 @@
+//! DDS from the command line: where it is to be, and what a hand tells there.
+
+use crate::cli::out::say;
+use crate::cli::parse::number;
+use crate::hand::kinematics::Side;
+use crate::link::LinkHandle;
+use crate::share::dds::{DdsPublisher, DdsTold};
+use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
+
+/// Nobody outside of this computer, unless a person says so.
+const LOOPBACK: &str = "127.0.0.1";
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct DdsArgs {
+    /// Join DDS as Unitree's own driver does, and ROS 2's ('handscope help dds'), at this network interface, by name or address;
+    /// without one at 127.0.0.1, which keeps it to this computer
+    #[arg(long, value_name = "INTERFACE", num_args = 0..=1, require_equals = true, default_missing_value = LOOPBACK)]
+    dds: Option<String>,
+    /// With --dds: the domain, 0 to 232; Unitree's simulation uses 1
+    #[arg(long, value_name = "NUMBER", requires = "dds", default_value = "0", value_parser = domain)]
+    domain: u16,
+}
+
+fn domain(text: &str) -> Result<u16, String> {
+    number(text, 0..=DOMAIN_MAX, "a domain of 0 to 232")
+}
+
+/// A hand that is told on DDS.
+pub(crate) struct DdsOut {
+    pub(crate) node: DdsNode,
+    publisher: DdsPublisher,
+}
+
+impl DdsArgs {
+    /// Tells this hand from now on, if the person wants it.
+    pub(crate) fn open(&self, link: &LinkHandle, side: Side) -> anyhow::Result<Option<DdsOut>> {
+        let Some(interface) = &self.dds else {
+            return Ok(None);
+        };
+        let node = DdsNode::open(&DdsPlace {
+            interface: interface.clone(),
+            domain: self.domain,
+        })?;
+        if !node.address().is_loopback() {
+            say(&format!(
+                "warning: anyone in the network of {} can read this hand and send to it; --dds alone keeps to this computer",
+                node.address()
+            ));
+        }
+        let publisher = DdsPublisher::open(&node, link, side)?;
+        Ok(Some(DdsOut { node, publisher }))
+    }
+}
+
+impl DdsOut {
+    /// The line that says that it can be used.
+    pub(crate) fn ready(&self) -> String {
+        format!("ready dds {}", self.node.address())
+    }
+
+    /// What was told so far.
+    pub(crate) fn told(&self) -> DdsTold {
+        self.publisher.told()
+    }
+}

@@ -1,0 +1,308 @@
+//! Unitree's message to a hand, `inspire::inspire_hand_ctrl` (`handscope help dds`). What is wrong is refused whole and counted,
+//! never bent into range.
+
+use crate::hand::kinematics::Side;
+use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
+use crate::inputs::offer::OfferLimits;
+use crate::link::ArmRequest;
+use crate::record::file::cdr;
+use crate::transport::dds::DdsTopic;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+/// Four lists of six numbers, the mode and the head are shorter.
+const BYTES_MAX: usize = 80;
+/// The bits of the mode, and what each lets pass.
+const ANGLE: u8 = 1;
+const POSITION: u8 = 2;
+const FORCE: u8 = 4;
+const SPEED: u8 = 8;
+
+/// Where programs send to the hand of this side.
+#[must_use]
+pub fn topic(side: Side) -> DdsTopic {
+    let side = match side {
+        Side::Left => 'l',
+        Side::Right => 'r',
+    };
+    DdsTopic {
+        name: format!("rt/inspire_hand/ctrl/{side}"),
+        type_name: "inspire::inspire_hand_ctrl".into(),
+    }
+}
+
+/// What one message asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CtrlMessage {
+    /// Where the joints should go.
+    pub aims: PerDof<Option<Angle>>,
+    /// How fast and how firmly.
+    pub limits: OfferLimits,
+    /// The same for messages that ask for the same.
+    pub mark: u64,
+}
+
+/// Why a message was refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
+pub enum CtrlFault {
+    /// It is no message of this type.
+    #[error("not an inspire_hand_ctrl in CDR")]
+    Malformed,
+    /// A mode that the type does not have.
+    #[error("its mode has other bits than angle 1, force 4 and speed 8")]
+    Mode,
+    /// The mode asks for positions of the drives.
+    #[error("it sets positions of the drives, mode 2: only angles, forces and speeds are taken")]
+    Position,
+    /// Not six values.
+    #[error("a hand has six joints")]
+    Length,
+    /// A value that the register does not take.
+    #[error("a value is outside the register's range")]
+    Range,
+    /// Faster or firmer than the person who let the hand follow allowed.
+    #[error("a speed or force is above --speed or --force")]
+    AboveLimit,
+    /// Another sender is followed.
+    #[error("another sender is followed until it is silent")]
+    OtherSender,
+}
+
+impl CtrlFault {
+    /// The word for it in JSON.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Malformed => "malformed",
+            Self::Mode => "mode",
+            Self::Position => "position",
+            Self::Length => "length",
+            Self::Range => "range",
+            Self::AboveLimit => "above_limit",
+            Self::OtherSender => "other_sender",
+        }
+    }
+}
+
+impl From<OutOfRange> for CtrlFault {
+    fn from(_out: OutOfRange) -> Self {
+        Self::Range
+    }
+}
+
+/// The type, field by field.
+#[derive(Debug, serde::Deserialize)]
+struct Raw {
+    pos_set: Vec<i16>,
+    angle_set: Vec<i16>,
+    force_set: Vec<i16>,
+    speed_set: Vec<i16>,
+    mode: u8,
+}
+
+impl CtrlMessage {
+    /// Reads a message in CDR with its head, within what a person allowed.
+    ///
+    /// # Errors
+    /// [`CtrlFault`]: why it is refused whole.
+    pub fn parse(bytes: &[u8], allowed: &ArmRequest) -> Result<Self, CtrlFault> {
+        if bytes.len() > BYTES_MAX {
+            return Err(CtrlFault::Malformed);
+        }
+        let raw: Raw = cdr::decode(bytes).ok_or(CtrlFault::Malformed)?;
+        if raw.mode & !(ANGLE | POSITION | FORCE | SPEED) != 0 {
+            return Err(CtrlFault::Mode);
+        }
+        if raw.mode & POSITION != 0 {
+            return Err(CtrlFault::Position);
+        }
+        // What the mode does not let pass is not looked at, but must fit the type.
+        if raw.pos_set.len() > Dof::ALL.len() {
+            return Err(CtrlFault::Length);
+        }
+        let has = |bit: u8| raw.mode & bit != 0;
+        let aims = six(&raw.angle_set, has(ANGLE), angle)?;
+        let limits = OfferLimits {
+            force: six(&raw.force_set, has(FORCE), |raw| Force::new(raw).map(Some))?,
+            speed: six(&raw.speed_set, has(SPEED), |raw| Speed::new(raw).map(Some))?,
+        };
+        if !limits.within(allowed) {
+            return Err(CtrlFault::AboveLimit);
+        }
+        let mut hasher = DefaultHasher::new();
+        aims.map(|aim| aim.map(Angle::get))
+            .as_array()
+            .hash(&mut hasher);
+        Ok(Self {
+            aims,
+            limits,
+            mark: hasher.finish(),
+        })
+    }
+}
+
+/// The manual's "no action" leaves a joint alone (2.6.11).
+fn angle(raw: i16) -> Result<Option<Angle>, OutOfRange> {
+    match raw {
+        -1 => Ok(None),
+        raw => Angle::new(raw).map(Some),
+    }
+}
+
+/// The values of a list for each joint, if it is meant.
+fn six<T: Copy>(
+    list: &[i16],
+    is_meant: bool,
+    read: impl Fn(i16) -> Result<Option<T>, OutOfRange>,
+) -> Result<PerDof<Option<T>>, CtrlFault> {
+    let mut values = PerDof::splat(None);
+    let is_long_enough = !is_meant || list.len() == Dof::ALL.len();
+    if list.len() > Dof::ALL.len() || !is_long_enough {
+        return Err(CtrlFault::Length);
+    }
+    if is_meant {
+        for (dof, raw) in Dof::ALL.into_iter().zip(list) {
+            values[dof] = read(*raw)?;
+        }
+    }
+    Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// CycloneDDS 0.10.2 wrote these: `Ctrl([0]*6, [1000,-1,500,0,1,999], [0]*6, [0]*6, 1)`, and with the other lists empty.
+    const CYCLONE: &str = "000100000600000000000000000000000000000006000000e803fffff40100000100e703060000000000000000000000000000000600000000000000000000000000000001";
+    const EMPTY: &str = "000100000000000006000000e803fffff40100000100e703000000000000000001";
+
+    fn allowed() -> ArmRequest {
+        ArmRequest {
+            speed: PerDof::splat(Speed::nearest(600)),
+            force: PerDof::splat(Force::nearest(500)),
+        }
+    }
+
+    fn bytes(hex: &str) -> Vec<u8> {
+        let digits = hex.as_bytes().chunks(2);
+        digits
+            .map(|two| u8::from_str_radix(str::from_utf8(two).unwrap(), 16).unwrap())
+            .collect()
+    }
+
+    /// As CDR has it, by hand: each list aligned to its length.
+    fn message(lists: [&[i16]; 4], mode: u8) -> Vec<u8> {
+        let mut all = vec![0, 1, 0, 0];
+        for list in lists {
+            all.resize(all.len().next_multiple_of(4), 0);
+            all.extend(u32::try_from(list.len()).unwrap().to_le_bytes());
+            all.extend(list.iter().flat_map(|value| value.to_le_bytes()));
+        }
+        all.push(mode);
+        all
+    }
+
+    fn parse(lists: [&[i16]; 4], mode: u8) -> Result<CtrlMessage, CtrlFault> {
+        CtrlMessage::parse(&message(lists, mode), &allowed())
+    }
+
+    #[test]
+    fn what_cyclonedds_writes_is_read() {
+        let angles = [1000, -1, 500, 0, 1, 999];
+        assert_eq!(
+            bytes(CYCLONE),
+            message([&[0; 6], &angles, &[0; 6], &[0; 6]], 1)
+        );
+        for hex in [CYCLONE, EMPTY] {
+            // Padding at the end belongs to the wire.
+            let padded = [bytes(hex), vec![0; 3]].concat();
+            let read = CtrlMessage::parse(&padded, &allowed()).unwrap();
+            let counts = read.aims.map(|aim| aim.map(Angle::get));
+            let want = angles.map(|angle| Some(angle).filter(|angle| *angle >= 0));
+            assert_eq!(*counts.as_array(), want, "{hex}");
+            assert_eq!(read.limits, OfferLimits::NONE);
+        }
+    }
+
+    #[test]
+    fn the_other_byte_order_is_read_too() {
+        let mut big = vec![0, 0, 0, 0];
+        for (len, value) in [(0, 0), (6, 258i16), (0, 0), (0, 0)] {
+            big.extend(u32::to_be_bytes(len));
+            big.extend((0..len).flat_map(|_| value.to_be_bytes()));
+        }
+        big.push(1);
+        let read = CtrlMessage::parse(&big, &allowed()).unwrap();
+        assert_eq!(read.aims, PerDof::splat(Some(Angle::nearest(258))));
+    }
+
+    #[test]
+    fn what_is_wrong_is_refused_whole_and_never_bent() {
+        let (six, none): (&[i16], &[i16]) = (&[500; 6], &[]);
+        for (lists, mode, fault) in [
+            ([six, six, six, six], 2, CtrlFault::Position),
+            ([six, six, six, six], 3, CtrlFault::Position),
+            ([six, six, six, six], 15, CtrlFault::Position),
+            ([six, six, six, six], 16, CtrlFault::Mode),
+            ([six, six, six, six], 129, CtrlFault::Mode),
+            ([none, none, none, none], 1, CtrlFault::Length),
+            ([none, &[500; 5], none, none], 1, CtrlFault::Length),
+            ([none, &[500; 7], none, none], 1, CtrlFault::Length),
+            ([none, six, &[500; 7], none], 1, CtrlFault::Length),
+            ([&[500; 7], six, none, none], 1, CtrlFault::Length),
+            ([none, six, none, none], 5, CtrlFault::Length),
+            (
+                [none, &[1001, 0, 0, 0, 0, 0], none, none],
+                1,
+                CtrlFault::Range,
+            ),
+            (
+                [none, &[-2, 0, 0, 0, 0, 0], none, none],
+                1,
+                CtrlFault::Range,
+            ),
+            ([none, &[i16::MIN; 6], none, none], 1, CtrlFault::Range),
+            ([none, none, &[3001; 6], none], 4, CtrlFault::Range),
+            ([none, none, &[-1; 6], none], 4, CtrlFault::Range),
+            ([none, none, none, &[1001; 6]], 8, CtrlFault::Range),
+            ([none, six, &[501; 6], none], 5, CtrlFault::AboveLimit),
+            ([none, six, none, &[601; 6]], 9, CtrlFault::AboveLimit),
+        ] {
+            assert_eq!(parse(lists, mode), Err(fault), "{lists:?} {mode}");
+        }
+        for cut in [0, 3, 4, 20, 40] {
+            let whole = message([six; 4], 1);
+            let refused = CtrlMessage::parse(&whole[..cut], &allowed());
+            assert_eq!(refused, Err(CtrlFault::Malformed), "{cut}");
+        }
+        let long = [message([six; 4], 1), vec![0; 200]].concat();
+        let refused = CtrlMessage::parse(&long, &allowed());
+        assert_eq!(refused, Err(CtrlFault::Malformed));
+    }
+
+    #[test]
+    fn the_mode_says_what_is_meant() {
+        let six: &[i16] = &[500; 6];
+        let force = PerDof::splat(Some(Force::nearest(500)));
+        let speed = PerDof::splat(Some(Speed::nearest(500)));
+        for (mode, aims, forces, speeds) in [
+            (0, false, false, false),
+            (1, true, false, false),
+            (4, false, true, false),
+            (9, true, false, true),
+            (13, true, true, true),
+        ] {
+            let read = parse([&[], six, six, six], mode).unwrap();
+            assert_eq!(read.aims[Dof::Index].is_some(), aims, "{mode}");
+            assert_eq!(read.limits.force == force, forces, "{mode}");
+            assert_eq!(read.limits.speed == speed, speeds, "{mode}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..120)) {
+            let _either = CtrlMessage::parse(&bytes, &allowed());
+        }
+    }
+}

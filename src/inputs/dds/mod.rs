@@ -1,0 +1,4 @@
+//! Programs that send to a hand over DDS, as Unitree's do.
+
+pub mod ctrl;
+pub mod source;

@@ -1,0 +1,304 @@
+//! A hand told over DDS: to Unitree's programs as their driver does it, and to ROS 2. What was not read is not told, and nothing is
+//! told twice.
+
+use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
+use crate::link::{Clock, LinkHandle, Records};
+use crate::record::file::encode::EntryEncoder;
+use crate::record::file::topic::Topic;
+use crate::record::file::{Opening, cdr};
+use crate::record::{Entry, Record};
+use crate::transport::dds::{DdsError, DdsNode, DdsTopic, DdsWriter};
+use serde::Serialize;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use tokio::sync::watch;
+use tokio::task::AbortHandle;
+
+/// No part of a state is older: the slowest part is read twice a second.
+pub const OLDEST: Duration = Duration::from_secs(1);
+
+/// Unitree's state of a hand, `inspire::inspire_hand_state`: numbers as the hand has them, in the order of its registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InspireState {
+    shorts: [[i16; Dof::ALL.len()]; 4],
+    bytes: [[u8; Dof::ALL.len()]; 3],
+}
+
+impl InspireState {
+    /// The lists of the type in their order.
+    const SHORTS: [Group; 4] = [Group::Position, Group::Angle, Group::Force, Group::Current];
+    const BYTES: [Group; 3] = [Group::Faults, Group::Status, Group::Temperature];
+
+    /// What is known at this moment; `None` unless all of it was read, and not long ago.
+    #[must_use]
+    pub fn of(sample: &HandSample, now: Moment) -> Option<Self> {
+        let memory = |group: Group| {
+            let (asked, _) = sample.times(group)?;
+            sample.memory(group).filter(|_| now.since(asked) <= OLDEST)
+        };
+        let mut state = Self {
+            shorts: [[0; Dof::ALL.len()]; 4],
+            bytes: [[0; Dof::ALL.len()]; 3],
+        };
+        for (list, group) in state.shorts.iter_mut().zip(Self::SHORTS) {
+            let bytes = memory(group)?;
+            let (pairs, []) = bytes.as_chunks::<2>() else {
+                return None;
+            };
+            let values: Vec<i16> = pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect();
+            *list = values.try_into().ok()?;
+        }
+        for (list, group) in state.bytes.iter_mut().zip(Self::BYTES) {
+            *list = memory(group)?.try_into().ok()?;
+        }
+        Some(state)
+    }
+
+    /// The message in CDR with its head.
+    #[must_use]
+    pub fn message(&self) -> Vec<u8> {
+        /// Slices, as the type has sequences and no arrays.
+        #[derive(Serialize)]
+        struct Lists<'a> {
+            pos_act: &'a [i16],
+            angle_act: &'a [i16],
+            force_act: &'a [i16],
+            current: &'a [i16],
+            err: &'a [u8],
+            status: &'a [u8],
+            temperature: &'a [u8],
+        }
+        let [pos_act, angle_act, force_act, current] = &self.shorts;
+        let [err, status, temperature] = &self.bytes;
+        cdr::encode(&Lists {
+            pos_act,
+            angle_act,
+            force_act,
+            current,
+            err,
+            status,
+            temperature,
+        })
+    }
+}
+
+/// What was told so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DdsTold {
+    /// States.
+    pub states: u64,
+    /// States that were not told, as a part of them was never read or is old.
+    pub incomplete: u64,
+    /// Messages that could not go out in time: a reader of them does not take them.
+    pub lost: u64,
+}
+
+/// Tells everything of one hand. Dropped, it tells nothing any more.
+#[derive(Debug)]
+pub struct DdsPublisher {
+    told: watch::Receiver<DdsTold>,
+    abort: AbortHandle,
+}
+
+impl Drop for DdsPublisher {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl DdsPublisher {
+    /// Tells from now on, for as long as the link is open; it does not keep it open. Must be called within a tokio runtime.
+    ///
+    /// # Errors
+    /// [`DdsError`], if the library does not make the writers.
+    pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Result<Self, DdsError> {
+        let writers = Writers::open(node, side)?;
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+        let now = (link.clock().now(), since_1970.unwrap_or_default());
+        let (told, view) = watch::channel(DdsTold::default());
+        let telling = Telling {
+            writers,
+            encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
+            clock: link.clock(),
+            told,
+        };
+        Ok(Self {
+            told: view,
+            abort: tokio::spawn(telling.run(link.records())).abort_handle(),
+        })
+    }
+
+    /// What was told so far.
+    #[must_use]
+    pub fn told(&self) -> DdsTold {
+        *self.told.borrow()
+    }
+}
+
+struct Writers {
+    state: DdsWriter,
+    joints: DdsWriter,
+    touch: [DdsWriter; Finger::ALL.len()],
+}
+
+impl Writers {
+    fn open(node: &DdsNode, side: Side) -> Result<Self, DdsError> {
+        let letter = match side {
+            Side::Left => 'l',
+            Side::Right => 'r',
+        };
+        let [little, ring, middle, index, thumb] =
+            Finger::ALL.map(|finger| node.writer(&ros_topic(Topic::Touch(finger))));
+        Ok(Self {
+            state: node.writer(&DdsTopic {
+                name: format!("rt/inspire_hand/state/{letter}"),
+                type_name: "inspire::inspire_hand_state".into(),
+            })?,
+            joints: node.writer(&ros_topic(Topic::Joints))?,
+            touch: [little?, ring?, middle?, index?, thumb?],
+        })
+    }
+}
+
+/// A topic of ROS 2 and its type, as ROS 2 names them in DDS.
+fn ros_topic(topic: Topic) -> DdsTopic {
+    let (package, name) = topic.schema().name.split_once("/msg/").unwrap_or_default();
+    DdsTopic {
+        name: format!("rt{}", topic.name()),
+        type_name: format!("{package}::msg::dds_::{name}_"),
+    }
+}
+
+struct Telling {
+    writers: Writers,
+    encoder: EntryEncoder,
+    clock: Clock,
+    told: watch::Sender<DdsTold>,
+}
+
+impl Telling {
+    async fn run(self, mut records: Records) {
+        while let Some(record) = records.next().await {
+            if let Record::Reading { sample, fresh } = &record {
+                self.state(sample, *fresh);
+                self.ros(record);
+            }
+        }
+    }
+
+    fn state(&self, sample: &HandSample, fresh: Groups) {
+        // Each look at the angles is one state; what came along is a part of it.
+        if !fresh.contains(Group::Angle) {
+            return;
+        }
+        let state = InspireState::of(sample, self.clock.now());
+        let is_sent = state.map(|state| self.writers.state.send(state.message()));
+        self.told.send_modify(|told| match is_sent {
+            Some(true) => told.states += 1,
+            Some(false) => told.lost += 1,
+            None => told.incomplete += 1,
+        });
+    }
+
+    fn ros(&self, record: Record) {
+        for message in self.encoder.encode(&Entry::Heard(record)) {
+            let writer = match message.topic {
+                Topic::Joints => &self.writers.joints,
+                Topic::Touch(finger) => {
+                    let [little, ring, middle, index, thumb] = &self.writers.touch;
+                    match finger {
+                        Finger::Little => little,
+                        Finger::Ring => ring,
+                        Finger::Middle => middle,
+                        Finger::Index => index,
+                        Finger::Thumb => thumb,
+                    }
+                }
+                _ => continue,
+            };
+            if !writer.send(message.bytes) {
+                self.told.send_modify(|told| told.lost += 1);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Reply;
+
+    /// CycloneDDS 0.10.2 wrote this of the lists below.
+    const CYCLONE: &str = "000100000600000001000200030004000500faff06000000e803e703e603e503e403e30306000000dfff0100020003000400b80b0600000000000100020003000400d007060000000004000000010000060000000202050203020000060000001f2021222324";
+    const SHORTS: [[i16; 6]; 4] = [
+        [1, 2, 3, 4, 5, -6],
+        [1000, 999, 998, 997, 996, 995],
+        [-33, 1, 2, 3, 4, 3000],
+        [0, 1, 2, 3, 4, 2000],
+    ];
+    const BYTES: [[u8; 6]; 3] = [
+        [0, 4, 0, 0, 0, 1],
+        [2, 2, 5, 2, 3, 2],
+        [31, 32, 33, 34, 35, 36],
+    ];
+
+    fn ms(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    /// All lists in the type's order, with their groups, as memory.
+    fn lists() -> Vec<(Group, Vec<u8>)> {
+        let shorts = InspireState::SHORTS.into_iter().zip(SHORTS);
+        let shorts = shorts.map(|(group, list)| (group, list.map(i16::to_le_bytes).concat()));
+        let bytes = InspireState::BYTES.into_iter().zip(BYTES);
+        let bytes = bytes.map(|(group, list)| (group, list.to_vec()));
+        shorts.chain(bytes).collect()
+    }
+
+    fn take(sample: &mut HandSample, (group, bytes): &(Group, Vec<u8>), asked: Moment) {
+        sample.take(&Reply {
+            span: group.span(),
+            bytes,
+            asked,
+            received: asked.plus(Duration::from_millis(2)),
+        });
+    }
+
+    #[test]
+    fn a_state_is_what_cyclonedds_writes() {
+        let mut sample = HandSample::default();
+        lists()
+            .iter()
+            .for_each(|list| take(&mut sample, list, ms(0)));
+        let state = InspireState::of(&sample, ms(5)).unwrap();
+        let message = state.message();
+        let hex = message.iter().map(|byte| format!("{byte:02x}"));
+        assert_eq!(hex.collect::<String>(), CYCLONE);
+    }
+
+    #[test]
+    fn what_was_never_read_or_long_ago_makes_no_state() {
+        for left_out in 0..lists().len() {
+            let mut sample = HandSample::default();
+            for (nth, list) in lists().iter().enumerate() {
+                if nth != left_out {
+                    take(&mut sample, list, ms(1000));
+                }
+            }
+            assert_eq!(InspireState::of(&sample, ms(1001)), None, "{left_out}");
+            take(&mut sample, &lists()[left_out], ms(500));
+            assert!(InspireState::of(&sample, ms(1500)).is_some());
+            assert_eq!(InspireState::of(&sample, ms(1501)), None, "{left_out}");
+        }
+    }
+
+    #[test]
+    fn topics_of_ros_are_named_as_ros_names_them() {
+        let joints = ros_topic(Topic::Joints);
+        assert_eq!(joints.name, "rt/joint_states");
+        assert_eq!(joints.type_name, "sensor_msgs::msg::dds_::JointState_");
+        let touch = ros_topic(Topic::Touch(Finger::Thumb));
+        assert_eq!(touch.name, "rt/handscope/touch/thumb");
+        assert_eq!(touch.type_name, "handscope_msgs::msg::dds_::Touch_");
+    }
+}

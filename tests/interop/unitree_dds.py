@@ -1,0 +1,146 @@
+"""Unitree's end of DDS: CycloneDDS 0.10.2 with their types and the qualities that it has unless told otherwise, as inspire_sdkpy
+and xr_teleoperate use it, and ROS 2's types beside. Usage: unitree_dds.py ADDRESS DOMAIN SIDE COMMANDS ROUNDS.
+
+In each round it waits for states, as xr_teleoperate does, sends that many commands, 100 a second, and then waits until nobody tells
+states any more. Prints a line of JSON when the first state of a round came, and one when its commands are sent."""
+
+import json
+import sys
+import time
+from dataclasses import dataclass, fields, is_dataclass
+
+import cyclonedds.idl as idl
+import cyclonedds.idl.annotations as annotate
+import cyclonedds.idl.types as types
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.pub import DataWriter
+from cyclonedds.qos import Policy, Qos
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+
+SHORTS, BYTES = types.sequence[types.int16, 6], types.sequence[types.uint8, 6]
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class inspire_hand_ctrl(idl.IdlStruct, typename="inspire.inspire_hand_ctrl"):
+    pos_set: SHORTS
+    angle_set: SHORTS
+    force_set: SHORTS
+    speed_set: SHORTS
+    mode: types.int8
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class inspire_hand_state(idl.IdlStruct, typename="inspire.inspire_hand_state"):
+    pos_act: SHORTS
+    angle_act: SHORTS
+    force_act: SHORTS
+    current: SHORTS
+    err: BYTES
+    status: BYTES
+    temperature: BYTES
+
+
+@dataclass
+class Time_(idl.IdlStruct, typename="builtin_interfaces.msg.dds_.Time_"):
+    sec: types.int32
+    nanosec: types.uint32
+
+
+@dataclass
+class Header_(idl.IdlStruct, typename="std_msgs.msg.dds_.Header_"):
+    stamp: Time_
+    frame_id: str
+
+
+@dataclass
+class JointState_(idl.IdlStruct, typename="sensor_msgs.msg.dds_.JointState_"):
+    header: Header_
+    name: types.sequence[str]
+    position: types.sequence[types.float64]
+    velocity: types.sequence[types.float64]
+    effort: types.sequence[types.float64]
+
+
+@dataclass
+class Touch_(idl.IdlStruct, typename="handscope_msgs.msg.dds_.Touch_"):
+    asked: Time_
+    received: Time_
+    normal_n: types.float32
+    tangential_n: types.float32
+    direction_deg: types.uint16
+    proximity: types.int32
+    check_ok: bool
+    channels: types.sequence[types.uint32]
+    raw: types.sequence[types.uint8]
+
+
+CONFIG = """<CycloneDDS><Domain Id="any"><General><Interfaces>
+<NetworkInterface address="{}" priority="default" multicast="default"/>
+</Interfaces></General></Domain></CycloneDDS>"""
+address, domain, side = sys.argv[1], int(sys.argv[2]), sys.argv[3]
+commands, rounds = int(sys.argv[4]), int(sys.argv[5])
+config = Domain(domain, CONFIG.format(address))
+participant = DomainParticipant(domain)
+
+
+def reader(name, kind):
+    # Their own takes each message when it comes; this one looks each millisecond.
+    return DataReader(participant, Topic(participant, name, kind), Qos(Policy.History.KeepLast(100)))
+
+
+states = reader(f"rt/inspire_hand/state/{side}", inspire_hand_state)
+joints = reader("rt/joint_states", JointState_)
+touch = reader("rt/handscope/touch/index", Touch_)
+writer = DataWriter(participant, Topic(participant, f"rt/inspire_hand/ctrl/{side}", inspire_hand_ctrl))
+
+
+def heard(of):
+    """The next message that waits. What tells only that its writer is gone is none."""
+    return next((sample for sample in of.take(1) if is_dataclass(sample)), None)
+
+
+def wait(wanted, within):
+    until = time.monotonic() + within
+    while time.monotonic() < until:
+        if found := wanted():
+            return found
+        time.sleep(0.001)
+    sys.exit("nothing came in time")
+
+
+def tell(**words):
+    print(json.dumps(words), flush=True)
+
+
+for nth in range(rounds):
+    begun = time.monotonic()
+    state = wait(lambda: heard(states), 50)
+    tell(first_state_s=time.monotonic() - begun, round=nth)
+    assert all(len(getattr(state, field.name)) == 6 for field in fields(state)), state
+    while heard(states):
+        pass
+    count, start = 0, time.monotonic()
+    for n in range(commands):
+        # xr_teleoperate's own message: only angles are meant, the other lists are zero.
+        angles = [-1, -1, -1, 1000 - 2 * (n % 250), -1, -1]
+        writer.write(inspire_hand_ctrl([0] * 6, angles, [0] * 6, [0] * 6, 0b0001))
+        while time.monotonic() < start + (n + 1) * 0.01:
+            while sample := heard(states):
+                state, count = sample, count + 1
+            time.sleep(0.001)
+    took = time.monotonic() - start
+    pose, tip = wait(lambda: heard(joints), 5), wait(lambda: heard(touch), 5)
+    assert len(pose.name) == len(pose.position) == 12 and all(0 <= angle < 3 for angle in pose.position), pose
+    assert tip.check_ok and len(tip.raw) == 58 and len(tip.channels) == 8, tip
+    tell(sent=commands, states=count, took_s=took, angle_act=list(state.angle_act))
+    if nth + 1 < rounds:
+        quiet = time.monotonic()
+        while time.monotonic() < quiet + 0.5:
+            if heard(states):
+                quiet = time.monotonic()
+            time.sleep(0.01)

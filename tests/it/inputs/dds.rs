@@ -1,0 +1,176 @@
+//! Messages as Unitree's xr_teleoperate sends them, at a simulated hand behind a real link, in virtual time: what goes over the wire
+//! whatever becomes of the sender.
+
+use crate::inputs::follow::{Stage, check};
+use crate::setup::link::gentle;
+use crate::setup::time::in_virtual_time;
+use handscope::hand::{Dof, Force, PerDof, Speed};
+use handscope::inputs::dds::ctrl::CtrlFault;
+use handscope::inputs::dds::source::{DdsSource, DdsSourceConfig};
+use handscope::inputs::follow::FollowPhase;
+use handscope::link::{ArmRequest, Owner};
+use handscope::record::{Disarmed, Record, WriteCause};
+use handscope::tasks::follow::FollowEnd;
+use handscope::transport::dds::{DdsMessage, DdsWriterId};
+use std::sync::Arc;
+use tokio::sync::mpsc;
+
+/// Two runs of one program: another writer each time.
+const FIRST: DdsWriterId = DdsWriterId([1; 16]);
+const SECOND: DdsWriterId = DdsWriterId([2; 16]);
+
+/// As CycloneDDS writes it: angles, forces and speeds, and positions that are not meant.
+fn message(from: DdsWriterId, [angle, force, speed]: [i16; 3], mode: u8) -> DdsMessage {
+    let mut bytes = vec![0, 1, 0, 0];
+    for value in [0, angle, force, speed] {
+        bytes.extend(6u32.to_le_bytes());
+        bytes.extend([value; 6].iter().flat_map(|value| value.to_le_bytes()));
+    }
+    bytes.push(mode);
+    DdsMessage { from, bytes }
+}
+
+/// A source without a network.
+fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsSource) {
+    let (messages, taken) = mpsc::channel(64);
+    let config = DdsSourceConfig {
+        allowed,
+        clock: stage.clock(),
+        wake: Arc::new(|| ()),
+    };
+    (messages, DdsSource::open(config, taken))
+}
+
+/// Sends these angles a hundred times a second.
+async fn send(
+    stage: &mut Stage,
+    to: &mpsc::Sender<DdsMessage>,
+    from: DdsWriterId,
+    angles: impl IntoIterator<Item = i16>,
+) {
+    for angle in angles {
+        to.try_send(message(from, [angle, 0, 0], 1)).unwrap();
+        stage.pass(10).await;
+    }
+}
+
+/// Tracking that trembles by some counts.
+fn about(angle: i16, ms: i16) -> impl Iterator<Item = i16> {
+    (0..ms / 10).map(move |n| angle + n % 5)
+}
+
+#[test]
+fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let (messages, source) = source(&stage, gentle());
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        // It asks for a fist in its first message.
+        send(&mut stage, &messages, FIRST, about(0, 700)).await;
+        // Tracking is lost: the same pose for two seconds, and then one far away.
+        send(&mut stage, &messages, FIRST, vec![640; 200]).await;
+        send(&mut stage, &messages, FIRST, about(200, 800)).await;
+        // It is killed, and started again within a second: open at start, which nobody follows before it is its turn.
+        stage.pass(400).await;
+        send(&mut stage, &messages, SECOND, vec![1000; 50]).await;
+        stage.pass(300).await;
+        assert_eq!(source.view().refused, [(CtrlFault::OtherSender, 50)].into());
+        let (end, phases) = task.await.unwrap();
+        assert_eq!(end, FollowEnd::Silent);
+        for phase in [FollowPhase::Frozen, FollowPhase::Silent] {
+            assert!(phases.contains(&phase), "{phase:?}: {phases:?}");
+        }
+        assert_eq!(stage.link().status().disarmed, Some(Disarmed::Silent));
+        let moved = stage.index();
+        assert!(moved.len() > 60, "{}", moved.len());
+        // It moves nothing before a person lets it.
+        send(&mut stage, &messages, SECOND, vec![1000; 100]).await;
+        assert_eq!(stage.index().len(), moved.len());
+        assert_eq!(source.view().sender.unwrap().0, SECOND);
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        send(&mut stage, &messages, SECOND, vec![1000; 200]).await;
+        assert_eq!(stage.index().last().unwrap().to, 1000);
+        drop(messages);
+        stage.pass(1500).await;
+        assert_eq!(task.await.unwrap().0, FollowEnd::Silent);
+        check(&stage.index());
+    });
+}
+
+#[test]
+fn what_is_refused_moves_nothing_and_is_counted() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let (messages, source) = source(&stage, gentle());
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        for (values, mode) in [
+            ([500, 0, 0], 3),
+            ([1001, 0, 0], 1),
+            ([-2, 0, 0], 1),
+            ([500, 0, 0], 32),
+            ([500, 3000, 0], 5),
+            ([500, 0, 1000], 9),
+        ] {
+            messages.try_send(message(FIRST, values, mode)).unwrap();
+            stage.pass(10).await;
+        }
+        let mut cut = message(FIRST, [500, 0, 0], 1);
+        cut.bytes.truncate(30);
+        messages.try_send(cut).unwrap();
+        stage.pass(100).await;
+        let refused = [
+            (CtrlFault::Malformed, 1),
+            (CtrlFault::Mode, 1),
+            (CtrlFault::Position, 1),
+            (CtrlFault::Range, 2),
+            (CtrlFault::AboveLimit, 2),
+        ];
+        let view = source.view();
+        assert_eq!((view.taken, view.refused), (0, refused.into()));
+        stage.pass(1000).await;
+        assert_eq!(task.await.unwrap().0, FollowEnd::Silent);
+        // A stop, where it stands.
+        let sent = stage.index();
+        assert!(
+            sent.iter().all(|sent| sent.cause == WriteCause::Hold),
+            "{sent:?}"
+        );
+    });
+}
+
+#[test]
+fn speeds_and_forces_within_what_a_person_allows_reach_the_hand_once() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let allowed = ArmRequest {
+            speed: PerDof::splat(Speed::MAX),
+            force: PerDof::splat(Force::nearest(1000)),
+        };
+        let (messages, source) = source(&stage, allowed);
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        for n in 0..50 {
+            let values = [900 - n % 3, 321, 432];
+            messages.try_send(message(FIRST, values, 13)).unwrap();
+            stage.pass(10).await;
+        }
+        // -1 leaves the joints alone, and nothing more is said of limits.
+        for _ in 0..30 {
+            messages.try_send(message(FIRST, [-1, 0, 0], 1)).unwrap();
+            stage.pass(10).await;
+        }
+        let sample = stage.sample();
+        let (force, speed) = (sample.force_set.unwrap(), sample.speed_set.unwrap());
+        assert_eq!(force.value[Dof::Index], Some(Force::nearest(321)));
+        assert_eq!(speed.value[Dof::Index], Some(Speed::nearest(432)));
+        // Twice each: with the arming, and as the message asks.
+        for address in [1498, 1522] {
+            let sent = stage.records().iter().filter(
+                |record| matches!(record, Record::Sent { write, .. } if write.address == address),
+            );
+            assert_eq!(sent.count(), 2, "{address}");
+        }
+        drop((messages, source));
+        stage.pass(100).await;
+        assert_eq!(task.await.unwrap().0, FollowEnd::Gone);
+    });
+}
