@@ -17,6 +17,7 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
+from cyclonedds.util import duration
 
 SHORTS, BYTES = types.sequence[types.int16, 6], types.sequence[types.uint8, 6]
 
@@ -88,13 +89,14 @@ config = Domain(domain, CONFIG.format(address))
 participant = DomainParticipant(domain)
 
 
-def reader(name, kind):
+def reader(name, kind, *more):
     # Their own takes each message when it comes; this one looks each millisecond.
-    return DataReader(participant, Topic(participant, name, kind), Qos(Policy.History.KeepLast(100)))
+    return DataReader(participant, Topic(participant, name, kind), Qos(Policy.History.KeepLast(500), *more))
 
 
 states = reader(f"rt/inspire_hand/state/{side}", inspire_hand_state)
-joints = reader("rt/joint_states", JointState_)
+# As ROS 2 does by default: none of these is lost, and there are as many as states.
+joints = reader("rt/joint_states", JointState_, Policy.Reliability.Reliable(duration(seconds=1)))
 touch = reader("rt/handscope/touch/index", Touch_)
 writer = DataWriter(participant, Topic(participant, f"rt/inspire_hand/ctrl/{side}", inspire_hand_ctrl))
 
@@ -122,25 +124,30 @@ for nth in range(rounds):
     state = wait(lambda: heard(states), 50)
     tell(first_state_s=time.monotonic() - begun, round=nth)
     assert all(len(getattr(state, field.name)) == 6 for field in fields(state)), state
-    while heard(states):
+    pose = wait(lambda: heard(joints), 5)
+    while heard(states) or heard(joints):
         pass
-    count, start = 0, time.monotonic()
-    for n in range(commands):
-        # xr_teleoperate's own message: only angles are meant, the other lists are zero.
-        angles = [-1, -1, -1, 1000 - 2 * (n % 250), -1, -1]
-        writer.write(inspire_hand_ctrl([0] * 6, angles, [0] * 6, [0] * 6, 0b0001))
-        while time.monotonic() < start + (n + 1) * 0.01:
-            while sample := heard(states):
-                state, count = sample, count + 1
-            time.sleep(0.001)
+    count, told, sent, start = 0, 0, 0, time.monotonic()
+    # As many states as commands, however late either comes on a computer that does other work as well.
+    while sent < commands or count < commands:
+        if sent < commands and time.monotonic() >= start + sent * 0.01:
+            # xr_teleoperate's own message: only angles are meant, the other lists are zero.
+            angles = [-1, -1, -1, 1000 - 2 * (sent % 250), -1, -1]
+            writer.write(inspire_hand_ctrl([0] * 6, angles, [0] * 6, [0] * 6, 0b0001))
+            sent += 1
+        while sample := heard(states):
+            state, count = sample, count + 1
+        while sample := heard(joints):
+            pose, told = sample, told + 1
+        time.sleep(0.001)
     took = time.monotonic() - start
-    pose, tip = wait(lambda: heard(joints), 5), wait(lambda: heard(touch), 5)
+    tip = wait(lambda: heard(touch), 5)
     assert len(pose.name) == len(pose.position) == 12 and all(0 <= angle < 3 for angle in pose.position), pose
     assert tip.check_ok and len(tip.raw) == 58 and len(tip.channels) == 8, tip
-    tell(sent=commands, states=count, took_s=took, angle_act=list(state.angle_act))
+    tell(sent=sent, states=count, told=told, took_s=took, angle_act=list(state.angle_act))
     if nth + 1 < rounds:
         quiet = time.monotonic()
         while time.monotonic() < quiet + 0.5:
-            if heard(states):
+            while heard(states) or heard(joints):
                 quiet = time.monotonic()
             time.sleep(0.01)
