@@ -123,9 +123,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
     )]
     Replay(ReplayArgs),
-    /// Let several programs use one hand at a time, over Modbus TCP
+    /// Let several programs use one hand at a time, over Modbus TCP, and show it to live viewers
     #[command(
-        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n\nIt prints 'ready tcp ADDRESS' and runs until Ctrl-C. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
+        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --foxglove 127.0.0.1:8765\n\nIt prints 'ready tcp ADDRESS', 'ready foxglove ADDRESS', and runs until Ctrl-C. Modbus TCP: programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
     )]
     Share(ShareArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
@@ -197,6 +197,8 @@ mod tests {
             "handscope share --hand sim:",
             "handscope share --tcp 127.0.0.1:6001",
             "handscope share --hand sim: --tcp localhost:6001",
+            "handscope share --hand sim: --foxglove localhost:8765",
+            "handscope share --hand sim: --foxglove 127.0.0.1:8765 --writers",
             "handscope share --hand sim: --tcp 127.0.0.1:6001 --silence 5",
             "handscope share --hand sim: --tcp 127.0.0.1:6001 --writers --silence 0",
             "handscope snapshot",

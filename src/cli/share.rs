@@ -1,15 +1,19 @@
-//! `share`: a Modbus TCP gateway, through which several programs use one hand, until a person ends it.
+//! `share`: one hand for several programs, through a Modbus TCP gateway and for live viewers, until a person ends it.
 
 use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
 use crate::cli::session;
+use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
+use crate::record::file::Opening;
 use crate::record::{Disarmed, LinkState};
+use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
     ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
 };
+use crate::store::calendar;
 use crate::transport::Endpoint;
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -20,15 +24,19 @@ use tokio::time::interval;
 const LOOK_EACH: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("way").required(true).multiple(true).args(["tcp", "foxglove"]))]
 pub(crate) struct ShareArgs {
     /// The hand to share
     #[arg(long, value_name = "URL")]
     hand: Endpoint,
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
-    tcp: SocketAddr,
+    tcp: Option<SocketAddr>,
+    /// Show what a recording would hold to Foxglove, PlotJuggler and their like here, for example 127.0.0.1:8765
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
+    foxglove: Option<SocketAddr>,
     /// Let the first client that writes move the hand, until it disconnects or falls silent
-    #[arg(long)]
+    #[arg(long, requires = "tcp")]
     writers: bool,
     /// With --writers: after so many seconds without a request the client may no longer move the hand [default: 10]
     #[arg(long, value_name = "SECONDS", requires = "writers", value_parser = silence)]
@@ -51,15 +59,25 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => return Ok(()),
         answered = session::answered(&link, &args.hand) => answered?,
     }
-    let gateway = open(&link, args)?;
-    out.line(&format!("ready tcp {}", gateway.address()))?;
+    let mut ways = Vec::new();
+    let gateway = args.tcp.map(|at| open(&link, at, args)).transpose()?;
+    ways.extend(gateway.iter().map(|gateway| ("tcp", gateway.address())));
+    let viewers = args.foxglove.map(|at| show(&link, at, &args.hand));
+    let viewers = viewers.transpose()?;
+    ways.extend(viewers.iter().map(|server| ("foxglove", server.address())));
+    for (way, address) in ways {
+        out.line(&format!("ready {way} {address}"))?;
+    }
     out.flush()?;
     tokio::select! {
         biased;
         () = interrupt.wished() => {}
-        () = tell(&link, &gateway, &args.hand) => {}
+        () = tell(&link, gateway.as_ref(), &args.hand) => {}
     }
-    end(&link, gateway).await
+    match gateway {
+        Some(gateway) => end(&link, gateway).await,
+        None => Ok(()),
+    }
 }
 
 /// Closes, and does not leave before a hand that a client could move is seen to rest.
@@ -73,8 +91,7 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     session::stopped(link, &mut link.records()).await
 }
 
-fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
-    let address = args.tcp;
+fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Result<Gateway> {
     let config = GatewayConfig {
         address,
         writers: match args.writers {
@@ -93,15 +110,31 @@ fn open(link: &LinkHandle, args: &ShareArgs) -> anyhow::Result<Gateway> {
     Ok(gateway)
 }
 
+/// Shows the hand to viewers.
+fn show(link: &LinkHandle, address: SocketAddr, hand: &Endpoint) -> anyhow::Result<FoxgloveServer> {
+    let moments = (link.clock().now(), calendar::since_1970());
+    let config = FoxgloveConfig {
+        address,
+        opening: Opening::begin(hand.to_string(), moments, Side::Right),
+    };
+    let mut server = FoxgloveServer::open(config, &Handle::current())
+        .map_err(|error| listen::refused(address, &error))?;
+    listen::warn_if_reachable(server.address(), "watch this hand");
+    server.show(link);
+    Ok(server)
+}
+
 /// Tells what a person has to know, for as long as it is shared.
-async fn tell(link: &LinkHandle, gateway: &Gateway, hand: &Endpoint) {
+async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     let mut told = Told::default();
     let mut tick = interval(LOOK_EACH);
     loop {
         tick.tick().await;
         told.link(link, hand);
-        told.turned_away(gateway);
-        told.leases(gateway);
+        if let Some(gateway) = gateway {
+            told.turned_away(gateway);
+            told.leases(gateway);
+        }
     }
 }
 

@@ -1,3 +1,4 @@
 //! One hand for several programs: what is given to them, and what they may write.
 
+pub mod foxglove;
 pub mod gateway;

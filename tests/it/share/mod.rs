@@ -3,6 +3,7 @@
 #[cfg(unix)]
 mod cli;
 mod clients;
+mod foxglove;
 mod place;
 mod reads;
 mod writes;
