@@ -90,7 +90,7 @@ pub(crate) enum Command {
     Trial(TrialArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script
     #[command(
-        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream').\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
+        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream').\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
     )]
     Follow(FollowArgs),
     /// Record everything a hand reports into a session file

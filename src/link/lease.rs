@@ -20,6 +20,8 @@ pub enum Owner {
     Stream(SocketAddr),
     /// A client of the gateway.
     Gateway(SocketAddr),
+    /// Another hand, which this one follows.
+    Mirror,
 }
 
 impl Owner {

@@ -1,17 +1,20 @@
-//! What a hand follows from the command line: lines of JSON at an address, or the gamepad of this computer.
+//! What a hand follows from the command line: lines of JSON at an address, the gamepad of this computer, or another hand.
 
-use crate::cli::listen;
+use crate::cli::parse::number;
+use crate::cli::{listen, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
 use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::mirror::{MirrorScale, MirrorSource};
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
-use crate::link::{Clock, LinkHandle, Owner};
+use crate::link::{Clock, LinkHandle, Owner, PollRates};
 use crate::poses::starter::starter;
 use crate::store::toml_file;
+use crate::transport::Endpoint;
 use anyhow::Context as _;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -22,7 +25,7 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad"]))]
+#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "gamepad", "mirror"]))]
 pub(super) struct SourceArgs {
     /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
@@ -33,11 +36,17 @@ pub(super) struct SourceArgs {
     /// Follow the gamepad of this computer ('handscope help gamepad')
     #[arg(long)]
     gamepad: bool,
+    /// Follow another hand, which is read and never written; left follows right, too
+    #[arg(long, value_name = "URL")]
+    mirror: Option<Endpoint>,
+    /// With --mirror: this share of each bend of the other hand, 0.2 to 1.0 [default: 1.0]
+    #[arg(long, value_name = "SHARE", requires = "mirror", value_parser = scale)]
+    scale: Option<MirrorScale>,
     /// With --gamepad: look for it in this folder
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp"], default_value = FOLDER)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp", "mirror"], default_value = FOLDER)]
     devices: PathBuf,
     /// With --gamepad: take what the controls do from this file
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp", "mirror"])]
     map: Option<PathBuf>,
     /// Which values of a line are for this hand: right or left
     #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
@@ -52,15 +61,41 @@ fn side(text: &str) -> Result<Side, String> {
     }
 }
 
+fn scale(text: &str) -> Result<MirrorScale, String> {
+    let what = "a share of 0.2 to 1.0";
+    let (least, most) = MirrorScale::RANGE;
+    let share = number(text, least..=most, what)?;
+    MirrorScale::new(share).ok_or_else(|| what.to_owned())
+}
+
+impl SourceArgs {
+    /// Whether this hand would follow itself. Each built-in hand is one of its own.
+    pub(super) fn is_circle(&self, hand: &Endpoint) -> bool {
+        !matches!(hand, Endpoint::Sim { .. }) && self.mirror.as_ref() == Some(hand)
+    }
+}
+
 /// What the hand follows.
 pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
     Pad(PadSource),
+    Mirror(Endpoint, MirrorSource),
 }
 
 impl FollowSource {
     /// Opens what the person named.
-    pub(super) fn open(args: &SourceArgs, link: &LinkHandle, clock: Clock) -> anyhow::Result<Self> {
+    pub(super) async fn open(
+        args: &SourceArgs,
+        link: &LinkHandle,
+        clock: Clock,
+    ) -> anyhow::Result<Self> {
+        if let Some(other) = &args.mirror {
+            let leader = session::open(other, PollRates::default(), clock);
+            session::answered(&leader, other).await?;
+            let scale = args.scale.unwrap_or(MirrorScale::WHOLE);
+            let source = MirrorSource::open(leader, scale);
+            return Ok(Self::Mirror(other.clone(), source));
+        }
         let stops = link.clone();
         let stop = Arc::new(move || stops.stop());
         let udp = args.udp.map(StreamPlace::Udp);
@@ -94,6 +129,7 @@ impl FollowSource {
             Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
             Self::Pad(_) => "ready gamepad".into(),
+            Self::Mirror(other, _) => format!("ready mirror {other}"),
         }
     }
 
@@ -101,6 +137,7 @@ impl FollowSource {
         match self {
             Self::Stream(_, source) => source.follow(),
             Self::Pad(source) => source.follow(),
+            Self::Mirror(_, source) => source.follow(),
         }
     }
 
@@ -113,11 +150,15 @@ impl FollowSource {
                 is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
             }
             Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
+            Self::Mirror(other, source) => {
+                let is_fresh = source.view().is_fresh(now);
+                is_fresh.then(|| (Owner::Mirror, other.to_string()))
+            }
         }
     }
 
     /// How it goes, in words and as an object.
-    pub(super) fn told(&self) -> (String, Value) {
+    pub(super) fn told(&self, now: Moment) -> (String, Value) {
         match self {
             Self::Stream(_, source) => {
                 let StreamView {
@@ -155,6 +196,20 @@ impl FollowSource {
                 };
                 let object =
                     json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
+                (words, object)
+            }
+            Self::Mirror(other, source) => {
+                let view = source.view();
+                let trouble = source.trouble().map(|trouble| trouble.to_string());
+                // The rate of a hand that is not heard any more is none.
+                let rate_hz = view.is_fresh(now).then_some(view.rate_hz);
+                let words = match (&trouble, rate_hz) {
+                    (Some(trouble), _) => format!("{other}: {trouble}"),
+                    (None, Some(rate)) => format!("{rate:6.1} readings/s of {other}"),
+                    (None, None) => format!("{other} does not tell its angles"),
+                };
+                let object =
+                    json!({"mirror": other.to_string(), "rate_hz": rate_hz, "trouble": trouble});
                 (words, object)
             }
         }
