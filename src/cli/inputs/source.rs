@@ -40,7 +40,7 @@ pub(super) struct SourceArgs {
     #[arg(long, value_name = "URL")]
     mirror: Option<Endpoint>,
     /// With --mirror: this share of each bend of the other hand, 0.2 to 1.0 [default: 1.0]
-    #[arg(long, value_name = "SHARE", requires = "mirror", value_parser = scale)]
+    #[arg(long, value_name = "SHARE", conflicts_with_all = ["udp", "tcp", "gamepad"], value_parser = scale)]
     scale: Option<MirrorScale>,
     /// With --gamepad: look for it in this folder
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp", "mirror"], default_value = FOLDER)]

@@ -110,7 +110,11 @@ fn ctrl_c_stops_the_hand_and_ends_well() {
 fn mirroring(hand: &str, other: &str, more: &[&str]) -> Running {
     let args = ["follow", "--hand", hand, "--mirror", other, "--json"];
     let mut running = start(&[&args, more].concat());
-    assert_eq!(running.line(), format!("ready mirror {other}"));
+    let ready = running.line();
+    assert!(
+        ready.starts_with(&format!("ready mirror {other}")),
+        "{ready}"
+    );
     running
 }
 
@@ -124,7 +128,10 @@ fn a_hand_follows_another_and_is_stopped_when_that_is_switched_off() {
     assert!(moved < 230, "{moved}");
     let told = running.until(|line| phase(line) == "following");
     let told: Value = serde_json::from_str(&told).unwrap();
-    assert_eq!(told["mirror"], other.as_str(), "{told}");
+    assert!(
+        told["mirror"].as_str().unwrap().starts_with(&other),
+        "{told}"
+    );
     assert!(told["rate_hz"].as_f64() > Some(20.0), "{told}");
     let patience = std::time::Instant::now() + Duration::from_secs(20);
     while angle(&hand).abs_diff(600) > 30 {
@@ -135,8 +142,9 @@ fn a_hand_follows_another_and_is_stopped_when_that_is_switched_off() {
     // Nobody can press Enter in a test.
     let said = running.end();
     assert_eq!(said.code, Some(1), "{}", said.err);
-    let words = format!("{other} fell silent: the hand was stopped");
-    assert!(said.err.contains(&words), "{}", said.err);
+    assert!(said.err.contains(&other), "{}", said.err);
+    let words = "fell silent: the hand was stopped";
+    assert!(said.err.contains(words), "{}", said.err);
 }
 
 /// Sends the index of a hand here, as another program would, and waits for it; where it is then.
@@ -236,7 +244,7 @@ fn wrong_use_is_told_in_one_sentence() {
         (
             &["--hand", "sim:", "--gamepad", "--scale", "0.5"],
             2,
-            "--mirror",
+            "--scale",
         ),
         (
             &["--hand", "tcp:127.0.0.1:1", "--mirror", "tcp:127.0.0.1:1"],
