@@ -16,8 +16,8 @@
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
-//! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams, DDS; what they ask for, checked, and how a hand follows it |
-//! | 4 | [`share`] | one hand for several programs: gateway, DDS |
+//! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams, DDS, another hand; what they ask for, checked, and how a hand follows it |
+//! | 4 | [`share`] | one hand for several programs: gateway, DDS, live viewers |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
@@ -42,7 +42,7 @@
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not.
 //! * One owner at a time may move a hand, by a [`link::Lease`] that a person granted; a stop, a fault, a lost link and silence end it,
 //!   and what the one before asked for is dropped.
-//! * A hand that follows another program or a gamepad begins where it is, and stays within a lead and a rate.
+//! * A hand that follows another program, a gamepad or another hand begins where it is, and stays within a lead and a rate.
 //! * Parameters are written at rest and disarmed, read back, and reported as applied, refused, altered or not known. A SAVE has
 //!   the line to itself, one at a time, and no late frame counts for another write. Flash cannot be read, and the program says so.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.

@@ -90,7 +90,7 @@ pub(crate) enum Command {
     Trial(TrialArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script
     #[command(
-        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
+        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
     )]
     Follow(FollowArgs),
     /// Record everything a hand reports into a session file
@@ -123,9 +123,9 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
     )]
     Replay(ReplayArgs),
-    /// Let several programs use one hand at a time, over Modbus TCP
+    /// Let several programs use one hand at a time, over Modbus TCP, and show it to live viewers
     #[command(
-        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --dds\n\nIt prints 'ready tcp ADDRESS' or 'ready dds ADDRESS' and runs until Ctrl-C. With --dds the hand's state is told as Unitree's driver does it, and to ROS 2 ('handscope help dds'); no other computer is contacted unless you name an interface. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
+        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --dds\n  handscope share --hand sim: --foxglove 127.0.0.1:8765\n\nIt prints 'ready tcp ADDRESS', 'ready foxglove ADDRESS' or 'ready dds ADDRESS' and runs until Ctrl-C. With --dds the hand's state is told as Unitree's driver does it, and to ROS 2 ('handscope help dds'); no other computer is contacted unless you name an interface. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
     )]
     Share(ShareArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
@@ -201,6 +201,8 @@ mod tests {
             "handscope share --hand sim: --dds --domain 233",
             "handscope share --hand sim: --tcp 127.0.0.1:6001 --domain 1",
             "handscope follow --hand sim: --dds --udp 127.0.0.1:6010",
+            "handscope share --hand sim: --foxglove localhost:8765",
+            "handscope share --hand sim: --foxglove 127.0.0.1:8765 --writers",
             "handscope share --hand sim: --tcp 127.0.0.1:6001 --silence 5",
             "handscope share --hand sim: --tcp 127.0.0.1:6001 --writers --silence 0",
             "handscope snapshot",

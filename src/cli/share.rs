@@ -1,4 +1,4 @@
-//! `share`: one hand for several programs, over Modbus TCP and DDS, until a person ends it.
+//! `share`: one hand for several programs, over Modbus TCP, DDS and for live viewers, until a person ends it.
 
 use crate::cli::dds::DdsArgs;
 use crate::cli::interrupt::Interrupt;
@@ -8,10 +8,13 @@ use crate::cli::parse::{number, side};
 use crate::cli::session;
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
+use crate::record::file::Opening;
 use crate::record::{Disarmed, LinkState};
+use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
     ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
 };
+use crate::store::calendar;
 use crate::transport::Endpoint;
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -22,7 +25,7 @@ use tokio::time::interval;
 const LOOK_EACH: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds"]))]
+#[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds", "foxglove"]))]
 pub(crate) struct ShareArgs {
     /// The hand to share
     #[arg(long, value_name = "URL")]
@@ -30,6 +33,9 @@ pub(crate) struct ShareArgs {
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
     tcp: Option<SocketAddr>,
+    /// Show what a recording would hold to Foxglove, PlotJuggler and their like here, for example 127.0.0.1:8765
+    #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
+    foxglove: Option<SocketAddr>,
     #[command(flatten)]
     dds: DdsArgs,
     /// With --dds: which hand it is, right or left
@@ -59,10 +65,14 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => return Ok(()),
         answered = session::answered(&link, &args.hand) => answered?,
     }
-    let gateway = args.tcp.map(|address| open(&link, args, address));
-    let gateway = gateway.transpose()?;
-    if let Some(gateway) = &gateway {
-        out.line(&format!("ready tcp {}", gateway.address()))?;
+    let mut ways = Vec::new();
+    let gateway = args.tcp.map(|at| open(&link, at, args)).transpose()?;
+    ways.extend(gateway.iter().map(|gateway| ("tcp", gateway.address())));
+    let viewers = args.foxglove.map(|at| show(&link, at, &args.hand));
+    let viewers = viewers.transpose()?;
+    ways.extend(viewers.iter().map(|server| ("foxglove", server.address())));
+    for (way, address) in ways {
+        out.line(&format!("ready {way} {address}"))?;
     }
     let dds = args.dds.open(&link, args.side)?;
     if let Some(dds) = &dds {
@@ -91,7 +101,7 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     session::stopped(link, &mut link.records()).await
 }
 
-fn open(link: &LinkHandle, args: &ShareArgs, address: SocketAddr) -> anyhow::Result<Gateway> {
+fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Result<Gateway> {
     let config = GatewayConfig {
         address,
         writers: match args.writers {
@@ -108,6 +118,20 @@ fn open(link: &LinkHandle, args: &ShareArgs, address: SocketAddr) -> anyhow::Res
     };
     listen::warn_if_reachable(gateway.address(), can);
     Ok(gateway)
+}
+
+/// Shows the hand to viewers.
+fn show(link: &LinkHandle, address: SocketAddr, hand: &Endpoint) -> anyhow::Result<FoxgloveServer> {
+    let moments = (link.clock().now(), calendar::since_1970());
+    let config = FoxgloveConfig {
+        address,
+        opening: Opening::begin(hand.to_string(), moments, Side::Right),
+    };
+    let mut server = FoxgloveServer::open(config, &Handle::current())
+        .map_err(|error| listen::refused(address, &error))?;
+    listen::warn_if_reachable(server.address(), "watch this hand");
+    server.show(link);
+    Ok(server)
 }
 
 /// Tells what a person has to know, for as long as it is shared.

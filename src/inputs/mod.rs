@@ -6,6 +6,7 @@ pub mod follow;
 mod follow_tests;
 pub mod intake;
 pub mod line;
+pub mod mirror;
 pub mod offer;
 pub mod pad;
 pub mod stream;

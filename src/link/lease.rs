@@ -23,6 +23,8 @@ pub enum Owner {
     Dds,
     /// A client of the gateway.
     Gateway(SocketAddr),
+    /// Another hand, which this one follows.
+    Mirror,
 }
 
 impl Owner {

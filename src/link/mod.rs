@@ -8,6 +8,7 @@
 mod bus;
 pub mod clock;
 pub mod config;
+pub mod entries;
 pub mod handle;
 mod image;
 pub mod latency;
@@ -30,6 +31,7 @@ mod wanted_tests;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
+pub use entries::LinkEntries;
 pub use handle::{LinkHandle, LinkObserver, Records, open};
 pub use latency::Ticks;
 pub use lease::{HoldToRun, Lease, LeaseHolder, LeaseRefusal, Owner};

@@ -1,4 +1,5 @@
 //! One hand for several programs: what is given to them, and what they may write.
 
 pub mod dds;
+pub mod foxglove;
 pub mod gateway;

@@ -4,6 +4,7 @@
 mod clock;
 mod codec;
 mod cycles;
+mod foxglove;
 mod frames;
 #[cfg(unix)]
 mod gateway;
@@ -50,11 +51,12 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 12] = [
+const PARTS: [Part; 13] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
     ("gateway", gateway::run),
+    ("foxglove", foxglove::run),
     ("ui", frames::run),
     ("hand", hand::run),
     ("png", pictures::run),

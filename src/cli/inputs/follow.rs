@@ -1,8 +1,8 @@
-//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, or a gamepad, once a person lets it.
+//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, a gamepad or another hand, once a person lets it.
 
 use crate::cli::inputs::source::{FollowSource, SourceArgs};
 use crate::cli::interrupt::Interrupt;
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, WrongUsage, say};
 use crate::cli::parse::{self, number};
 use crate::cli::session;
 use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
@@ -83,6 +83,10 @@ impl FollowArgs {
 
 /// Follows until a person ends it.
 pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> {
+    if args.from.is_circle(&args.hand) {
+        let why = "a hand cannot follow itself; name another one with --mirror";
+        return Err(WrongUsage::error(why));
+    }
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let (link, mut records) = session::open_with_records(&args.hand, PollRates::default(), clock);
@@ -91,7 +95,11 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         () = interrupt.wished() => return Ok(()),
         seen = known(&link, &mut records, &args.hand) => seen?,
     };
-    let source = FollowSource::open(&args.from, &link, clock, args.arm_request())?;
+    let source = tokio::select! {
+        biased;
+        () = interrupt.wished() => return Ok(()),
+        source = FollowSource::open(&args.from, (&link, clock), args.arm_request()) => source?,
+    };
     out.line(&source.ready())?;
     out.flush()?;
     let mut at = AtHand {
@@ -246,7 +254,7 @@ impl Teller<'_> {
         }
         self.told = Some((phase, now));
         let phase = phase.map_or("waiting", phase_word);
-        let (words, mut object) = source.told();
+        let (words, mut object) = source.told(now);
         match object.as_object_mut().filter(|_| self.json) {
             Some(fields) => {
                 fields.insert("t_s".into(), now.since(Moment::ZERO).as_secs_f64().into());

@@ -1,20 +1,24 @@
-//! What a hand follows from the command line: lines of JSON at an address, programs on DDS, or the gamepad of this computer.
+//! What a hand follows from the command line: lines of JSON at an address, programs on DDS, the gamepad of this computer, or another
+//! hand.
 
 use crate::cli::dds::{DdsArgs, DdsOut};
-use crate::cli::{listen, parse};
+use crate::cli::parse::number;
+use crate::cli::{listen, parse, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
 use crate::inputs::dds::ctrl;
 use crate::inputs::dds::source::{DdsSource, DdsSourceConfig, DdsView};
 use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::mirror::{MirrorScale, MirrorSource};
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
-use crate::link::{ArmRequest, Clock, LinkHandle, Owner};
+use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
 use crate::poses::starter::starter;
 use crate::store::toml_file;
+use crate::transport::Endpoint;
 use anyhow::Context as _;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -25,7 +29,7 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "dds", "gamepad"]))]
+#[command(group = clap::ArgGroup::new("place").required(true).args(["udp", "tcp", "dds", "gamepad", "mirror"]))]
 pub(super) struct SourceArgs {
     /// Take a line a datagram here, for example 127.0.0.1:6010; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
@@ -38,15 +42,35 @@ pub(super) struct SourceArgs {
     /// Follow the gamepad of this computer ('handscope help gamepad')
     #[arg(long)]
     gamepad: bool,
+    /// Follow another hand, which is read and never written; left follows right, too
+    #[arg(long, value_name = "URL")]
+    mirror: Option<Endpoint>,
+    /// With --mirror: this share of each bend of the other hand, 0.2 to 1.0 [default: 1.0]
+    #[arg(long, value_name = "SHARE", conflicts_with_all = ["udp", "tcp", "gamepad"], value_parser = scale)]
+    scale: Option<MirrorScale>,
     /// With --gamepad: look for it in this folder
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp", "dds"], default_value = FOLDER)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["udp", "tcp", "dds", "mirror"], default_value = FOLDER)]
     devices: PathBuf,
     /// With --gamepad: take what the controls do from this file
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp", "dds"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["udp", "tcp", "dds", "mirror"])]
     map: Option<PathBuf>,
     /// Which values of a line, or which topics, are for this hand: right or left
     #[arg(long, value_name = "SIDE", default_value = "right", value_parser = parse::side)]
     side: Side,
+}
+
+fn scale(text: &str) -> Result<MirrorScale, String> {
+    let what = "a share of 0.2 to 1.0";
+    let (least, most) = MirrorScale::RANGE;
+    let share = number(text, least..=most, what)?;
+    MirrorScale::new(share).ok_or_else(|| what.to_owned())
+}
+
+impl SourceArgs {
+    /// Whether this hand would follow itself. Each built-in hand is one of its own.
+    pub(super) fn is_circle(&self, hand: &Endpoint) -> bool {
+        !matches!(hand, Endpoint::Sim { .. }) && self.mirror.as_ref() == Some(hand)
+    }
 }
 
 /// What the hand follows.
@@ -54,16 +78,23 @@ pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
     Dds(DdsSource, DdsOut),
     Pad(PadSource),
+    Mirror(Endpoint, MirrorSource),
 }
 
 impl FollowSource {
     /// Opens what the person named; nothing it takes goes beyond what is allowed.
-    pub(super) fn open(
+    pub(super) async fn open(
         args: &SourceArgs,
-        link: &LinkHandle,
-        clock: Clock,
+        (link, clock): (&LinkHandle, Clock),
         allowed: ArmRequest,
     ) -> anyhow::Result<Self> {
+        if let Some(other) = &args.mirror {
+            let leader = session::open(other, PollRates::default(), clock);
+            session::answered(&leader, other).await?;
+            let scale = args.scale.unwrap_or(MirrorScale::WHOLE);
+            let source = MirrorSource::open(leader, scale);
+            return Ok(Self::Mirror(other.clone(), source));
+        }
         if let Some(out) = args.dds.open(link, args.side)? {
             let messages = out.node.reader(&ctrl::topic(args.side))?;
             let config = DdsSourceConfig {
@@ -108,6 +139,7 @@ impl FollowSource {
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
             Self::Dds(_, out) => out.ready(),
             Self::Pad(_) => "ready gamepad".into(),
+            Self::Mirror(other, _) => format!("ready mirror {other}"),
         }
     }
 
@@ -116,6 +148,7 @@ impl FollowSource {
             Self::Stream(_, source) => source.follow(),
             Self::Dds(source, _) => source.follow(),
             Self::Pad(source) => source.follow(),
+            Self::Mirror(_, source) => source.follow(),
         }
     }
 
@@ -133,11 +166,15 @@ impl FollowSource {
                 is_fresh.then(|| (Owner::Dds, format!("the program on DDS ({sender})")))
             }
             Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
+            Self::Mirror(other, source) => {
+                let is_fresh = source.view().is_fresh(now);
+                is_fresh.then(|| (Owner::Mirror, other.to_string()))
+            }
         }
     }
 
     /// How it goes, in words and as an object.
-    pub(super) fn told(&self) -> (String, Value) {
+    pub(super) fn told(&self, now: Moment) -> (String, Value) {
         match self {
             Self::Stream(_, source) => {
                 let StreamView {
@@ -176,6 +213,20 @@ impl FollowSource {
                 };
                 let object =
                     json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
+                (words, object)
+            }
+            Self::Mirror(other, source) => {
+                let view = source.view();
+                let trouble = source.trouble().map(|trouble| trouble.to_string());
+                // The rate of a hand that is not heard any more is none.
+                let rate_hz = view.is_fresh(now).then_some(view.rate_hz);
+                let words = match (&trouble, rate_hz) {
+                    (Some(trouble), _) => format!("{other}: {trouble}"),
+                    (None, Some(rate)) => format!("{rate:6.1} readings/s of {other}"),
+                    (None, None) => format!("{other} does not tell its angles"),
+                };
+                let object =
+                    json!({"mirror": other.to_string(), "rate_hz": rate_hz, "trouble": trouble});
                 (words, object)
             }
         }

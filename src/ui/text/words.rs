@@ -114,6 +114,7 @@ pub(crate) fn owner(look: Look, owner: Owner) -> String {
     const EXHIBITION: Text = Text::new("Exhibition", "展示");
     const STREAM: Text = Text::new("Program", "程序");
     const GATEWAY: Text = Text::new("Gateway client", "网关程序");
+    const MIRROR: Text = Text::new("Another hand", "另一只手");
     match owner {
         Owner::Person => look.say(PERSON).into(),
         Owner::Task => look.say(TASK).into(),
@@ -121,6 +122,7 @@ pub(crate) fn owner(look: Look, owner: Owner) -> String {
         Owner::Gamepad => look.say(inputs::PAD).into(),
         Owner::Stream(sender) => look.told(STREAM, sender),
         Owner::Dds => "DDS".into(),
+        Owner::Mirror => look.say(MIRROR).into(),
         Owner::Gateway(client) => look.told(GATEWAY, client),
     }
 }

@@ -5,7 +5,8 @@ use crate::setup::skipped::skipped;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::cell::RefCell;
-use std::net::UdpSocket;
+use std::io::{Read as _, Write as _};
+use std::net::{TcpStream, UdpSocket};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -106,6 +107,82 @@ fn ctrl_c_stops_the_hand_and_ends_well() {
     sends.join().unwrap();
 }
 
+/// Follows another hand; told as JSON.
+fn mirroring(hand: &str, other: &str, more: &[&str]) -> Running {
+    let args = ["follow", "--hand", hand, "--mirror", other, "--json"];
+    let mut running = start(&[&args, more].concat());
+    let ready = running.line();
+    assert!(
+        ready.starts_with(&format!("ready mirror {other}")),
+        "{ready}"
+    );
+    running
+}
+
+#[test]
+fn a_hand_follows_another_and_is_stopped_when_that_is_switched_off() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let (leads, other) = sim_on_tcp(&["--scenario", "free"]);
+    let mut running = mirroring(&hand, &other, &["--scale", "0.5", "--arm"]);
+    running.until(|line| phase(line) == "following");
+    let moved = move_index(&other, 200);
+    assert!(moved < 230, "{moved}");
+    let told = running.until(|line| phase(line) == "following");
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert!(
+        told["mirror"].as_str().unwrap().starts_with(&other),
+        "{told}"
+    );
+    assert!(told["rate_hz"].as_f64() > Some(20.0), "{told}");
+    let patience = std::time::Instant::now() + Duration::from_secs(20);
+    while angle(&hand).abs_diff(600) > 30 {
+        assert!(std::time::Instant::now() < patience, "{}", angle(&hand));
+    }
+    leads.kill();
+    running.until(|line| phase(line) == "silent");
+    // Nobody can press Enter in a test.
+    let said = running.end();
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    assert!(said.err.contains(&other), "{}", said.err);
+    let words = "fell silent: the hand was stopped";
+    assert!(said.err.contains(words), "{}", said.err);
+}
+
+/// Sends the index of a hand here, as another program would, and waits for it; where it is then.
+fn move_index(hand: &str, to: u16) -> i64 {
+    let place = hand.strip_prefix("tcp:").unwrap();
+    let mut other = TcpStream::connect(place).unwrap();
+    let [high, low] = to.to_be_bytes();
+    // Function 06 at the index's place in ANGLE_SET, 1492.
+    let asked = [0, 1, 0, 0, 0, 6, 1, 6, 5, 0xD4, high, low];
+    other.write_all(&asked).unwrap();
+    let mut echo = [0; 12];
+    other.read_exact(&mut echo).unwrap();
+    assert_eq!(echo, asked);
+    drop(other);
+    let patience = std::time::Instant::now() + Duration::from_secs(20);
+    loop {
+        let at = angle(hand);
+        if at.abs_diff(i64::from(to)) <= 25 || std::time::Instant::now() > patience {
+            return at;
+        }
+    }
+}
+
+#[test]
+fn another_hand_moves_nothing_without_a_person_who_lets_it() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let (_other, other) = sim_on_tcp(&["--scenario", "free"]);
+    let before = angle(&hand);
+    let mut running = mirroring(&hand, &other, &[]);
+    move_index(&other, 300);
+    let told = running.until(|line| line.contains("rate_hz"));
+    assert_eq!(phase(&told), "waiting");
+    running.signal(Signal::SIGINT);
+    running.end().ok();
+    assert_eq!(angle(&hand), before);
+}
+
 #[test]
 fn the_sender_of_the_manual_moves_a_hand() {
     let page = handscope::manual::topic("stream").unwrap().text;
@@ -196,6 +273,26 @@ fn wrong_use_is_told_in_one_sentence() {
         (&["--hand", "sim:", "--dds", "--domain", "233"], 2, "232"),
         (&["--hand", "sim:", "--dds", "--gamepad"], 2, "--dds"),
         (&["--hand", "sim:", "--dds=nowhere0"], 1, "nowhere0"),
+        (
+            &["--hand", "sim:", "--mirror", "sim:", "--scale", "0.1"],
+            2,
+            "0.2 to 1.0",
+        ),
+        (
+            &["--hand", "sim:", "--gamepad", "--scale", "0.5"],
+            2,
+            "--scale",
+        ),
+        (
+            &["--hand", "tcp:127.0.0.1:1", "--mirror", "tcp:127.0.0.1:1"],
+            2,
+            "cannot follow itself",
+        ),
+        (
+            &["--hand", "sim:", "--mirror", "tcp:127.0.0.1:1"],
+            1,
+            "127.0.0.1:1",
+        ),
         (
             &["--hand", "sim:", "--gamepad", "--map", "/none.toml"],
             1,

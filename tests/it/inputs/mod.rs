@@ -2,4 +2,5 @@
 
 mod dds;
 mod follow;
+mod mirror;
 mod stream;

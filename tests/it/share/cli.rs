@@ -8,6 +8,9 @@ use std::net::{TcpListener, TcpStream};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
+use tokio_tungstenite::tungstenite;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
+use tokio_tungstenite::tungstenite::http::HeaderValue;
 
 /// The index finger's place in ANGLE_SET.
 const INDEX: u16 = 1492;
@@ -141,10 +144,15 @@ fn what_cannot_be_shared_is_told_in_one_sentence() {
     let taken = listener.local_addr().unwrap().to_string();
     for (args, code, words) in [
         (&["--hand", "sim:"][..], 2, "--tcp"),
-        (&["--hand", "sim:"], 2, "--dds"),
+        (&["--hand", "sim:"], 2, "--foxglove"),
         (&["--hand", "sim:", "--dds", "--writers"], 2, "--tcp"),
         (&["--hand", "sim:", "--dds=nowhere0"], 1, "nowhere0"),
         (&["--tcp", "127.0.0.1:0"], 2, "--hand"),
+        (
+            &["--hand", "sim:", "--foxglove", "127.0.0.1:0", "--writers"],
+            2,
+            "--tcp",
+        ),
         (
             &["--hand", "sim:", "--tcp", "localhost:6001"],
             2,
@@ -213,4 +221,105 @@ fn pymodbus_reads_and_moves_a_shared_hand() {
     let lines: Vec<&str> = out.lines().collect();
     let angles = "[1000, 1000, 1000, 1000, 1000, 1000]";
     assert_eq!(lines, [angles, "45", "2", "3", "[500]", "2"]);
+}
+
+/// A hand that is shown, and where.
+fn show(args: &[&str]) -> (Running, String) {
+    let mut share = start(&[&["share", "--foxglove", "127.0.0.1:0"], args].concat());
+    let ready = share.line();
+    let address = ready.strip_prefix("ready foxglove ").expect(&ready);
+    let address = address.to_owned();
+    (share, address)
+}
+
+#[test]
+fn a_hand_is_shown_and_shared_at_once() {
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let both = ["--hand", &hand, "--foxglove", "127.0.0.1:0"];
+    let (mut share, tcp) = share(&both);
+    let ready = share.line();
+    let shown = ready.strip_prefix("ready foxglove ").expect(&ready);
+    let mut client = TcpStream::connect(tcp).unwrap();
+    assert_eq!(read(&mut client, 1546), 1000);
+    let viewer = TcpStream::connect(shown).unwrap();
+    let request = "ws://hand".into_client_request().map(|mut request| {
+        let name = HeaderValue::from_static("foxglove.sdk.v1");
+        request.headers_mut().insert("sec-websocket-protocol", name);
+        request
+    });
+    let (mut viewer, _) = tungstenite::client(request.unwrap(), viewer).unwrap();
+    let told = viewer.read().unwrap().into_text().unwrap();
+    assert!(told.contains(&format!("Handscope {hand}")), "{told}");
+    assert!(!told.contains("SIMULATED"), "it is behind a wire: {told}");
+    share.signal(Signal::SIGINT);
+    assert_eq!(share.end().ok().err, "");
+}
+
+#[test]
+fn a_viewer_in_the_network_is_warned_of() {
+    let mut share = start(&["share", "--hand", "sim:", "--foxglove", "0.0.0.0:0"]);
+    assert!(share.line().starts_with("ready foxglove 0.0.0.0:"));
+    let told = share.complaint();
+    assert!(told.contains("watch this hand"), "{told}");
+}
+
+/// Ports at which a process listens or takes datagrams.
+#[cfg(target_os = "linux")]
+fn listens(id: u32) -> usize {
+    let folder = std::fs::read_dir(format!("/proc/{id}/fd")).unwrap();
+    let links = folder.filter_map(|entry| std::fs::read_link(entry.unwrap().path()).ok());
+    let sockets: Vec<String> = links
+        .filter_map(|link| Some(link.to_str()?.strip_prefix("socket:[")?.replace(']', "")))
+        .collect();
+    let tables = ["tcp", "tcp6", "udp", "udp6"].map(|table| {
+        std::fs::read_to_string(format!("/proc/{id}/net/{table}")).unwrap_or_default()
+    });
+    let rows = tables.iter().flat_map(|table| table.lines().skip(1));
+    let waiting = rows.filter(|row| {
+        let fields: Vec<&str> = row.split_whitespace().collect();
+        // 0A is a listener, 07 an open socket for datagrams (man proc_pid_net).
+        matches!(fields[3], "0A" | "07") && sockets.iter().any(|own| own == fields[9])
+    });
+    waiting.count()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn there_is_a_listener_for_each_way_that_was_asked_for_and_no_other() {
+    let (share, _) = share(&["--hand", "sim:"]);
+    assert_eq!(listens(share.id()), 1);
+    let (share, _) = show(&["--hand", "sim:"]);
+    assert_eq!(listens(share.id()), 1);
+    let mut watch = start(&["watch", "--hand", "sim:", "--json"]);
+    watch.line();
+    assert_eq!(listens(watch.id()), 0);
+}
+
+#[test]
+fn websockets_mcap_and_rosbags_of_others_read_a_shown_hand() {
+    let asked = Command::new("python3")
+        .args([
+            "-c",
+            "import websockets, mcap_ros2.decoder, rosbags.typesys",
+        ])
+        .stderr(Stdio::null())
+        .status();
+    if !asked.is_ok_and(|status| status.success()) {
+        return skipped(
+            "foxglove",
+            "python3 has no websockets, mcap-ros2-support or rosbags",
+        );
+    }
+    let (_share, address) = show(&["--hand", "sim:"]);
+    let mut command = Command::new("python3");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/interop/foxglove.py");
+    command.args([script, &address]).stdin(Stdio::null());
+    let out = listen(command).end().ok().out;
+    let lines: Vec<&str> = out.lines().collect();
+    assert_eq!(lines.len(), 2, "{out}");
+    for (line, name) in lines.iter().zip(["sdk", "websocket"]) {
+        let begin = format!("foxglove.{name}.v1 Handscope sim:");
+        assert!(line.starts_with(&begin), "{out}");
+        assert!(line.contains("(SIMULATED)"), "{out}");
+    }
 }

@@ -5,6 +5,7 @@ mod cli;
 mod clients;
 #[cfg(target_os = "linux")]
 mod dds;
+mod foxglove;
 mod place;
 mod reads;
 mod writes;

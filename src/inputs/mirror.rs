@@ -1,0 +1,195 @@
+//! Another hand as a source that a hand can follow: each time that it says where its joints are, these are the targets, scaled.
+//! That hand is read and never written. Left and right have the same six joints in the same order, so one follows the other as is.
+
+use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
+use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
+use crate::link::rate::EventRate;
+use crate::link::{LinkHandle, LinkTrouble, Records};
+use crate::record::Record;
+use tokio::sync::{mpsc, watch};
+use tokio::task::AbortHandle;
+
+/// Which share of each bend of the other hand is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MirrorScale(f32);
+
+impl MirrorScale {
+    /// Smallest and largest share.
+    pub const RANGE: (f32, f32) = (0.2, 1.0);
+    /// As the other hand is.
+    pub const WHOLE: Self = Self(1.0);
+
+    /// A share within [`Self::RANGE`].
+    #[must_use]
+    pub fn new(share: f32) -> Option<Self> {
+        let (least, most) = Self::RANGE;
+        (least..=most).contains(&share).then_some(Self(share))
+    }
+
+    /// Where a joint goes while the same joint of the other hand is here: its way from open, times the share.
+    #[must_use]
+    pub fn aim(self, leader: Angle) -> Angle {
+        let bent = f32::from(Angle::MAX.get()) - f32::from(leader.get());
+        let aim = f32::from(Angle::MAX.get()) - self.0 * bent;
+        #[expect(clippy::cast_possible_truncation, reason = "rounded, and in range")]
+        Angle::nearest(aim.round() as i64)
+    }
+}
+
+/// What is known of the other hand now.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MirrorView {
+    /// When it said last where its joints are.
+    pub heard: Option<Moment>,
+    /// How often it said so in the second before.
+    pub rate_hz: f64,
+}
+
+impl MirrorView {
+    /// Whether it is known where that hand is.
+    #[must_use]
+    pub fn is_fresh(&self, now: Moment) -> bool {
+        self.heard.is_some_and(|at| now.since(at) < HOLDS_AFTER)
+    }
+}
+
+/// Another hand that is watched. Dropped, it is watched no more.
+#[derive(Debug)]
+pub struct MirrorSource {
+    leader: LinkHandle,
+    view: watch::Receiver<MirrorView>,
+    outlet: OfferOutlet,
+    abort: AbortHandle,
+}
+
+impl Drop for MirrorSource {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl MirrorSource {
+    /// Watches from now on. The links of both hands must count from the same clock. Must be called within a tokio runtime.
+    #[must_use]
+    pub fn open(leader: LinkHandle, scale: MirrorScale) -> Self {
+        let (told, view) = watch::channel(MirrorView::default());
+        let outlet = OfferOutlet::default();
+        let watching = watch(leader.records(), scale, told, outlet.clone());
+        Self {
+            leader,
+            view,
+            outlet,
+            abort: tokio::spawn(watching).abort_handle(),
+        }
+    }
+
+    /// What is known of it.
+    #[must_use]
+    pub fn view(&self) -> MirrorView {
+        *self.view.borrow()
+    }
+
+    /// Why it does not answer, if it does not.
+    #[must_use]
+    pub fn trouble(&self) -> Option<LinkTrouble> {
+        self.leader.status().trouble
+    }
+
+    /// Its angles as targets from now on, for whoever follows; whoever did before does no more.
+    #[must_use]
+    pub fn follow(&self) -> mpsc::Receiver<Offer> {
+        self.outlet.follow()
+    }
+}
+
+async fn watch(
+    mut records: Records,
+    scale: MirrorScale,
+    told: watch::Sender<MirrorView>,
+    outlet: OfferOutlet,
+) {
+    let mut rate = EventRate::default();
+    while let Some(record) = records.next().await {
+        let Record::Reading { sample, fresh } = record else {
+            continue;
+        };
+        let is_news = fresh.contains(Group::Angle);
+        if let Some(offer) = is_news.then(|| offer(&sample, scale)).flatten() {
+            rate.hit(offer.at);
+            told.send_replace(MirrorView {
+                heard: Some(offer.at),
+                rate_hz: rate.hz(offer.at),
+            });
+            outlet.offer(offer);
+        }
+    }
+}
+
+/// The targets of a reading; `None` if no joint is known. A joint that is not is left alone.
+fn offer(sample: &HandSample, scale: MirrorScale) -> Option<Offer> {
+    let angle = sample.angle?;
+    let aims = PerDof::from_fn(|dof| AngleReading::hold(angle.value[dof]).map(|at| scale.aim(at)));
+    aims.iter().any(|(_, aim)| aim.is_some()).then_some(Offer {
+        at: angle.received,
+        aims,
+        limits: OfferLimits::NONE,
+        held: None,
+        // A hand at rest rightly says the same for long: that it answered is what proves that it is there.
+        mark: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Dof, Timed};
+
+    #[test]
+    fn the_way_from_open_is_scaled_and_shares_outside_the_range_are_none() {
+        for (share, leader, aim) in [
+            (1.0, 0, 0),
+            (1.0, 345, 345),
+            (1.0, 1000, 1000),
+            (0.5, 0, 500),
+            (0.5, 301, 651),
+            (0.2, 0, 800),
+            (0.2, 1000, 1000),
+        ] {
+            let scale = MirrorScale::new(share).unwrap();
+            let leader = Angle::new(leader).unwrap();
+            assert_eq!(scale.aim(leader).get(), aim, "{share} of {leader:?}");
+        }
+        for share in [0.19, 1.01, -0.5, f32::NAN, f32::INFINITY] {
+            assert_eq!(MirrorScale::new(share), None, "{share}");
+        }
+    }
+
+    #[test]
+    fn an_angle_that_makes_no_sense_is_no_target_and_six_of_them_are_no_offer() {
+        let sample = |raw: [i16; 6]| HandSample {
+            angle: Some(Timed {
+                value: PerDof::new(raw).map(AngleReading::new),
+                asked: Moment::from_micros(1),
+                received: Moment::from_micros(2),
+            }),
+            ..HandSample::default()
+        };
+        let some = sample([500, -1, 1004, 32_767, -300, 2000]);
+        let offer = |sample| offer(&sample, MirrorScale::WHOLE);
+        let offered = offer(some).unwrap();
+        let aims = offered.aims.map(|aim| aim.map(Angle::get));
+        assert_eq!(aims[Dof::Little], Some(500));
+        assert_eq!(
+            (aims[Dof::Ring], aims[Dof::Middle]),
+            (Some(0), Some(1000)),
+            "a little past an end stop is the end stop"
+        );
+        for dof in [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate] {
+            assert_eq!(aims[dof], None, "{dof:?}");
+        }
+        assert_eq!((offered.at, offered.mark), (Moment::from_micros(2), None));
+        assert_eq!(offer(sample([-300; 6])), None);
+        assert_eq!(offer(HandSample::default()), None);
+    }
+}

@@ -1,0 +1,137 @@
+//! What all viewers are shown, made once: the newest messages, of which each viewer takes its own, and who views. Whoever is too
+//! slow misses the oldest; nobody is waited for.
+
+use crate::record::file::encode::Message;
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::broadcast;
+
+/// Viewers at one time; more are turned away at once.
+pub const VIEWERS_MAX: usize = 8;
+/// Messages that wait for the slowest viewer: more than a second of a hand with everything that goes over its wire.
+pub const BACKLOG_MAX: usize = 1024;
+
+/// One viewer as a person sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Viewer {
+    /// Where it is.
+    pub address: SocketAddr,
+    /// Topics that it subscribed to.
+    pub topics: usize,
+    /// Messages that it was given.
+    pub sent: u64,
+    /// Messages, of all topics, that it was too slow for.
+    pub missed: u64,
+}
+
+/// Where messages go in. Copies go to the same viewers.
+#[derive(Debug, Clone)]
+pub struct Outlet {
+    messages: broadcast::Sender<Arc<Message>>,
+    board: Arc<Mutex<Board>>,
+}
+
+/// A connection among those of one server. None is ever given twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ViewerId(u64);
+
+#[derive(Debug, Default)]
+struct Board {
+    viewers: Vec<(ViewerId, Viewer)>,
+    last_id: u64,
+    turned_away: u64,
+}
+
+impl Outlet {
+    pub(crate) fn new() -> Self {
+        Self {
+            messages: broadcast::Sender::new(BACKLOG_MAX),
+            board: Arc::default(),
+        }
+    }
+
+    /// Whether anyone would get a message.
+    #[must_use]
+    pub fn is_viewed(&self) -> bool {
+        self.messages.receiver_count() > 0
+    }
+
+    /// Gives a message to all who subscribed to its topic. Does not wait.
+    pub fn publish(&self, message: Message) {
+        // That nobody views is no error.
+        let _viewers = self.messages.send(Arc::new(message));
+    }
+
+    /// Who views, the oldest first.
+    pub(crate) fn viewers(&self) -> Vec<Viewer> {
+        self.with(|board| board.viewers.iter().map(|(_, viewer)| *viewer).collect())
+    }
+
+    pub(crate) fn turned_away(&self) -> u64 {
+        self.with(|board| board.turned_away)
+    }
+
+    /// Takes a new viewer, unless there are too many.
+    pub(crate) fn connect(&self, address: SocketAddr) -> Option<Seat> {
+        let id = self.with(|board| board.connect(address))?;
+        Some(Seat {
+            outlet: self.clone(),
+            id,
+        })
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
+        // Each call leaves the board whole, also one that panicked.
+        act(&mut self.board.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Board {
+    fn connect(&mut self, address: SocketAddr) -> Option<ViewerId> {
+        if self.viewers.len() >= VIEWERS_MAX {
+            self.turned_away += 1;
+            return None;
+        }
+        self.last_id += 1;
+        let id = ViewerId(self.last_id);
+        let viewer = Viewer {
+            address,
+            topics: 0,
+            sent: 0,
+            missed: 0,
+        };
+        self.viewers.push((id, viewer));
+        Some(id)
+    }
+}
+
+/// The place of one viewer, free again when this is dropped, however its connection ends.
+#[derive(Debug)]
+pub(crate) struct Seat {
+    outlet: Outlet,
+    id: ViewerId,
+}
+
+impl Seat {
+    /// The messages from now on.
+    pub(crate) fn messages(&self) -> broadcast::Receiver<Arc<Message>> {
+        self.outlet.messages.subscribe()
+    }
+
+    /// Notes something of this viewer.
+    pub(crate) fn note(&self, what: impl FnOnce(&mut Viewer)) {
+        self.outlet.with(|board| {
+            let ours = board.viewers.iter_mut().find(|(id, _)| *id == self.id);
+            if let Some((_, viewer)) = ours {
+                what(viewer);
+            }
+        });
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.outlet
+            .with(|board| board.viewers.retain(|(id, _)| *id != self.id));
+    }
+}

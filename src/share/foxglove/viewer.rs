@@ -1,0 +1,226 @@
+//! One viewer's connection: it is greeted, subscribes, and is sent what it subscribed to until it goes, stops reading, falls
+//! silent or keeps neither to the protocol nor to its allowance.
+
+use crate::record::file::encode::Message;
+use crate::record::file::topic::Topic;
+use crate::share::foxglove::allowance::Allowance;
+use crate::share::foxglove::outlet::Seat;
+use crate::share::foxglove::protocol::{self, Request, SUBPROTOCOLS, Subscription};
+use futures::{SinkExt as _, StreamExt as _};
+use std::io;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::sync::broadcast::Receiver;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
+use tokio_tungstenite::tungstenite::Message as Frame;
+use tokio_tungstenite::tungstenite::handshake::server;
+use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode, header};
+use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
+use tokio_tungstenite::{WebSocketStream, accept_hdr_async_with_config};
+
+/// From the connection to the end of the handshake.
+pub const SHAKES_HANDS_WITHIN: Duration = Duration::from_secs(2);
+/// A viewer that does not take what it is sent within this is ended.
+pub const TAKES_WITHIN: Duration = Duration::from_secs(10);
+/// A viewer has nothing to say for hours, so it is asked whether it is there.
+const PING_EACH: Duration = Duration::from_secs(20);
+/// One that did not answer this long is taken for gone: a half-open connection says nothing of itself.
+pub const SILENT_MAX: Duration = Duration::from_secs(60);
+/// Longest message of a viewer: it names topics, of which there are a dozen.
+const SAID_MAX: usize = 16 * 1024;
+/// Bytes that are gathered before they are written.
+const GATHERED: usize = 16 * 1024;
+/// Messages in one go, after which the viewer is listened to again.
+const IN_ONE_GO: usize = 64;
+
+type Socket = WebSocketStream<Allowance<TcpStream>>;
+
+/// A viewer while it is connected.
+pub(crate) struct Connection {
+    seat: Seat,
+    greeting: Arc<[String; 2]>,
+    subscriptions: Vec<(Topic, u32)>,
+}
+
+impl Connection {
+    pub(crate) const fn new(seat: Seat, greeting: Arc<[String; 2]>) -> Self {
+        Self {
+            seat,
+            greeting,
+            subscriptions: Vec::new(),
+        }
+    }
+
+    /// Shows until the viewer goes or is ended.
+    pub(crate) async fn serve(mut self, stream: TcpStream) {
+        // A viewer's broken connection ends with that viewer; the others go on.
+        let _broken = self.show(stream).await;
+    }
+
+    async fn show(&mut self, stream: TcpStream) -> io::Result<()> {
+        let mut socket = timeout(SHAKES_HANDS_WITHIN, shake_hands(stream)).await??;
+        for text in self.greeting.iter() {
+            tell(&mut socket, Frame::text(text.as_str())).await?;
+        }
+        let mut messages = self.seat.messages();
+        let mut ping = interval(PING_EACH);
+        ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut heard = Instant::now();
+        loop {
+            tokio::select! {
+                biased;
+                said = socket.next() => {
+                    let Some(said) = said else { return Ok(()) };
+                    let answers = self.answers(&said.map_err(io::Error::other)?);
+                    heard = Instant::now();
+                    for answer in answers {
+                        tell(&mut socket, Frame::text(answer)).await?;
+                    }
+                }
+                message = messages.recv() => {
+                    timeout(TAKES_WITHIN, self.pass_on(&mut socket, message, &mut messages)).await??;
+                }
+                _ = ping.tick() => {
+                    if heard.elapsed() > SILENT_MAX {
+                        return Err(io::ErrorKind::TimedOut.into());
+                    }
+                    tell(&mut socket, Frame::Ping(Vec::new().into())).await?;
+                }
+            }
+        }
+    }
+
+    /// Sends this message and those that wait behind it.
+    async fn pass_on(
+        &self,
+        socket: &mut Socket,
+        first: Result<Arc<Message>, RecvError>,
+        waiting: &mut Receiver<Arc<Message>>,
+    ) -> io::Result<()> {
+        let (mut next, mut left, mut sent) = (first, IN_ONE_GO, 0);
+        loop {
+            match next {
+                Ok(message) => {
+                    if let Some(number) = self.number(message.topic) {
+                        let data = protocol::message_data(number, &message);
+                        let frame = Frame::Binary(data.into());
+                        socket.feed(frame).await.map_err(io::Error::other)?;
+                        sent += 1;
+                    }
+                }
+                Err(RecvError::Lagged(missed)) => {
+                    self.seat.note(|viewer| viewer.missed += missed);
+                }
+                Err(RecvError::Closed) => break,
+            }
+            left -= 1;
+            if left == 0 || waiting.is_empty() {
+                break;
+            }
+            next = waiting.recv().await;
+        }
+        socket.flush().await.map_err(io::Error::other)?;
+        self.seat.note(|viewer| viewer.sent += sent);
+        Ok(())
+    }
+
+    fn number(&self, topic: Topic) -> Option<u32> {
+        let ours = self.subscriptions.iter().find(|(own, _)| *own == topic);
+        ours.map(|(_, number)| *number)
+    }
+
+    /// Does what the viewer asks, and gives what it is told of that.
+    fn answers(&mut self, said: &Frame) -> Vec<String> {
+        let answers = match said {
+            Frame::Text(text) => match serde_json::from_str(text) {
+                Ok(Request::Subscribe { subscriptions }) => {
+                    let taken = subscriptions
+                        .into_iter()
+                        .map(|wanted| self.subscribe(wanted));
+                    taken.filter_map(Result::err).collect()
+                }
+                Ok(Request::Unsubscribe { subscription_ids }) => {
+                    self.subscriptions
+                        .retain(|(_, number)| !subscription_ids.contains(number));
+                    Vec::new()
+                }
+                Ok(Request::Other) => vec![protocol::warning(
+                    "ignored: this server shows its topics and takes nothing",
+                )],
+                Err(unknown) => vec![protocol::error(&format!("not understood: {unknown}"))],
+            },
+            Frame::Binary(_) => vec![protocol::warning("ignored: this server takes no messages")],
+            // Those of the connection itself are answered by the crate.
+            Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) | Frame::Frame(_) => Vec::new(),
+        };
+        let topics = self.subscriptions.len();
+        self.seat.note(|viewer| viewer.topics = topics);
+        answers
+    }
+
+    /// Takes a subscription, or says why not.
+    fn subscribe(&mut self, wanted: Subscription) -> Result<(), String> {
+        let Subscription { id, channel_id } = wanted;
+        let Some(topic) = wanted.topic() else {
+            return Err(protocol::error(&format!(
+                "there is no channel {channel_id}"
+            )));
+        };
+        let is_taken = |(own, number): &(Topic, u32)| *own == topic || *number == id;
+        if self.subscriptions.iter().any(is_taken) {
+            return Err(protocol::warning(&format!(
+                "ignored: subscription {id} or channel {channel_id} is subscribed already"
+            )));
+        }
+        self.subscriptions.push((topic, id));
+        Ok(())
+    }
+}
+
+async fn tell(socket: &mut Socket, frame: Frame) -> io::Result<()> {
+    let told = timeout(TAKES_WITHIN, socket.send(frame)).await?;
+    told.map_err(io::Error::other)
+}
+
+async fn shake_hands(stream: TcpStream) -> io::Result<Socket> {
+    let config = WebSocketConfig::default()
+        .read_buffer_size(4096)
+        .write_buffer_size(GATHERED)
+        .max_message_size(Some(SAID_MAX))
+        .max_frame_size(Some(SAID_MAX));
+    let shaken = accept_hdr_async_with_config(Allowance::new(stream), Chooser, Some(config));
+    shaken.await.map_err(io::Error::other)
+}
+
+/// Chooses the newest name of the protocol that the viewer knows, and refuses one that knows none.
+struct Chooser;
+
+impl server::Callback for Chooser {
+    fn on_request(
+        self,
+        request: &server::Request,
+        mut response: server::Response,
+    ) -> Result<server::Response, server::ErrorResponse> {
+        let offers = request.headers().get_all(header::SEC_WEBSOCKET_PROTOCOL);
+        let offered = |name: &&str| {
+            let texts = offers.iter().filter_map(|value| value.to_str().ok());
+            texts
+                .flat_map(|text| text.split(','))
+                .any(|own| own.trim() == *name)
+        };
+        let Some(chosen) = SUBPROTOCOLS.into_iter().find(offered) else {
+            let words = format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or "));
+            let mut refusal = server::ErrorResponse::new(Some(words));
+            *refusal.status_mut() = StatusCode::BAD_REQUEST;
+            return Err(refusal);
+        };
+        let headers = response.headers_mut();
+        headers.insert(
+            header::SEC_WEBSOCKET_PROTOCOL,
+            HeaderValue::from_static(chosen),
+        );
+        Ok(response)
+    }
+}
