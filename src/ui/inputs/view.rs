@@ -210,10 +210,7 @@ fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: Option<&PadView>) {
     let angle = pane.state.hand().sample.angle;
     let shares = PerDof::from_fn(|dof| {
         let wanted = view.and_then(|view| view.aims[dof]);
-        let wanted = wanted
-            .map(Angle::get)
-            .and_then(|aim| i16::try_from(aim).ok());
-        let raw = wanted.or(angle?.value[dof].documented())?;
+        let raw = wanted.map(Angle::get).or(angle?.value[dof].documented())?;
         Some(f32::from(raw) / f32::from(Angle::MAX.get()))
     });
     ui.vertical(|ui| {

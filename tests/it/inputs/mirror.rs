@@ -6,16 +6,17 @@ use crate::setup::time::in_virtual_time;
 use crate::setup::{hand, link};
 use handscope::hand::register::ANGLE_SET;
 use handscope::hand::{Dof, HandSample};
-use handscope::inputs::follow::{ENDS_AFTER, FollowLimits, FollowPhase, HOLDS_AFTER};
+use handscope::inputs::follow::{ENDS_AFTER, FollowPhase, HOLDS_AFTER};
 use handscope::inputs::mirror::{MirrorScale, MirrorSource};
 use handscope::link::{Clock, LeaseRefusal, LinkHandle, Owner, Records};
 use handscope::record::{Disarmed, LinkState, Record, WriteCause};
 use handscope::sim::{SharedHand, SimConfig};
-use handscope::tasks::follow::{FollowEnd, FollowStart, FollowView, follow};
+use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use handscope::transport::pair;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::runtime::Handle;
+use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
@@ -148,7 +149,7 @@ impl Stage {
         let link = self.follower.link.clone();
         let start = FollowStart {
             lease: link.grant(Owner::Mirror),
-            limits: FollowLimits::default(),
+            terms: watch::Sender::new(FollowTerms::default()).subscribe(),
             arm: gentle(),
             seen: self.follower.sample(),
             clock: self.clock,
