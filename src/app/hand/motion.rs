@@ -56,14 +56,19 @@ impl HandState {
             notices.push(self.now, NoticeKind::ArmRefused(reason));
             return;
         }
-        let request = ArmRequest {
-            speed: self.joints.map(|joint| joint.speed),
-            force: self.joints.map(|joint| joint.force),
-        };
+        let request = self.arm_request();
         if let Some(open) = &mut self.open {
             let lease = open.take_lease();
             // Just granted: it holds.
             let _asked = open.link.arm(lease, request);
+        }
+    }
+
+    /// The limits that a person set.
+    pub(crate) fn arm_request(&self) -> ArmRequest {
+        ArmRequest {
+            speed: self.joints.map(|joint| joint.speed),
+            force: self.joints.map(|joint| joint.force),
         }
     }
 

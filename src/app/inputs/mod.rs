@@ -1,17 +1,23 @@
 //! What besides the window may move a hand, and who reads it: streams, gamepads, the gateway. Each is opened by a person, and
 //! belongs to one connection with one hand.
 
+mod grant;
 mod work;
 
 use crate::app::running::Running;
+use crate::inputs::dds::source::{DdsSource, DdsView};
 use crate::inputs::follow::FollowLimits;
 use crate::inputs::pad::PadMap;
 use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
+use crate::share::dds::{DdsPublisher, DdsTold};
+use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
-use std::net::SocketAddr;
+use crate::transport::dds::DdsNode;
+use std::fmt::Display;
+use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
 
 /// What a person asks of inputs and of the gateway.
@@ -23,8 +29,14 @@ pub enum InputAction {
     ReadPad(bool),
     /// Let clients use the hand at this address, or no more.
     Share(Option<SocketAddr>),
+    /// Show the hand to viewers at this address, or no more.
+    Show(Option<SocketAddr>),
+    /// Tell the hand on DDS and listen to programs there, at this interface, or no more.
+    JoinDds(Option<String>),
     /// Let whoever sends lines move the hand.
     GrantStream,
+    /// Let the program that sends over DDS move the hand.
+    GrantDds,
     /// Let the gamepad move the hand.
     GrantPad,
     /// Let a client of the gateway move the hand.
@@ -37,12 +49,29 @@ pub enum InputAction {
     Map(PadMap),
 }
 
+/// What can be opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputKind {
+    /// Lines of another program.
+    Stream,
+    /// The gamepad.
+    Pad,
+    /// The gateway.
+    Gateway,
+    /// Viewers.
+    Viewers,
+    /// DDS.
+    Dds,
+}
+
 /// The inputs and the gateway of one connection. Dropped with it, they are closed.
 #[derive(Debug, Default)]
 pub struct HandInputs {
     pub(crate) stream: Option<StreamSource>,
     pub(crate) pad: Option<PadSource>,
     pub(crate) gateway: Option<Gateway>,
+    pub(crate) foxglove: Option<FoxgloveServer>,
+    pub(crate) dds: Option<JoinedDds>,
     /// Where lines are listened for.
     pub stream_at: Option<SocketAddr>,
     /// What came in.
@@ -53,10 +82,33 @@ pub struct HandInputs {
     pub gateway_at: Option<SocketAddr>,
     /// Its clients.
     pub clients: Vec<GatewayClient>,
-    /// Why the last thing that was to be opened was not.
-    pub refused: Option<String>,
+    /// Where viewers are served, and how many there are.
+    pub foxglove_at: Option<(SocketAddr, usize)>,
+    /// What is known of DDS, while it is joined.
+    pub dds_view: Option<DdsState>,
+    /// What was to be opened last and was not, and why.
+    pub refused: Option<(InputKind, String)>,
     /// What the hand follows.
     pub follow: Option<FollowRun>,
+}
+
+/// DDS, joined.
+#[derive(Debug)]
+pub(crate) struct JoinedDds {
+    pub(crate) node: DdsNode,
+    pub(crate) publisher: DdsPublisher,
+    pub(crate) source: DdsSource,
+}
+
+/// What is known of DDS.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DdsState {
+    /// The address of its interface.
+    pub at: Ipv4Addr,
+    /// What was told.
+    pub told: DdsTold,
+    /// What came in.
+    pub view: DdsView,
 }
 
 /// A hand that follows a source.
@@ -71,9 +123,31 @@ pub struct FollowRun {
 }
 
 impl HandInputs {
+    fn refuse(&mut self, what: InputKind, why: &dyn Display) {
+        self.refused = Some((what, why.to_string()));
+    }
+
+    /// Takes in what came and who is there.
+    fn look(&mut self) {
+        if let Some(source) = &self.stream {
+            self.stream_view = source.view();
+        }
+        self.pad_view = self.pad.as_ref().map(PadSource::view);
+        let clients = self.gateway.as_ref().map(Gateway::clients);
+        self.clients = clients.unwrap_or_default();
+        let viewed = |server: &FoxgloveServer| (server.address(), server.viewers().len());
+        self.foxglove_at = self.foxglove.as_ref().map(viewed);
+        self.dds_view = self.dds.as_ref().map(|joined| DdsState {
+            at: joined.node.address(),
+            told: joined.publisher.told(),
+            view: joined.source.view(),
+        });
+    }
+
     /// True while something from outside is listened to or served: a badge says so.
     #[must_use]
     pub const fn is_open(&self) -> bool {
-        self.stream_at.is_some() || self.pad_view.is_some() || self.gateway_at.is_some()
+        let is_served = self.gateway_at.is_some() || self.foxglove_at.is_some();
+        is_served || self.stream_at.is_some() || self.pad_view.is_some() || self.dds_view.is_some()
     }
 }

@@ -1,26 +1,26 @@
-//! Opens inputs, lets them move the hand, and takes in what they did.
+//! Opens inputs and outlets, and takes in what they did.
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::inputs::{FollowRun, HandInputs, InputAction};
+use crate::app::inputs::{InputAction, InputKind, JoinedDds};
 use crate::app::notices::{NoticeKind, Notices};
-use crate::app::running::Running;
 use crate::app::settings::Settings;
-use crate::hand::{Angle, Dof, PerDof};
-use crate::inputs::Offer;
-use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::dds::ctrl;
+use crate::inputs::dds::source::{DdsSource, DdsSourceConfig};
 use crate::inputs::pad::PadInput;
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
-use crate::link::{ArmRequest, Owner};
-use crate::record::{ArmRefusal, Disarmed};
+use crate::record::file::Opening;
+use crate::share::dds::DdsPublisher;
+use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::store::calendar::since_1970;
+use crate::tasks::follow::FollowEnd;
+use crate::transport::dds::{DdsNode, DdsPlace};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use tokio::sync::{mpsc, watch};
 
 impl HandState {
     /// Does what a person asked for.
@@ -29,7 +29,10 @@ impl HandState {
             InputAction::Listen(place) => self.listen(place, settings, env),
             InputAction::ReadPad(on) => self.read_pad(on, settings, env),
             InputAction::Share(place) => self.share(place, env),
+            InputAction::Show(place) => self.show_viewers(place, settings, env),
+            InputAction::JoinDds(interface) => self.join_dds(interface, settings, env),
             InputAction::GrantStream => self.grant_stream(settings, env),
+            InputAction::GrantDds => self.grant_dds(settings, env),
             InputAction::GrantPad => self.grant_pad(settings, env),
             InputAction::GrantClient(client) => {
                 if let Some(gateway) = self.inputs.gateway.as_ref().filter(|_| self.may_grant()) {
@@ -70,7 +73,7 @@ impl HandState {
                 self.inputs.stream_at = Some(source.local());
                 self.inputs.stream = Some(source);
             }
-            Err(error) => self.inputs.refused = Some(error.to_string()),
+            Err(error) => self.inputs.refuse(InputKind::Stream, &error),
         }
     }
 
@@ -105,7 +108,7 @@ impl HandState {
                 self.inputs.pad_view = Some(source.view());
                 self.inputs.pad = Some(source);
             }
-            Err(error) => self.inputs.refused = Some(error.to_string()),
+            Err(error) => self.inputs.refuse(InputKind::Pad, &error),
         }
     }
 
@@ -126,116 +129,69 @@ impl HandState {
                 self.inputs.gateway_at = Some(gateway.address());
                 self.inputs.gateway = Some(gateway);
             }
-            Err(error) => self.inputs.refused = Some(error.to_string()),
+            Err(error) => self.inputs.refuse(InputKind::Gateway, &error),
         }
     }
 
-    /// Nobody is given the right to move a hand that is being left, under a card, or in a series.
-    fn may_grant(&self) -> bool {
-        self.leaving.is_none() && self.procedure.is_none() && !self.runs_series()
-    }
-
-    fn grant_stream(&mut self, settings: &Settings, env: &Env) {
-        let Some(source) = &self.inputs.stream else {
+    fn show_viewers(&mut self, place: Option<SocketAddr>, settings: &Settings, env: &Env) {
+        self.inputs.refused = None;
+        self.inputs.foxglove = None;
+        let Some((address, open)) = place.zip(self.open.as_ref()) else {
             return;
         };
-        let Some((sender, last)) = self.inputs.stream_view.intake.sender else {
-            return;
+        let moments = (open.link.clock().now(), since_1970());
+        let config = FoxgloveConfig {
+            address,
+            opening: Opening::begin(self.name(), moments, settings.side),
         };
-        if self.now.since(last) < HOLDS_AFTER {
-            let offers = source.follow();
-            self.follow_source(Owner::Stream(sender), offers, settings, env);
+        match FoxgloveServer::open(config, &env.runtime) {
+            Ok(mut server) => {
+                server.show(&open.link);
+                self.inputs.foxglove = Some(server);
+            }
+            Err(error) => self.inputs.refuse(InputKind::Viewers, &error),
         }
     }
 
-    fn grant_pad(&mut self, settings: &Settings, env: &Env) {
-        let Some(source) = &self.inputs.pad else {
+    fn join_dds(&mut self, interface: Option<String>, settings: &Settings, env: &Env) {
+        self.inputs.refused = None;
+        self.inputs.dds = None;
+        let Some((interface, open)) = interface.zip(self.open.as_ref()) else {
             return;
         };
-        if source.view().name.is_some() {
-            let offers = source.follow();
-            self.follow_source(Owner::Gamepad, offers, settings, env);
-        }
-    }
-
-    /// Lets this source move the hand; what moved it before does not any more.
-    fn follow_source(
-        &mut self,
-        owner: Owner,
-        offers: mpsc::Receiver<Offer>,
-        settings: &Settings,
-        env: &Env,
-    ) {
-        let refusal = self.arm_refusal();
-        if !self.may_grant() || refusal.is_some_and(|refusal| refusal != ArmRefusal::LetGo) {
-            return;
-        }
-        if let Some(run) = &mut self.sequence {
-            run.leave();
-        }
-        let Some(open) = &self.open else { return };
-        let lease = open.link.grant(owner);
-        let (terms, watched) = watch::channel(self.follow_terms(settings));
-        let start = FollowStart {
-            lease,
-            terms: watched,
-            arm: ArmRequest {
-                speed: self.joints.map(|joint| joint.speed),
-                force: self.joints.map(|joint| joint.force),
-            },
-            seen: self.sample,
+        let _entered = env.runtime.enter();
+        let place = DdsPlace {
+            interface,
+            domain: 0,
+        };
+        let config = DdsSourceConfig {
+            // What a person set here is the most that a message may ask for.
+            allowed: self.arm_request(),
             clock: env.clock,
+            wake: Arc::clone(&env.wake),
         };
-        let link = open.link.clone();
-        let task = Running::start(env, |views| async move {
-            follow(&link, start, offers, |view| views.tell(view)).await
+        let joined = DdsNode::open(&place).and_then(|node| {
+            let publisher = DdsPublisher::open(&node, &open.link, settings.side)?;
+            let messages = node.reader(&ctrl::topic(settings.side))?;
+            Ok(JoinedDds {
+                source: DdsSource::open(config, messages),
+                publisher,
+                node,
+            })
         });
-        self.inputs.follow = Some(FollowRun {
-            owner,
-            view: None,
-            terms,
-            task,
-        });
-    }
-
-    /// A click here ends whoever moves the hand from outside.
-    fn take_back(&mut self) {
-        let Some(open) = &self.open else { return };
-        if let Some(holder) = open.link.status().holder
-            && holder.owner.is_outside()
-        {
-            // One that ended meanwhile has stopped already.
-            let _done = open.link.give_back(holder.lease, Disarmed::Person);
-        }
-    }
-
-    fn follow_terms(&self, settings: &Settings) -> FollowTerms {
-        FollowTerms {
-            limits: settings.follow,
-            locked: self.joints.map(|joint| joint.locked),
-            hold: self.hold_to_run(),
+        match joined {
+            Ok(joined) => self.inputs.dds = Some(joined),
+            Err(error) => self.inputs.refuse(InputKind::Dds, &error),
         }
     }
 
     /// Takes in what inputs and clients did.
     pub(crate) fn tick_inputs(&mut self, notices: &mut Notices, settings: &Settings) {
         let terms = self.follow_terms(settings);
-        let HandInputs {
-            stream,
-            stream_view,
-            pad,
-            pad_view,
-            gateway,
-            clients,
-            follow,
-            ..
-        } = &mut self.inputs;
-        if let Some(source) = stream {
-            *stream_view = source.view();
-        }
-        *pad_view = pad.as_ref().map(PadSource::view);
-        *clients = gateway.as_ref().map(Gateway::clients).unwrap_or_default();
-        let Some(run) = follow else { return };
+        self.inputs.look();
+        let Some(run) = &mut self.inputs.follow else {
+            return;
+        };
         let (views, end) = run.task.news();
         let owner = run.owner;
         run.terms
@@ -251,23 +207,5 @@ impl HandState {
             }
             self.follow();
         }
-    }
-
-    /// The sliders stand where the source sent the joints.
-    fn show_sent(&mut self, sent: PerDof<Option<Angle>>) {
-        for dof in Dof::ALL {
-            if let Some(to) = sent[dof] {
-                self.joints[dof].target = Some(to);
-                self.steered[dof] = true;
-                self.commanded = true;
-            }
-        }
-    }
-
-    /// Who moves the hand from outside this window, if somebody may.
-    #[must_use]
-    pub fn outside_owner(&self) -> Option<Owner> {
-        let holder = self.link.holder.filter(|_| self.link.state.is_live())?;
-        holder.owner.is_outside().then_some(holder.owner)
     }
 }

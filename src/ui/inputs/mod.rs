@@ -1,5 +1,8 @@
-//! Where motion comes from besides the window.
+//! What besides the window moves the hand, and who reads it.
 
+mod cards;
+mod owner;
+mod pad_card;
 mod pad_picture;
 mod pad_places;
 mod pad_table;
@@ -7,6 +10,5 @@ mod pad_table;
 mod tests;
 mod view;
 
-pub(crate) use pad_picture::{PadShown, PoseName, pad_picture_ui};
-pub(crate) use pad_table::pad_table_ui;
-pub(crate) use view::{InputsView, owner_words};
+pub(crate) use owner::owner_words;
+pub(crate) use view::InputsView;

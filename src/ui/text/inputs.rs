@@ -1,5 +1,6 @@
 //! Sentences of what besides the window may move the hand: streams, the gateway, a gamepad with its controls and what they do.
 
+use crate::inputs::dds::ctrl::CtrlFault;
 use crate::inputs::line::LineFault;
 use crate::inputs::pad::{PadAction, PadControl};
 use crate::ui::text::phrase::texts;
@@ -30,6 +31,16 @@ texts! {
     NO_CLIENTS: "Nobody is connected.", "没有连接。";
     MOVES: "moves the hand", "正在控制";
     CLIENT: "{} requests/s, {} reads, {} writes, {} refused", "每秒 {} 次请求，读取 {}，写入 {}，拒绝 {}";
+    DDS: "DDS", "DDS", "As Unitree's driver and ROS 2 have it ('handscope help dds'): tells this hand's state, and listens for commands. Both at this interface, a name or an address.", "与宇树驱动和 ROS 2 一致（'handscope help dds'）：发布状态，并接收指令。在此网络接口（名称或地址）上进行。";
+    DDS_AT: "Interface of DDS", "DDS 网络接口";
+    JOIN: "Join", "加入", "Publishes at this interface, and listens; nothing moves by that.", "在此接口上发布并接收；不会移动灵巧手。";
+    STATES: "States told", "已发布状态";
+    COMMANDS: "Commands taken", "已接收指令";
+    REFUSED: "Refused", "已拒绝";
+    VIEWERS: "Live viewers", "实时查看", "Foxglove, PlotJuggler and their like ('handscope help share'): the topics of a recording as they happen. They only look.", "Foxglove、PlotJuggler 等（'handscope help share'）：实时显示记录的话题。它们只能查看。";
+    VIEWERS_AT: "Address for viewers", "查看地址";
+    SHOW: "Show", "显示", "Serves viewers at this address.", "在此地址提供实时查看。";
+    VIEWERS_NOW: "Viewers", "查看者";
     PAD: "Gamepad", "手柄", "Try it here first: nothing moves until you let it. Click a control to change what it does.", "可先在此试用：未经允许不会移动灵巧手。点击控件可更改其动作。";
     DRY_RUN: "Where it wants the hand, while it is held to run:", "按住运行键时，手柄所指的姿态：";
     HOLD_TO_RUN: "Hold to run (H key)", "按住运行（H 键）", "Whoever moves the hand: it moves only while H is held here. Let go, or in another window, it stops at once.", "无论由谁控制：只有在此按住 H 键时灵巧手才会运动。松开或切换窗口即停。";
@@ -63,6 +74,17 @@ texts! {
         LineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
         LineFault::Late => "Refused: late", "拒绝：迟到";
         LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
+    }
+
+    /// Why a command over DDS was refused.
+    fn ctrl_fault(CtrlFault) {
+        CtrlFault::Malformed => "Refused: not Unitree's message.", "拒绝：不是宇树的消息。";
+        CtrlFault::Mode => "Refused: mode bits that do not exist.", "拒绝：模式位不存在。";
+        CtrlFault::Position => "Refused: it sets positions of drives (mode 2).", "拒绝：设置了驱动位置（模式 2）。";
+        CtrlFault::Length => "Refused: not six values.", "拒绝：不是六个数值。";
+        CtrlFault::Range => "Refused: a value outside the register's range.", "拒绝：数值超出寄存器范围。";
+        CtrlFault::AboveLimit => "Refused: faster or firmer than is set here.", "拒绝：速度或力高于此处设置。";
+        CtrlFault::OtherSender => "Refused: another sender is followed.", "拒绝：正在跟随其他来源。";
     }
 
     /// What a control is called.

@@ -221,7 +221,11 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let open = &pane.state.hand().inputs;
     let parts = [
-        (open.gateway_at.is_some(), inputs::SHARED),
+        (
+            open.gateway_at.is_some() || open.foxglove_at.is_some(),
+            inputs::SHARED,
+        ),
+        (open.dds_view.is_some(), inputs::DDS),
         (open.stream_at.is_some(), inputs::LISTENING),
         (open.pad_view.is_some(), inputs::PAD),
     ];

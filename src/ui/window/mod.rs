@@ -535,7 +535,10 @@ fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
                 | Action::Arm
                 | Action::HoldKey(HoldKey::Pressed)
                 | Action::Input(
-                    InputAction::GrantStream | InputAction::GrantPad | InputAction::GrantClient(_)
+                    InputAction::GrantStream
+                        | InputAction::GrantDds
+                        | InputAction::GrantPad
+                        | InputAction::GrantClient(_)
                 )
                 | Action::Target(..)
                 | Action::Preset(_)
@@ -567,6 +570,7 @@ mod tests {
                 Action::HoldKey(HoldKey::Pressed),
                 Action::Input(InputAction::GrantStream),
                 Action::Input(InputAction::GrantPad),
+                Action::Input(InputAction::GrantDds),
                 Action::Target(Dof::Index, Angle::MAX),
                 Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),

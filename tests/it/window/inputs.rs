@@ -114,8 +114,18 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(TcpStream::connect(at).is_ok());
     bench.show(View::Connection);
     bench.run(100);
+    bench.type_into("Address for viewers", "127.0.0.1:0");
+    bench.click_button("Show");
+    bench.click_button("Join");
+    bench.run(200);
+    let inputs = &bench.state().hand().inputs;
+    let (viewed, viewers) = inputs.foxglove_at.unwrap();
+    assert!(viewers == 0 && TcpStream::connect(viewed).is_ok());
+    assert!(inputs.dds_view.as_ref().unwrap().at.is_loopback());
+    assert!(!bench.is_disabled(Role::Button, "Join"));
+    assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
     // A badge in every view leads to where it can be ended.
-    bench.click_button("Shared");
+    bench.click_button("Shared · DDS");
     bench.run(100);
     assert_eq!(bench.view(), View::Inputs);
     bench.show(View::Connection);
@@ -125,6 +135,8 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(!bench.state().hand().inputs.is_open());
     assert!(bench.buttons_with("Shared").is_empty());
     assert!(TcpStream::connect(at).is_err());
+    assert!(TcpStream::connect(viewed).is_err());
+    assert!(bench.state().hand().inputs.dds_view.is_none());
 }
 
 /// When the first angle was written that holds the joints, after this moment.
@@ -161,7 +173,7 @@ fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
         let hand = bench.state().hand();
         assert_eq!(hand.link.armed, None, "{ends}");
         bench.run(1500);
-        let away = (bench.angle(Dof::Index) - i16::try_from(to.get()).unwrap()).abs();
+        let away = (bench.angle(Dof::Index) - to.get()).abs();
         assert!(away > 100, "{ends}: it went on to {away}");
     }
 }

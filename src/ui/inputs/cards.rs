@@ -1,0 +1,322 @@
+//! Each way in and out besides the window: where it is, whether it is open, who is there.
+
+use crate::app::action::Action;
+use crate::app::inputs::{InputAction, InputKind};
+use crate::hand::Moment;
+use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::stream::StreamPlace;
+use crate::record::ArmRefusal;
+use crate::share::gateway::{ClientLease, GatewayClient};
+use crate::ui::inputs::owner::figures_ui;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::text::{Text, inputs, words};
+use crate::ui::theme;
+use egui::{Ui, vec2};
+use std::net::SocketAddr;
+
+/// What was typed.
+#[derive(Debug)]
+pub(crate) struct SourceCards {
+    stream: String,
+    is_tcp: bool,
+    share: String,
+    viewers: String,
+    dds: String,
+}
+
+impl Default for SourceCards {
+    /// This computer only, unless a person says otherwise.
+    fn default() -> Self {
+        Self {
+            stream: "127.0.0.1:6010".into(),
+            is_tcp: false,
+            share: "127.0.0.1:6001".into(),
+            viewers: "127.0.0.1:8765".into(),
+            dds: "127.0.0.1".into(),
+        }
+    }
+}
+
+/// A switch, the place it is for, and where that is now.
+struct Switch {
+    kind: InputKind,
+    text: Text,
+    /// What a press does.
+    action: InputAction,
+    /// Where it is open.
+    at: Option<String>,
+    /// Others than this computer can reach it.
+    is_reachable: bool,
+    /// Nothing can be opened at what was typed.
+    is_wrong: bool,
+}
+
+impl SourceCards {
+    /// Draws all.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        card_ui(ui, pane, inputs::STREAM, |ui, pane| {
+            self.stream_ui(ui, pane)
+        });
+        card_ui(ui, pane, inputs::DDS, |ui, pane| self.dds_ui(ui, pane));
+        card_ui(ui, pane, inputs::GATEWAY, |ui, pane| {
+            self.gateway_ui(ui, pane)
+        });
+        card_ui(ui, pane, inputs::VIEWERS, |ui, pane| {
+            self.viewers_ui(ui, pane)
+        });
+    }
+
+    fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let at = pane.state.hand().inputs.stream_at;
+        ui.add_enabled_ui(at.is_none(), |ui| {
+            ui.horizontal(|ui| {
+                let both = [(false, inputs::UDP), (true, inputs::TCP)];
+                kit::pick_ui(ui, look, (&mut self.is_tcp, inputs::STREAM), both);
+                address_ui(ui, look.say(inputs::STREAM_AT), &mut self.stream);
+            });
+        });
+        let wanted = place(&self.stream).map(|at| match self.is_tcp {
+            true => StreamPlace::Tcp(at),
+            false => StreamPlace::Udp(at),
+        });
+        let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
+        let switch = Switch::new(InputKind::Stream, (inputs::LISTEN, action), at);
+        ui.horizontal_wrapped(|ui| {
+            switch.wrong(wanted.is_none()).ui(ui, pane);
+            let sender = pane.state.hand().inputs.stream_view.intake.sender;
+            let missing = silence(pane, sender.map(|(_, last)| last).filter(|_| at.is_some()));
+            let source = (look.say(inputs::STREAM), InputAction::GrantStream);
+            grant_ui(ui, pane, source, missing);
+        });
+        if at.is_some() {
+            stream_figures_ui(ui, pane);
+        }
+    }
+
+    fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let view = pane.state.hand().inputs.dds_view.clone();
+        ui.add_enabled_ui(view.is_none(), |ui| {
+            address_ui(ui, look.say(inputs::DDS_AT), &mut self.dds);
+        });
+        let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
+        let action = InputAction::JoinDds(wanted.clone().filter(|_| view.is_none()));
+        let at = view.as_ref().map(|view| SocketAddr::from((view.at, 0)));
+        let mut switch = Switch::new(InputKind::Dds, (inputs::JOIN, action), at);
+        switch.at = view.as_ref().map(|view| view.at.to_string());
+        ui.horizontal_wrapped(|ui| {
+            switch.wrong(wanted.is_none()).ui(ui, pane);
+            let sender = view.as_ref().and_then(|view| view.view.sender);
+            let missing = silence(pane, sender.map(|(_, last)| last));
+            let source = (look.say(inputs::DDS), InputAction::GrantDds);
+            grant_ui(ui, pane, source, missing);
+        });
+        let Some(view) = view else { return };
+        let refused: u64 = view.view.refused.values().sum();
+        let rows = [
+            (look.say(inputs::STATES), view.told.states.to_string()),
+            (
+                look.say(inputs::RATE),
+                format!("{:.0} Hz", view.view.rate_hz),
+            ),
+            (look.say(inputs::COMMANDS), view.view.taken.to_string()),
+            (look.say(inputs::REFUSED), refused.to_string()),
+            (
+                look.say(inputs::NOT_GRANTED),
+                view.view.not_granted.to_string(),
+            ),
+        ];
+        figures_ui(ui, look, "dds figures", &rows);
+        if let Some(newest) = view.view.refused.keys().next_back() {
+            kit::say_ui(ui, look.say(inputs::ctrl_fault(*newest)), look.palette.warn);
+        }
+    }
+
+    fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let at = pane.state.hand().inputs.gateway_at;
+        ui.add_enabled_ui(at.is_none(), |ui| {
+            address_ui(ui, look.say(inputs::GATEWAY_AT), &mut self.share);
+        });
+        let wanted = place(&self.share);
+        let action = InputAction::Share(wanted.filter(|_| at.is_none()));
+        let switch = Switch::new(InputKind::Gateway, (inputs::SHARE, action), at);
+        ui.horizontal_wrapped(|ui| switch.wrong(wanted.is_none()).ui(ui, pane));
+        let clients = pane.state.hand().inputs.clients.clone();
+        if at.is_some() && clients.is_empty() {
+            Label::muted(look, inputs::NO_CLIENTS).ui(ui);
+        }
+        for client in &clients {
+            client_ui(ui, pane, client);
+        }
+    }
+
+    fn viewers_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let served = pane.state.hand().inputs.foxglove_at;
+        ui.add_enabled_ui(served.is_none(), |ui| {
+            address_ui(ui, look.say(inputs::VIEWERS_AT), &mut self.viewers);
+        });
+        let wanted = place(&self.viewers);
+        let action = InputAction::Show(wanted.filter(|_| served.is_none()));
+        let at = served.map(|(at, _)| at);
+        let switch = Switch::new(InputKind::Viewers, (inputs::SHOW, action), at);
+        ui.horizontal_wrapped(|ui| switch.wrong(wanted.is_none()).ui(ui, pane));
+        if let Some((_, count)) = served {
+            let rows = [(look.say(inputs::VIEWERS_NOW), count.to_string())];
+            figures_ui(ui, look, "viewers", &rows);
+        }
+    }
+}
+
+fn card_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    title: Text,
+    add: impl FnOnce(&mut Ui, &mut Pane<'_>),
+) {
+    let look = pane.look;
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(title), |_| ());
+        kit::say_ui(ui, look.tip(title), look.palette.muted);
+        add(ui, pane);
+    });
+}
+
+fn address_ui(ui: &mut Ui, name: &str, text: &mut String) {
+    let width = ui.available_width();
+    ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
+        kit::edit_ui(ui, (name, name), text)
+    });
+}
+
+fn place(text: &str) -> Option<SocketAddr> {
+    text.trim().parse().ok()
+}
+
+/// Why nothing can be opened without a hand.
+pub(crate) fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
+    let is_live = pane.state.hand().link.state.is_live();
+    (!is_live).then(|| pane.look.say(inputs::NO_HAND))
+}
+
+impl Switch {
+    fn new(kind: InputKind, (text, action): (Text, InputAction), at: Option<SocketAddr>) -> Self {
+        Self {
+            kind,
+            text,
+            action,
+            at: at.map(|at| at.to_string()),
+            is_reachable: at.is_some_and(|at| !at.ip().is_loopback()),
+            is_wrong: false,
+        }
+    }
+
+    fn wrong(mut self, is_wrong: bool) -> Self {
+        self.is_wrong = is_wrong;
+        self
+    }
+
+    /// Opens something or closes it, and says where it is, or why it is not.
+    fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let is_open = self.at.is_some();
+        let wrong = (self.is_wrong && !is_open).then(|| look.say(inputs::ADDRESS_WRONG));
+        let button = Button::said(look, self.text).selected(is_open).large();
+        let button = button.disabled(no_hand(pane).or(wrong));
+        button.sends(ui, pane, Action::Input(self.action));
+        let refused = pane.state.hand().inputs.refused.as_ref();
+        match (&self.at, refused.filter(|(kind, _)| *kind == self.kind)) {
+            (Some(at), _) if self.is_reachable => {
+                let label = Label::new(at, look.palette.warn).number().ui(ui);
+                label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+            }
+            (Some(at), _) => drop(Label::new(at, look.palette.text).number().ui(ui)),
+            (None, Some((_, why))) => drop(Label::new(why, look.palette.warn).wrap().ui(ui)),
+            (None, None) => {}
+        }
+    }
+}
+
+/// Lets a source move the hand.
+pub(crate) fn grant_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (source, action): (&str, InputAction),
+    missing: Option<&str>,
+) {
+    let look = pane.look;
+    let hand = pane.state.hand();
+    // What has to be held can still be held once it may.
+    let refusal = hand.arm_refusal();
+    let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
+    let refusal = refusal.map(|reason| words::refusal(look, reason));
+    let taken = hand.outside_owner().map(|_| look.say(inputs::TAKEN));
+    let reason = no_hand(pane).or(taken).or(missing);
+    let reason = reason.map(ToOwned::to_owned).or(refusal);
+    let name = look.pair(look.say(inputs::GRANT), source);
+    let button = Button::said(look, inputs::GRANT)
+        .named(&name)
+        .weight(Weight::Strong)
+        .large();
+    let button = button.disabled(reason.as_deref());
+    button.sends(ui, pane, Action::Input(action));
+}
+
+/// Why nobody can be followed now who was heard last at this moment.
+fn silence(pane: &Pane<'_>, last: Option<Moment>) -> Option<&'static str> {
+    let now = pane.state.hand().now;
+    let is_there = last.is_some_and(|last| now.since(last) < HOLDS_AFTER);
+    (!is_there).then(|| pane.look.say(inputs::NOBODY_SENDS))
+}
+
+fn stream_figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let view = &pane.state.hand().inputs.stream_view;
+    let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
+    let mut rows = vec![
+        (
+            look.say(inputs::SENDER),
+            sender.unwrap_or_else(|| "-".into()),
+        ),
+        (
+            look.say(inputs::RATE),
+            format!("{:.0} Hz", view.intake.rate_hz),
+        ),
+        (look.say(inputs::TAKEN_LINES), view.intake.taken.to_string()),
+        (look.say(inputs::NOT_GRANTED), view.not_granted.to_string()),
+    ];
+    for (fault, count) in &view.intake.refused {
+        rows.push((look.say(inputs::fault(*fault)), count.to_string()));
+    }
+    figures_ui(ui, look, "stream figures", &rows);
+}
+
+fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
+    let look = pane.look;
+    ui.separator();
+    let address = client.address.to_string();
+    let holds = matches!(client.lease, ClientLease::Held(_));
+    ui.horizontal_wrapped(|ui| {
+        Label::new(&address, look.palette.text).number().ui(ui);
+        if holds {
+            Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
+        } else {
+            grant_ui(
+                ui,
+                pane,
+                (&address, InputAction::GrantClient(client.id)),
+                None,
+            );
+        }
+    });
+    let words = look.fill(
+        inputs::CLIENT,
+        &[&client.hz, &client.reads, &client.writes, &client.refused],
+    );
+    kit::say_ui(ui, &words, look.palette.muted);
+    if let Some(refusal) = &client.refusal {
+        kit::say_ui(ui, &refusal.to_string(), look.palette.warn);
+    }
+}

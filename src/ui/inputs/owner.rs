@@ -1,0 +1,136 @@
+//! Who may move the hand now, how that goes, its end, and within which limits.
+
+use crate::app::action::Action;
+use crate::app::inputs::InputAction;
+use crate::inputs::follow::{FollowLimits, FollowPhase};
+use crate::link::Owner;
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight, format};
+use crate::ui::text::{Text, inputs, words};
+use egui::{Grid, Ui};
+
+/// Who may move the hand now, how it goes, and its end.
+pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    kit::card_ui(ui, look, |ui| {
+        kit::head_ui(ui, look, look.say(inputs::OWNER), |_| ());
+        let owner = pane.state.hand().outside_owner();
+        let words = match owner {
+            Some(owner) => owner_words(pane, owner),
+            None => look.say(inputs::NOBODY_OUTSIDE).to_owned(),
+        };
+        let color = match owner {
+            Some(_) => look.palette.accent,
+            None => look.palette.text,
+        };
+        Label::new(&words, color).wrap().ui(ui);
+        if owner.is_some() {
+            let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
+            button
+                .large()
+                .sends(ui, pane, Action::Input(InputAction::TakeBack));
+        }
+        let run = pane.state.hand().inputs.follow.as_ref();
+        if let Some(view) = run.and_then(|run| run.view) {
+            let rows = [
+                (
+                    look.say(inputs::PHASE),
+                    look.say(phase(view.phase)).to_owned(),
+                ),
+                (look.say(inputs::LEAD_NOW), view.lead.to_string()),
+                (look.say(inputs::DELAY), format::millis(view.delay_p99)),
+            ];
+            figures_ui(ui, look, "follow figures", &rows);
+        }
+        limits_ui(ui, pane);
+        hold_ui(ui, pane);
+    });
+}
+
+/// Whether a key has to be held while the hand moves.
+fn hold_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let mut on = pane.state.settings.hold_to_run;
+    let switch = ui.checkbox(&mut on, look.say(inputs::HOLD_TO_RUN));
+    if switch
+        .on_hover_text(look.tip(inputs::HOLD_TO_RUN))
+        .changed()
+    {
+        pane.actions.push(Action::HoldToRun(on));
+    }
+    if on {
+        kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
+    }
+}
+
+fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let limits = pane.state.settings.follow;
+    ui.horizontal_wrapped(|ui| {
+        let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
+            Label::muted(look, text).ui(ui);
+            let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
+            let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
+            u16::try_from(typed).ok()
+        };
+        let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
+        let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
+        if lead.or(rate).is_some() {
+            let limits = FollowLimits {
+                lead: lead.unwrap_or(limits.lead),
+                rate: rate.unwrap_or(limits.rate),
+            };
+            pane.actions.push(Action::Input(InputAction::Limit(limits)));
+        }
+    });
+}
+
+const fn phase(phase: FollowPhase) -> Text {
+    match phase {
+        FollowPhase::Waiting => inputs::PHASE_WAITING,
+        FollowPhase::Following => inputs::PHASE_FOLLOWING,
+        FollowPhase::Frozen => inputs::PHASE_FROZEN,
+        FollowPhase::Silent => inputs::PHASE_SILENT,
+        FollowPhase::Released => inputs::PHASE_RELEASED,
+    }
+}
+
+/// Who moves the hand from outside, with name and rate, for every view.
+pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
+    let look = pane.look;
+    let hand = pane.state.hand();
+    let name = words::owner(look, owner);
+    let rate = match owner {
+        Owner::Stream(_) => Some(hand.inputs.stream_view.intake.rate_hz),
+        Owner::Dds => hand.inputs.dds_view.as_ref().map(|dds| dds.view.rate_hz),
+        Owner::Gateway(address) => {
+            let mut clients = hand.inputs.clients.iter();
+            let client = clients.find(|client| client.address == address);
+            client.map(|client| f64::from(client.hz))
+        }
+        _ => None,
+    };
+    let words = match rate {
+        Some(rate) => format!("{name} · {rate:.0} Hz"),
+        None => name,
+    };
+    match hand.inputs.follow.as_ref().and_then(|run| run.view) {
+        Some(view) if view.phase != FollowPhase::Following => {
+            format!("{words} · {}", look.say(phase(view.phase)))
+        }
+        _ => words,
+    }
+}
+
+/// Figures with their names, a row each.
+pub(crate) fn figures_ui(ui: &mut Ui, look: Look, salt: &str, rows: &[(&str, String)]) {
+    Grid::new(salt).num_columns(2).show(ui, |ui| {
+        for (name, value) in rows {
+            Label::new(name, look.palette.muted).ui(ui);
+            Label::new(value, look.palette.text)
+                .number()
+                .named(name)
+                .ui(ui);
+            ui.end_row();
+        }
+    });
+}
