@@ -12,7 +12,8 @@ use crate::inputs::pad::{
 };
 use crate::shell::headless::canvas::Canvas;
 use crate::shell::headless::png;
-use crate::ui::inputs::{PadShown, PoseName, pad_picture_ui, pad_table_ui};
+use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
+use crate::ui::inputs::pad_table::pad_table_ui;
 use crate::ui::kit::{Look, card_ui};
 use crate::ui::theme::Palette;
 use crate::ui::window;
