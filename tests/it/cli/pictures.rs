@@ -4,7 +4,7 @@ use crate::setup::process::run;
 use serde_json::Value;
 use std::fs;
 
-const VIEWS: [&str; 11] = [
+const VIEWS: [&str; 12] = [
     "live",
     "touch",
     "tune",
@@ -13,6 +13,7 @@ const VIEWS: [&str; 11] = [
     "poses",
     "device",
     "connection",
+    "inputs",
     "traffic",
     "sessions",
     "window",

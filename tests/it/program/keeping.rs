@@ -118,9 +118,11 @@ async fn settings_are_kept_and_setpoints_never() {
         keys,
         [
             "angle_unit",
+            "follow",
             "gesture_names",
             "gesture_route",
             "hidden_poses",
+            "hold_to_run",
             "language",
             "layout",
             "plot_window",
