@@ -15,7 +15,7 @@ use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
-use crate::ui::poses::tiles::{capture_ui, tile_ui};
+use crate::ui::poses::tiles::{capture_ui, for_all_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
@@ -77,9 +77,14 @@ impl PoseView {
         let look = pane.look;
         let sections = (&mut self.section, poses::SECTION_TIP);
         kit::pick_ui(ui, look, sections, PoseSection::ALL);
-        if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
-            kit::right_ui(ui, |ui| tools_ui(ui, pane));
-        }
+        kit::right_ui(ui, |ui| {
+            if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
+                tools_ui(ui, pane);
+            }
+            if self.section != PoseSection::InHand {
+                for_all_ui(ui, pane);
+            }
+        });
     }
 
     fn mine_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
