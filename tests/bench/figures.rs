@@ -8,6 +8,7 @@ mod frames;
 #[cfg(unix)]
 mod gateway;
 mod hand;
+mod hands;
 mod idle;
 #[cfg(unix)]
 mod line;
@@ -50,7 +51,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 12] = [
+const PARTS: [Part; 13] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -63,12 +64,18 @@ const PARTS: [Part; 12] = [
     ("idle", idle::run),
     ("waiting", waiting::run),
     ("record", record::run),
+    ("several", hands::run),
 ];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     if words.iter().any(|word| word == memory::CHILD) {
         return ended(memory::child());
+    }
+    if let [word, endpoints @ ..] = words.as_slice()
+        && word == hands::CHILD
+    {
+        return ended(hands::child(endpoints));
     }
     if let [.., word, path] = words.as_slice()
         && word == record::CHILD

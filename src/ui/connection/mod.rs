@@ -310,7 +310,7 @@ fn hands_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let slot = hand.label.slot;
     if let Some(endpoint) = hand.endpoint.as_ref().filter(|_| hands.is_several()) {
         let caption = look.say(window::HAND_NAME);
-        row_ui(ui, look, caption, |ui| {
+        row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
             let name = state.settings.hand_name(endpoint).unwrap_or_default();
             let field = TextField::new(caption, NAME_CHARS_MAX).hint(&hand.label.name);
             if let Some(name) = field.ui(ui, pane, name) {

@@ -71,13 +71,14 @@ impl HandColumn {
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let title = format!("{}  {}", words.number, words.name);
+            let [_, side] = words.side;
             kit::head_ui(ui, look, &title, |ui| {
-                let side = Label::muted(look, words.side).small();
+                let side = Label::muted(look, side).small();
                 side.ui(ui);
             });
             ui.horizontal(|ui| {
                 kit::lamp_ui(ui, Some(words.color));
-                Label::said(look, words.state).ui(ui);
+                Label::new(&words.state, look.palette.text).ui(ui);
             });
             let whole = ui.available_height();
             let plot = (whole * PLOT_PART).max(PLOT_LEAST).floor();

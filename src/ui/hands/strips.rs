@@ -2,6 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::hand::HandState;
+use crate::app::hand::mover::Mover;
 use crate::app::hand::slot::SlotId;
 use crate::app::hands::action::HandsAction;
 use crate::hand::kinematics::Side;
@@ -60,12 +61,12 @@ pub(crate) struct HandWords {
     pub(crate) number: usize,
     /// What it is called.
     pub(crate) name: String,
-    /// How its link stands, or that it does not stop.
-    pub(crate) state: Text,
+    /// How its link stands and whether something moves it, or that it does not stop.
+    pub(crate) state: String,
     /// The colour of that.
     pub(crate) color: Color32,
-    /// Left or right.
-    pub(crate) side: Text,
+    /// Left or right, as a letter and in words.
+    pub(crate) side: [Text; 2],
 }
 
 impl HandWords {
@@ -74,6 +75,11 @@ impl HandWords {
         let (state, color) = match hand.link.hold {
             Hold::Alarm { .. } => (main::ALARM_TITLE, look.palette.bad),
             _ => link_words_of(look, hand),
+        };
+        let is_moved = !matches!(hand.mover(), None | Some(Mover::Stop));
+        let state = match is_moved {
+            true => format!("{} · {}", look.say(state), look.say(window::MOVES)),
+            false => look.say(state).to_owned(),
         };
         let name = match &hand.endpoint {
             Some(_) => hand.label.name.to_string(),
@@ -85,8 +91,8 @@ impl HandWords {
             state,
             color,
             side: match hand.side {
-                Side::Right => panels::RIGHT_HAND,
-                Side::Left => panels::LEFT_HAND,
+                Side::Right => [window::SIDE_RIGHT, panels::RIGHT_HAND],
+                Side::Left => [window::SIDE_LEFT, panels::LEFT_HAND],
             },
         }
     }
@@ -141,8 +147,9 @@ fn strip_ui(
     }
     let is_shown = pane.state.hand().label.slot == slot;
     let name = look.fill(window::HAND_OF, &[&words.number, &words.name]);
-    let state = look.say(words.state);
-    let tip = format!("{name}\n{state}\n{}", look.tip(window::HAND_OF));
+    let [letter, side] = words.side.map(|text| look.say(text));
+    let state = &words.state;
+    let tip = format!("{name}\n{side}, {state}\n{}", look.tip(window::HAND_OF));
     let button = Button::new(&words.name, &tip).named(&name).switch(is_shown);
     let response = button.ground(ui, look, strip, ui.scope_id().with("show"));
     let inner = strip.shrink2(vec2(theme::GAP, theme::STEP));
@@ -151,8 +158,7 @@ fn strip_ui(
     let digit = words.number.to_string();
     let label = Label::new(&digit, palette.muted).font(theme::title());
     label.paint(ui, number);
-    let side = look.say(words.side);
-    let width = kit::text_width(ui, side, theme::small()) + theme::STEP;
+    let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
     let is_wide = width < upper.width() * 0.5;
     let (title, corner) = match is_wide {
         true => upper.split_left_right_at_x(upper.right() - width),
@@ -160,8 +166,8 @@ fn strip_ui(
     };
     Label::new(&words.name, palette.text).paint(ui, title);
     if is_wide {
-        let side = Label::new(side, palette.muted).small().right();
-        side.paint(ui, corner);
+        let letter = Label::new(letter, palette.muted).small().right();
+        letter.paint(ui, corner);
     }
     kit::lamp(
         ui,

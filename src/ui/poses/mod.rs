@@ -62,6 +62,9 @@ impl PoseView {
         kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
+            if self.section != PoseSection::InHand {
+                for_all_ui(ui, pane);
+            }
             refused_ui(ui, pane);
             match self.section {
                 PoseSection::Mine => self.mine_ui(ui, pane),
@@ -77,14 +80,9 @@ impl PoseView {
         let look = pane.look;
         let sections = (&mut self.section, poses::SECTION_TIP);
         kit::pick_ui(ui, look, sections, PoseSection::ALL);
-        kit::right_ui(ui, |ui| {
-            if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
-                tools_ui(ui, pane);
-            }
-            if self.section != PoseSection::InHand {
-                for_all_ui(ui, pane);
-            }
-        });
+        if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
+            kit::right_ui(ui, |ui| tools_ui(ui, pane));
+        }
     }
 
     fn mine_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -41,6 +41,10 @@ texts! {
     ADD_HAND_FULL: "Eight hands are open, which is all that fit.", "已打开八只灵巧手，不能再添加。";
     REMOVE_HAND: "Remove this hand", "移除此灵巧手", "Stops this hand if it may be moving, disconnects it, and takes it out of the window.", "若此灵巧手可能在运动则先停止，然后断开并从窗口移除。";
     HAND_NAME: "Name of this hand", "灵巧手名称";
+    HAND_NAME_SHORT: "Name", "名称";
+    SIDE_RIGHT: "R", "右";
+    SIDE_LEFT: "L", "左";
+    MOVES: "moves", "运动中";
     OPEN_ELSEWHERE: "{} is open already, as {}. Nothing was connected.", "{} 已打开（{}），未连接。";
     EXHIBIT_ONE_HAND: "An exhibition is for one hand: disconnect the others first.", "展示模式仅用于一只灵巧手：请先断开其他灵巧手。";
     KEY_HAND: "Hand 1; so each hand by its number", "灵巧手 1；其他按其编号";

@@ -1,6 +1,8 @@
 //! Claims about several hands in one window: each has its own arming, its own history and its own STOP, and one STOP stops all.
 
+use crate::setup::program::{env, start};
 use crate::setup::window::{ANGLE_SET, Bench, Role, SPEED_SET};
+use crate::window::tune::{on_block, short};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
@@ -8,12 +10,15 @@ use handscope::app::hand::HandState;
 use handscope::app::hand::slot::SlotId;
 use handscope::app::hands::action::HandsAction;
 use handscope::app::notices::NoticeKind;
+use handscope::app::settings::Settings;
+use handscope::app::trials::TrialAction;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof};
 use handscope::poses::library::{EntryId, PoseId};
 use handscope::poses::starter::starter;
 use handscope::record::LinkState;
 use handscope::sim::SimConfig;
+use handscope::transport::Endpoint;
 use handscope::ui::View;
 
 const SECOND: &str = "tcp:10.0.0.2:6000";
@@ -244,8 +249,9 @@ fn what_is_open_in_one_slot_is_refused_in_another() {
         bench.run(200);
         assert_eq!(bench.state().hand().endpoint, None, "{taken}");
         let told = bench.state().notices.iter().next().unwrap();
-        let is_said = matches!(told.what, NoticeKind::OpenElsewhere { .. });
-        assert!(is_said && told.at == bench.now(), "{taken} {told:?}");
+        let spelled = taken.parse::<Endpoint>().unwrap().to_string();
+        let is_said = |what: &NoticeKind| matches!(what, NoticeKind::OpenElsewhere { endpoint, .. } if *endpoint == spelled);
+        assert!(is_said(&told.what), "{taken} {told:?}");
         assert!(!bench.texts_with("is open already, as ").is_empty());
     }
     assert_eq!(bench.dials(), dials);
@@ -423,4 +429,46 @@ fn side_by_side_each_hand_has_a_column_and_the_plots_come_back() {
     bench.click_button("All hands");
     bench.run(100);
     assert!(!bench.is_on("All hands"));
+}
+
+#[tokio::test(start_paused = true)]
+async fn hands_of_the_command_line_have_a_slot_each_and_none_twice() {
+    let env = env();
+    let clock = env.clock;
+    let mut app = start(env, Settings::default(), Some("sim:"));
+    let more = ["sim:?seed=2", "sim:", "sim:?seed=3"];
+    let more = more.map(|hand| hand.parse().unwrap());
+    app.open_beside(more.to_vec(), clock.now());
+    tokio::time::sleep(std::time::Duration::from_secs(1)).await;
+    app.logic(clock.now());
+    let state = app.state();
+    let names: Vec<&str> = state.hands.iter().map(|hand| &*hand.label.name).collect();
+    assert_eq!(names, ["sim:?seed=1", "sim:?seed=2", "sim:?seed=3"]);
+    assert_eq!(&*state.hand().label.name, "sim:?seed=1");
+    let is_live = |hand: &HandState| hand.link.state == LinkState::Monitoring;
+    assert!(state.hands.iter().all(is_live));
+    assert!(state.settings.recent.is_empty(), "nothing is remembered");
+}
+
+#[test]
+fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
+    let mut bench = on_block();
+    short(&mut bench);
+    bench.open_another(SECOND);
+    show(&mut bench, 0);
+    arm(&mut bench);
+    bench.click("Start trials");
+    bench.run(200);
+    show(&mut bench, 1);
+    bench.run(600);
+    assert!(hands(&bench)[0].runs_series(), "another hand ends it not");
+    assert!(bench.state().trials.running.is_some());
+    arm(&mut bench);
+    bench.act(Action::Trial(TrialAction::Start));
+    bench.run(100);
+    assert!(!bench.state().hand().runs_series(), "one series at a time");
+    bench.key(Key::F7);
+    bench.run(600);
+    let busy = |hand: &&HandState| hand.runs_series() || hand.is_armed();
+    assert_eq!(hands(&bench).iter().filter(|hand| busy(hand)).count(), 0);
 }
