@@ -5,6 +5,7 @@ use crate::app::files::export::Export;
 use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::joint::Preset;
 use crate::app::hand::sequence::Play;
+use crate::app::hands::action::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
 use crate::app::params::action::ParamAction;
@@ -29,7 +30,7 @@ use std::path::PathBuf;
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// Hold now, from anywhere, armed or not.
+    /// Hold every hand now, from anywhere, armed or not.
     Stop,
     /// Let setpoints pass.
     Arm,
@@ -95,6 +96,8 @@ pub enum Action {
     Connect(Endpoint),
     /// Talk to no hand.
     Disconnect,
+    /// What is done with the list of hands.
+    Hands(HandsAction),
     /// Look for serial ports again.
     FindPorts,
     /// Look for hands. Reads only.

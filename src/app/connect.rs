@@ -14,11 +14,11 @@ struct Built {
     hand: SharedHand,
 }
 
-/// Dials everything: `sim:` to the built-in hand over a wire in memory, anything else to the system.
+/// Dials everything: `sim:` to a built-in hand for each seed and scenario, over a wire in memory, anything else to the system.
 pub struct SimDial {
     clock: Clock,
     system: SystemDial,
-    built: Mutex<Option<Built>>,
+    built: Mutex<Vec<Built>>,
     /// The built-in hand that every RS485 line ends at, if they do.
     at_lines: Option<Endpoint>,
 }
@@ -30,7 +30,7 @@ impl SimDial {
         Self {
             clock,
             system: SystemDial,
-            built: Mutex::new(None),
+            built: Mutex::new(Vec::new()),
             at_lines: None,
         }
     }
@@ -41,7 +41,7 @@ impl SimDial {
         Self {
             clock,
             system: SystemDial,
-            built: Mutex::new(None),
+            built: Mutex::new(Vec::new()),
             at_lines: Some(hand),
         }
     }
@@ -55,20 +55,20 @@ impl SimDial {
                     place: "sim:".into(),
                     message: error.to_string(),
                 })?;
-        let mut built = self.built.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(built) = built
-            .as_ref()
-            .filter(|built| built.seed == seed && built.scenario == scenario)
-        {
+        let mut all = self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = all.iter();
+        if let Some(built) = known.find(|built| built.seed == seed && built.scenario == scenario) {
             return Ok(built.hand.clone());
         }
+        // One that nobody is connected to makes room.
+        all.retain(|built| built.hand.is_shared());
         let config = SimConfig {
             seed,
             scenario,
             ..SimConfig::default()
         };
         let hand = SharedHand::new(SimHand::new(config), self.clock.instant(self.clock.now()));
-        *built = Some(Built {
+        all.push(Built {
             seed,
             scenario,
             hand: hand.clone(),
@@ -121,6 +121,22 @@ mod tests {
             .unwrap();
         assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
         assert_eq!(dial.hand(2, "idle").unwrap().with(|hand, _| hand.id()), 1);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn two_built_in_hands_are_there_at_once() {
+        let dial = SimDial::new(Clock::start());
+        let first = dial.hand(1, "idle").unwrap();
+        first
+            .with(|hand, now| hand.write(register::HAND_ID.address, &[9], now))
+            .unwrap();
+        let second = dial.hand(2, "idle").unwrap();
+        assert_eq!(second.with(|hand, _| hand.id()), 1);
+        assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
+        drop(first);
+        let _third = dial.hand(3, "idle").unwrap();
+        let again = dial.hand(1, "idle").unwrap();
+        assert_eq!(again.with(|hand, _| hand.id()), 1, "nobody had the first");
     }
 
     #[tokio::test(start_paused = true)]

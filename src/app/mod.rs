@@ -6,6 +6,7 @@ pub mod env;
 pub mod exhibit;
 pub mod files;
 pub mod hand;
+pub mod hands;
 pub mod inputs;
 pub mod layout;
 pub mod notices;

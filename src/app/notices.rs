@@ -1,5 +1,6 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
+use crate::app::hand::slot::HandLabel;
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
@@ -137,6 +138,15 @@ pub enum NoticeKind {
     SeriesRuns,
     /// An exhibition needs a hand that is connected, and that nothing else is done to.
     ExhibitNotBegun,
+    /// An exhibition is for one hand, and several are connected.
+    ExhibitWantsOneHand,
+    /// This hand, or the port that leads to it, is open in another slot. Nothing was connected.
+    OpenElsewhere {
+        /// What was asked for.
+        endpoint: String,
+        /// What the hand that has it is called.
+        hand: String,
+    },
     /// A recorded session could not be opened or read on.
     SessionRefused {
         /// The file.
@@ -278,6 +288,8 @@ pub struct Notice {
     pub level: Level,
     /// What happened.
     pub what: NoticeKind,
+    /// The hand that it is about, where there are several.
+    pub hand: Option<HandLabel>,
     /// Times it happened since it was dismissed last.
     pub count: u32,
 }
@@ -289,8 +301,14 @@ impl Notice {
             at,
             level: what.level(),
             what,
+            hand: None,
             count: 1,
         }
+    }
+
+    fn is_same(&self, what: &NoticeKind, hand: Option<&HandLabel>) -> bool {
+        let slot = |hand: &HandLabel| hand.slot;
+        self.what.is_same(what) && self.hand.as_ref().map(slot) == hand.map(slot)
     }
 
     fn again(&mut self, at: Moment, what: NoticeKind) {
@@ -306,9 +324,17 @@ pub struct Notices {
     log: VecDeque<Notice>,
     pushed: u64,
     log_dropped: u64,
+    about: Option<HandLabel>,
 }
 
 impl Notices {
+    /// What comes from now on is about this hand of several; `None` = about the only one, or about none.
+    pub(crate) fn about(&mut self, hand: Option<&HandLabel>) {
+        if self.about.as_ref() != hand {
+            self.about = hand.cloned();
+        }
+    }
+
     /// Adds one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
     /// of faults asks for attention until it was seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
@@ -317,7 +343,8 @@ impl Notices {
         if matches!(what, NoticeKind::Fault { .. }) {
             return;
         }
-        let known = self.kept.iter().position(|own| own.what.is_same(&what));
+        let about = self.about.as_ref();
+        let known = self.kept.iter().position(|own| own.is_same(&what, about));
         let known = known.and_then(|index| self.kept.remove(index));
         if let Some(mut notice) = known {
             notice.again(at, what);
@@ -326,20 +353,28 @@ impl Notices {
         if self.kept.len() >= NOTICES_MAX {
             self.kept.pop_front();
         }
-        self.kept.push_back(Notice::new(self.pushed, at, what));
+        let hand = self.about.clone();
+        self.kept.push_back(Notice {
+            hand,
+            ..Notice::new(self.pushed, at, what)
+        });
     }
 
     /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
     fn note(&mut self, at: Moment, what: &NoticeKind) {
-        if let Some(newest) = self.log.back_mut().filter(|last| last.what.is_same(what)) {
+        let about = self.about.as_ref();
+        let newest = self.log.back_mut();
+        if let Some(newest) = newest.filter(|last| last.is_same(what, about)) {
             return newest.again(at, what.clone());
         }
         if self.log.len() >= LOG_MAX {
             self.log.pop_front();
             self.log_dropped += 1;
         }
-        self.log
-            .push_back(Notice::new(self.pushed, at, what.clone()));
+        self.log.push_back(Notice {
+            hand: self.about.clone(),
+            ..Notice::new(self.pushed, at, what.clone())
+        });
     }
 
     /// True if there is nothing to read.
@@ -353,9 +388,12 @@ impl Notices {
         self.kept.retain(|notice| notice.id != id);
     }
 
-    /// Takes away those that are no longer so. The log keeps them.
+    /// Takes away those that are no longer so: of several hands, those about the one that it is about now. The log keeps them.
     pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
-        self.kept.retain(|notice| !over(&notice.what));
+        let slot = self.about.as_ref().map(|hand| hand.slot);
+        let is_other = |hand: &HandLabel| slot.is_some_and(|slot| slot != hand.slot);
+        self.kept
+            .retain(|notice| !over(&notice.what) || notice.hand.as_ref().is_some_and(is_other));
     }
 
     /// Newest first.

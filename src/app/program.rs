@@ -11,6 +11,7 @@ use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
 use crate::app::hand::HandState;
 use crate::app::hand::connection::REST_WITHIN;
+use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamAction;
@@ -120,10 +121,30 @@ impl App {
         let endpoint = endpoint
             .or_else(|| self.remembered(now))
             .unwrap_or_else(Endpoint::sim);
-        let State { hands, notices, .. } = &mut self.state;
+        let State {
+            hands,
+            notices,
+            settings,
+            ..
+        } = &mut self.state;
         let hand = hands.shown_mut();
         hand.now = now;
         hand.go(Some(endpoint), &self.env, notices);
+        hand.know(settings);
+    }
+
+    /// At start: further hands, each in a slot of its own; the first stays shown. Remembers nothing.
+    pub fn open_beside(&mut self, endpoints: Vec<Endpoint>, now: Moment) {
+        let first = self.state.hand().label.slot;
+        for endpoint in endpoints {
+            self.state.now = now;
+            let is_new = !self.state.is_open_elsewhere(&endpoint, None);
+            if is_new && self.state.hands.has_room() {
+                self.state.hands.add();
+                self.open(Some(endpoint), now);
+            }
+        }
+        self.state.hands.show(first);
     }
 
     fn remembered(&mut self, now: Moment) -> Option<Endpoint> {
@@ -147,6 +168,7 @@ impl App {
         if let Some(player) = &mut self.recorded.player {
             player.tell(what.clone());
         }
+        self.state.notices.about(None);
         self.state.notices.push(now, what);
     }
 
@@ -175,7 +197,10 @@ impl App {
             ..
         } = &mut self.state;
         let env = &self.env;
+        let is_several = hands.is_several();
         for hand in hands.iter_mut() {
+            hand.know(settings);
+            notices.about(is_several.then_some(&hand.label));
             hand.take_news(notices, now);
             hand.tick_sequence();
             hand.tick_inputs(notices, settings);
@@ -193,7 +218,12 @@ impl App {
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
         }
+        notices.about(None);
+        let has = |hand: &HandState, id| hand.series.as_ref().is_some_and(|run| run.session == id);
+        let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
+        told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
+        self.state.sweep();
         self.exhibit.tick(&mut self.state, &self.env, now);
         self.take_jobs(now);
         self.recorded.tick(&mut self.state, &self.env);
@@ -268,17 +298,14 @@ impl App {
         if self.state.exhibit.is_some() && !action.passes_in_exhibit() {
             return;
         }
+        self.state.notices.about(None);
         let hand = self.state.hand_mut();
         hand.now = now;
         if hand.runs_series() && action.disturbs_series() {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
-        if let Some(done) = action.person_act(self.state.hand().is_armed(), &self.state.poses) {
-            let hand = self.state.hand_mut();
-            hand.record_event(now, EventKind::Person, done.words());
-            hand.recorder.person(done, now);
-        }
+        self.record_act(&action, now);
         match action {
             Action::Arm | Action::HoldKey(_) if self.closing.is_some() => {}
             Action::Session(action) => {
@@ -301,8 +328,12 @@ impl App {
             Action::FindPorts => self.find_ports(),
             Action::Connect(endpoint) => self.connect(Some(endpoint)),
             Action::Disconnect => self.connect(None),
+            Action::Hands(action) => self.state.hands_action(action, &self.env),
+            Action::Stop => self.stop(),
+            Action::HoldKey(key) => self.hold_key(key),
             Action::Scan(wish) => {
-                let held = self.state.hand().endpoint.clone();
+                let held = self.state.hands.iter();
+                let held = held.filter_map(|hand| hand.endpoint.clone()).collect();
                 self.state.scan.begin(wish, held, &self.env);
             }
             Action::CancelScan => self.state.scan.cancel(),
@@ -313,28 +344,63 @@ impl App {
         }
     }
 
+    /// Keeps with each hand what a person does to it.
+    fn record_act(&mut self, action: &Action, now: Moment) {
+        let State { hands, poses, .. } = &mut self.state;
+        let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
+        for hand in hands.with_shown(|hand| goes_to_all && hand.takes_poses()) {
+            if let Some(done) = action.person_act(hand.is_armed(), poses) {
+                hand.record_event(now, EventKind::Person, done.words());
+                hand.recorder.person(done, now);
+            }
+        }
+    }
+
+    /// Holds every hand, shown or not.
+    fn stop(&mut self) {
+        self.state.stop_all();
+        if let Some(exhibit) = &mut self.state.exhibit {
+            exhibit.wish(ExhibitWish::Stop);
+        }
+    }
+
+    /// The key that is held lets every hand move that is armed; its press arms the shown one alone.
+    fn hold_key(&mut self, key: HoldKey) {
+        let State {
+            hands,
+            notices,
+            now,
+            ..
+        } = &mut self.state;
+        let (shown, is_several) = (hands.shown().label.slot, hands.is_several());
+        for hand in hands.iter_mut() {
+            let key = match key {
+                HoldKey::Pressed if hand.label.slot != shown => HoldKey::Held,
+                key => key,
+            };
+            hand.now = *now;
+            notices.about(is_several.then_some(&hand.label));
+            hand.hold_key(key, notices);
+        }
+    }
+
     /// What is done with the hand that is shown.
     fn hand_action(&mut self, action: Action, now: Moment) {
         let State {
             hands,
             notices,
             settings,
-            exhibit,
             ..
         } = &mut self.state;
+        if hands.is_several() {
+            notices.about(Some(&hands.shown().label));
+        }
         let (hand, env) = (hands.shown_mut(), &self.env);
         match action {
-            Action::Stop => {
-                hand.stop(notices);
-                if let Some(exhibit) = exhibit {
-                    exhibit.wish(ExhibitWish::Stop);
-                }
-            }
             Action::Arm => hand.arm(notices),
-            Action::HoldKey(key) => hand.hold_key(key, notices),
             Action::HoldToRun(on) => {
                 settings.hold_to_run = on;
-                hand.tick_hold(on);
+                hands.iter_mut().for_each(|hand| hand.tick_hold(on));
             }
             Action::Disarm => hand.disarm(),
             Action::Target(dof, angle) => hand.target(dof, angle),
@@ -388,15 +454,14 @@ impl App {
             settings,
             ..
         } = &mut self.state;
-        let hand = hands.shown_mut();
         match action {
-            Action::Capture(name) => match hand.pose_now() {
+            Action::Capture(name) => match hands.shown().pose_now() {
                 Some(angles) => {
                     poses.newest = poses.library.add_pose(&name, LibraryPose::at(angles))
                 }
                 None => notices.push(now, NoticeKind::PoseUnknown),
             },
-            Action::Recapture(id) => match hand.pose_now() {
+            Action::Recapture(id) => match hands.shown().pose_now() {
                 Some(angles) => {
                     let mut known = poses.library.poses.iter_mut();
                     if let Some(pose) = known.find(|pose| pose.id == id) {
@@ -415,12 +480,16 @@ impl App {
             }
             Action::Recall(id) => {
                 let plan = poses.plan(EntryId::Pose(id));
-                if plan.is_some_and(|plan| hand.recall(plan, &self.env)) {
-                    poses.recalled = Some(id);
+                for hand in hands.with_shown(|hand| hand.takes_poses()) {
+                    hand.now = now;
+                    let plan = plan.clone();
+                    if plan.is_some_and(|plan| hand.recall(plan, &self.env)) {
+                        poses.recalled = Some(id);
+                    }
                 }
             }
             Action::DryRun(sequence) => {
-                let angle = hand.sample.angle;
+                let angle = hands.shown().sample.angle;
                 let from = crate::hand::PerDof::from_fn(|dof| {
                     angle.and_then(|angle| angle.value[dof].documented())
                 });
@@ -431,7 +500,11 @@ impl App {
                 if matches!(play, Play::Start(_) | Play::Step(_)) {
                     poses.preview = None;
                 }
-                hand.play(play, poses, &self.env);
+                let entry = hands.shown().sequence.as_ref().map(|run| run.entry);
+                for hand in hands.with_shown(|hand| hand.plays_along(play, entry)) {
+                    hand.now = now;
+                    hand.play(play, poses, &self.env);
+                }
             }
             action => self.keep(action),
         }
@@ -439,12 +512,23 @@ impl App {
 
     /// What is kept from one start to the next.
     fn keep(&mut self, action: Action) {
-        let settings = &mut self.state.settings;
+        let State {
+            hands, settings, ..
+        } = &mut self.state;
         match action {
+            Action::Side(side) => {
+                if let Some(endpoint) = &hands.shown().endpoint {
+                    settings.set_side_of(endpoint, side);
+                }
+                // Others of which nobody said a side have the one that was said last.
+                if !hands.is_several() {
+                    settings.side = side;
+                }
+                hands.shown_mut().know(settings);
+            }
             Action::NameGesture(gesture, name) => settings.name_gesture(gesture, &name),
             Action::GestureRoute(route) => settings.gesture_route = route,
             Action::Theme(theme) => settings.theme = theme,
-            Action::Side(side) => settings.side = side,
             Action::Layout(layout) => settings.layout = layout,
             Action::ReadFirst(first) => settings.read_first = first,
             Action::Zoom(zoom) => settings.zoom = zoom,
@@ -458,15 +542,29 @@ impl App {
     }
 
     fn connect(&mut self, to: Option<Endpoint>) {
+        let slot = self.state.hand().label.slot;
         if let Some(endpoint) = &to {
+            if self.state.is_open_elsewhere(endpoint, Some(slot)) {
+                return;
+            }
             // A scan may still ask further ids on the port that is wanted.
             self.state.scan.cancel();
             self.state.settings.remember(endpoint);
         }
-        let State { hands, notices, .. } = &mut self.state;
+        let State {
+            hands,
+            notices,
+            settings,
+            ..
+        } = &mut self.state;
+        if hands.is_several() {
+            notices.about(Some(&hands.shown().label));
+        }
         let hand = hands.shown_mut();
+        hand.is_removed = false;
         hand.close_procedure();
         hand.leave(to, &self.env, notices);
+        hand.know(settings);
     }
 
     /// What is done with files is begun here, all else with the hand.
@@ -598,8 +696,10 @@ impl App {
         let State { hands, notices, .. } = &mut self.state;
         let closing = *self.closing.get_or_insert_with(|| {
             let mut held = false;
+            let is_several = hands.is_several();
             for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
                 hand.now = now;
+                notices.about(is_several.then_some(&hand.label));
                 hand.stop(notices);
                 held = true;
             }

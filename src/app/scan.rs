@@ -94,8 +94,8 @@ impl ScanState {
         }
     }
 
-    /// Begins a scan; one that runs goes on instead. `held` is the hand that is connected now.
-    pub(crate) fn begin(&mut self, wish: ScanTarget, held: Option<Endpoint>, env: &Env) {
+    /// Begins a scan; one that runs goes on instead. `held` are the hands that are connected now.
+    pub(crate) fn begin(&mut self, wish: ScanTarget, held: Vec<Endpoint>, env: &Env) {
         if self.handle.is_some() {
             return;
         }

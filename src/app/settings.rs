@@ -233,10 +233,28 @@ impl Default for Zoom {
     }
 }
 
-/// Hands that are remembered: what fits a glance.
-pub const RECENT_MAX: usize = 5;
+/// Hands that are remembered: as many as a window has at once.
+pub const RECENT_MAX: usize = 8;
+/// Hands whose name and side are kept. Of more, those that are not among the recent ones go.
+pub const KNOWN_MAX: usize = 64;
 /// Hands whose taring is kept; the oldest goes first.
 pub const TARES_MAX: usize = 20;
+
+/// What a person says of one hand.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KnownHand {
+    /// What it is called; empty if it has no name.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// Left or right; `None` = as [`Settings::side`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
+    /// Keys of a newer version, kept as they are.
+    #[serde(flatten)]
+    pub others: toml::Table,
+}
+
 /// What is recorded, and where.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -286,8 +304,10 @@ pub struct Settings {
     pub recent: Vec<String>,
     /// Dark or light.
     pub theme: Theme,
-    /// The hand that is drawn: no register says which one it is.
+    /// The hand that is drawn where nobody said another of it: no register says which one it is.
     pub side: Side,
+    /// What a person says of each hand, by its endpoint.
+    pub hands: BTreeMap<String, KnownHand>,
     /// Language of the window.
     pub language: Language,
     /// How angles are written and typed.
@@ -357,6 +377,41 @@ impl Settings {
         self.endpoint = Some(text);
     }
 
+    /// Left or right, as the person said of this hand, or last of any.
+    #[must_use]
+    pub fn side_of(&self, endpoint: Option<&Endpoint>) -> Side {
+        let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
+        known.and_then(|known| known.side).unwrap_or(self.side)
+    }
+
+    /// What a person calls this hand.
+    #[must_use]
+    pub fn hand_name(&self, endpoint: &Endpoint) -> Option<&str> {
+        let name = &self.hands.get(&endpoint.to_string())?.name;
+        (!name.is_empty()).then_some(name)
+    }
+
+    /// Says of a hand that it is the left or the right one.
+    pub(crate) fn set_side_of(&mut self, endpoint: &Endpoint, side: Side) {
+        self.know_hand(endpoint, |known| known.side = Some(side));
+    }
+
+    /// Gives a hand a name of one line; empty takes it away.
+    pub(crate) fn name_hand(&mut self, endpoint: &Endpoint, name: &str) {
+        self.know_hand(endpoint, |known| known.name = clean(name));
+    }
+
+    fn know_hand(&mut self, endpoint: &Endpoint, change: impl FnOnce(&mut KnownHand)) {
+        let text = endpoint.to_string();
+        change(self.hands.entry(text.clone()).or_default());
+        self.hands.retain(|_, known| *known != KnownHand::default());
+        if self.hands.len() > KNOWN_MAX {
+            let recent = &self.recent;
+            self.hands
+                .retain(|hand, _| *hand == text || recent.contains(hand));
+        }
+    }
+
     /// Keeps what a person tared at a hand, or lets go of it.
     pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<KeptTare>) {
         match kept {
@@ -396,14 +451,34 @@ mod tests {
     #[test]
     fn the_last_few_hands_are_remembered_once_each_and_the_newest_first() {
         let mut settings = Settings::default();
-        for port in [1, 2, 3, 4, 5, 6, 3] {
+        for port in [1, 2, 3, 4, 5, 6, 7, 8, 9, 3] {
             let endpoint = format!("rs485:COM{port}").parse().unwrap();
             settings.remember(&endpoint);
         }
-        let ports = ["COM3", "COM6", "COM5", "COM4", "COM2"];
+        let ports = [
+            "COM3", "COM9", "COM8", "COM7", "COM6", "COM5", "COM4", "COM2",
+        ];
         let spelled = ports.map(|port| format!("rs485:{port}?baud=115200&id=1"));
         assert_eq!(settings.recent, spelled);
         assert_eq!(settings.endpoint.as_ref(), spelled.first());
+    }
+
+    #[test]
+    fn name_and_side_are_kept_of_each_hand_and_only_so_many() {
+        let mut settings = Settings::default();
+        let endpoint = |n: usize| format!("tcp:10.0.0.1:{}", 6000 + n).parse().unwrap();
+        for n in 0..=KNOWN_MAX {
+            settings.remember(&endpoint(n));
+            settings.name_hand(&endpoint(n), &format!(" hand\n{n} "));
+        }
+        assert_eq!(settings.hands.len(), RECENT_MAX, "those that are recent");
+        let last = endpoint(KNOWN_MAX);
+        assert_eq!(settings.hand_name(&last), Some("hand 64"));
+        settings.set_side_of(&last, Side::Left);
+        assert_eq!(settings.side_of(Some(&last)), Side::Left);
+        assert_eq!(settings.side_of(Some(&endpoint(60))), Side::Right);
+        settings.name_hand(&last, "");
+        assert_eq!(settings.hand_name(&last), None);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::app::exhibit::ExhibitState;
 use crate::app::hand::HandState;
+use crate::app::hands::list::HandList;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
 use crate::app::scan::ScanState;
@@ -49,42 +50,6 @@ pub struct State {
     pub beside: Option<BesideSession>,
     /// What is kept from one start to the next.
     pub settings: Settings,
-}
-
-/// The hands of the program, and which of them is shown.
-#[derive(Debug, Default)]
-pub struct HandList {
-    first: HandState,
-    more: Vec<HandState>,
-    shown: usize,
-}
-
-impl HandList {
-    /// The hand that is shown.
-    #[must_use]
-    pub fn shown(&self) -> &HandState {
-        let more = self.shown.checked_sub(1);
-        more.and_then(|at| self.more.get(at)).unwrap_or(&self.first)
-    }
-
-    /// The same, to be changed.
-    pub fn shown_mut(&mut self) -> &mut HandState {
-        let more = self.shown.checked_sub(1);
-        match more.and_then(|at| self.more.get_mut(at)) {
-            Some(hand) => hand,
-            None => &mut self.first,
-        }
-    }
-
-    /// All hands.
-    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut HandState> {
-        std::iter::once(&mut self.first).chain(&mut self.more)
-    }
-
-    /// All hands.
-    pub fn iter(&self) -> impl Iterator<Item = &HandState> {
-        std::iter::once(&self.first).chain(&self.more)
-    }
 }
 
 impl State {

@@ -115,7 +115,7 @@ pub(crate) async fn run(out: &mut Out, args: &ScanArgs) -> anyhow::Result<()> {
         local: args.local(),
         hosts: args.tcp.clone(),
         ids: args.ids(),
-        held: None,
+        held: Vec::new(),
         clock,
         dial: Arc::new(SimDial::new(clock)),
         wake: Arc::new(|| ()),

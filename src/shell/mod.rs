@@ -106,6 +106,11 @@ impl Cockpit {
         self.window.set_view(view);
     }
 
+    /// Shows all hands side by side.
+    pub fn show_all_hands(&mut self) {
+        self.window.show_all_hands();
+    }
+
     /// Lets the plots show just the time from one moment to another.
     pub fn show_stretch(&mut self, (from, to): (Moment, Moment)) {
         self.window.show_stretch((from.secs(), to.secs()));

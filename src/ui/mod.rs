@@ -4,6 +4,7 @@ mod connection;
 mod exhibit;
 mod faults;
 pub(crate) mod hand;
+pub(crate) mod hands;
 mod inputs;
 mod joints;
 pub(crate) mod kit;

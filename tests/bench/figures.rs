@@ -9,6 +9,7 @@ mod frames;
 #[cfg(unix)]
 mod gateway;
 mod hand;
+mod hands;
 mod idle;
 #[cfg(unix)]
 mod line;
@@ -65,12 +66,18 @@ const PARTS: [Part; 13] = [
     ("idle", idle::run),
     ("waiting", waiting::run),
     ("record", record::run),
+    ("several", hands::run),
 ];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     if words.iter().any(|word| word == memory::CHILD) {
         return ended(memory::child());
+    }
+    if let [word, endpoints @ ..] = words.as_slice()
+        && word == hands::CHILD
+    {
+        return ended(hands::child(endpoints));
     }
     if let [.., word, path] = words.as_slice()
         && word == record::CHILD

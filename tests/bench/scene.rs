@@ -115,6 +115,18 @@ impl Scene {
         self.cockpit.app().act(Action::PlotWindow(window), now);
     }
 
+    /// Opens further hands, each in a slot of its own.
+    pub(crate) fn open_beside(&mut self, endpoints: Vec<Endpoint>) {
+        let now = self.now();
+        let _inside = self.runtime.enter();
+        self.cockpit.app().open_beside(endpoints, now);
+    }
+
+    /// Shows all hands side by side.
+    pub(crate) fn show_all_hands(&mut self) {
+        self.cockpit.show_all_hands();
+    }
+
     pub(crate) fn show(&mut self, view: View) {
         self.cockpit.show(view);
     }

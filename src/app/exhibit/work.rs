@@ -25,6 +25,10 @@ impl ExhibitWork {
         // A file that is still asked for would take the place of this exhibition, PIN and all.
         self.opening = None;
         let State { hands, notices, .. } = state;
+        if hands.iter().filter(|hand| hand.open.is_some()).count() > 1 {
+            notices.push(now, NoticeKind::ExhibitWantsOneHand);
+            return;
+        }
         let hand = hands.shown_mut();
         hand.now = now;
         let is_busy = hand.runs_series() || hand.procedure.is_some() || hand.leaving.is_some();

@@ -3,6 +3,7 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
+use crate::app::hand::slot::SlotId;
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::procedures::Procedure;
 use crate::hand::Moment;
@@ -15,6 +16,7 @@ use crate::store::calendar::{day, since_1970};
 use crate::store::{BackgroundJob, on_thread};
 use crate::tasks::place::{PlaceChange, PlaceEnd};
 use crate::transport::Endpoint;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +27,8 @@ type Noted = (Option<QuirkSheet>, QuirkSheet);
 #[derive(Debug)]
 pub(crate) struct QuirkNotes {
     path: Option<PathBuf>,
-    noted: Option<(Endpoint, Quirks)>,
+    /// By slot: what was noted last of the hand in it. As long as the slots of one run.
+    noted: BTreeMap<SlotId, (Endpoint, Quirks)>,
     under_way: Option<BackgroundJob<io::Result<Noted>>>,
     /// What this program changed itself, and whether it may be in flash: nothing to be warned of.
     own: Option<(PlaceChange, bool)>,
@@ -36,7 +39,7 @@ impl QuirkNotes {
     pub(crate) fn new(settings: Option<&Path>) -> Self {
         Self {
             path: settings.map(QuirkBook::path),
-            noted: None,
+            noted: BTreeMap::new(),
             under_way: None,
             own: None,
         }
@@ -72,12 +75,13 @@ impl QuirkNotes {
         let quirks = self.quirks(hand);
         let endpoint = hand.endpoint.as_ref().filter(|endpoint| !endpoint.is_sim());
         let new = endpoint.filter(|endpoint| {
-            let noted = self.noted.as_ref();
+            let noted = self.noted.get(&hand.label.slot);
             hand.link.state.is_live()
                 && noted.is_none_or(|noted| (&noted.0, noted.1) != (endpoint, quirks))
         });
         if let Some(endpoint) = new.filter(|_| self.under_way.is_none()).cloned() {
-            self.noted = Some((endpoint.clone(), quirks));
+            let noted = (endpoint.clone(), quirks);
+            self.noted.insert(hand.label.slot, noted);
             self.note(endpoint, quirks, env);
         }
     }

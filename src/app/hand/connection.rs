@@ -71,6 +71,9 @@ impl HandState {
         let before = std::mem::take(self);
         *self = Self {
             now: before.now,
+            label: before.label,
+            side: before.side,
+            is_removed: before.is_removed,
             traffic: match (&open, &endpoint) {
                 (Some(open), Some(endpoint)) => Traffic::of(open.link.tap(), endpoint),
                 _ => Traffic::default(),

@@ -12,6 +12,7 @@ pub mod play;
 pub mod recording;
 mod requests;
 pub mod sequence;
+pub mod slot;
 pub mod state;
 pub(crate) mod taring;
 

@@ -39,6 +39,23 @@ impl HandState {
         }
     }
 
+    /// True for a hand that takes a pose which is meant for all: it is armed, and the person at this window moves it.
+    #[must_use]
+    pub fn takes_poses(&self) -> bool {
+        let is_ours = !self.runs_series() && self.outside_owner().is_none();
+        self.is_armed() && is_ours && self.procedure.is_none() && self.leaving.is_none()
+    }
+
+    /// True if this hand does what a person asks of the shown one, where that is meant for all. `entry` is what the shown one plays:
+    /// nothing else is resumed with it.
+    pub(crate) fn plays_along(&self, play: Play, entry: Option<EntryId>) -> bool {
+        match play {
+            Play::Start(_) | Play::Step(_) => self.takes_poses(),
+            Play::Resume => self.sequence.as_ref().map(|run| run.entry) == entry,
+            Play::Pause | Play::End => true,
+        }
+    }
+
     /// Starts what a person wants played; without arming, nothing.
     pub(crate) fn start(&mut self, plan: Option<PlayPlan>, pace: PlayMode, env: &Env) {
         let Some((plan, epoch)) = plan.zip(self.link.armed.filter(|_| self.is_armed())) else {

@@ -48,7 +48,7 @@ impl HandState {
         let target = RecordingTarget {
             folder,
             endpoint,
-            side: settings.side,
+            side: self.side,
         };
         HandRecording::begin(&target, open.link.observe(), env)
     }

@@ -4,6 +4,7 @@ use crate::app::hand::held_key::HeldKey;
 use crate::app::hand::joint::JointControl;
 use crate::app::hand::open::{Leaving, OpenLink, Pending};
 use crate::app::hand::sequence::SequenceRun;
+use crate::app::hand::slot::{HandLabel, place_name};
 use crate::app::inputs::HandInputs;
 use crate::app::params::state::ParamsState;
 use crate::app::procedures::procedure::Procedure;
@@ -14,7 +15,9 @@ use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
 use crate::app::sessions::recording::HandRecording;
+use crate::app::settings::Settings;
 use crate::app::trials::run::SeriesRun;
+use crate::hand::kinematics::Side;
 use crate::hand::{Angle, AngleReading, Finger, Gesture, HandSample, Moment, PerDof, PerFinger};
 use crate::history::History;
 use crate::link::session::motion::arm_refusal;
@@ -39,6 +42,10 @@ pub enum Freshness {
 pub struct HandState {
     /// The time of this frame.
     pub now: Moment,
+    /// Which of several, and what it is called.
+    pub label: HandLabel,
+    /// Left or right, as the person says: no register does.
+    pub side: Side,
     /// The hand that is wanted; `None` after a disconnect.
     pub endpoint: Option<Endpoint>,
     /// Where the link stands.
@@ -98,6 +105,8 @@ pub struct HandState {
     /// Angles received before this belong to a connection that is gone.
     pub(crate) seen_from: Option<Moment>,
     pub(crate) was_live: bool,
+    /// Its slot goes as soon as it is left.
+    pub(crate) is_removed: bool,
     /// The hand whose files were looked at last.
     pub(crate) listed: Option<Endpoint>,
     /// The hand that the history is of.
@@ -149,6 +158,21 @@ impl HandState {
             .as_ref()
             .map(ToString::to_string)
             .unwrap_or_default()
+    }
+
+    /// Takes its name and side from what is kept of it.
+    pub(crate) fn know(&mut self, settings: &Settings) {
+        self.side = settings.side_of(self.endpoint.as_ref());
+        let name = match &self.endpoint {
+            Some(endpoint) => match settings.hand_name(endpoint) {
+                Some(name) => name.to_owned(),
+                None => place_name(endpoint),
+            },
+            None => String::new(),
+        };
+        if *self.label.name != *name {
+            self.label.name = name.into();
+        }
     }
 
     /// Lets the recorder go on.

@@ -26,7 +26,7 @@ impl HandState {
     /// Does what a person asked for.
     pub(crate) fn input_action(&mut self, action: InputAction, settings: &mut Settings, env: &Env) {
         match action {
-            InputAction::Listen(place) => self.listen(place, settings, env),
+            InputAction::Listen(place) => self.listen(place, env),
             InputAction::ReadPad(on) => self.read_pad(on, settings, env),
             InputAction::Share(place) => self.share(place, env),
             InputAction::Show(place) => self.show_viewers(place, settings, env),
@@ -53,7 +53,7 @@ impl HandState {
         }
     }
 
-    fn listen(&mut self, place: Option<StreamPlace>, settings: &Settings, env: &Env) {
+    fn listen(&mut self, place: Option<StreamPlace>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.stream = None;
         self.inputs.stream_at = None;
@@ -63,7 +63,7 @@ impl HandState {
         let link = open.link.clone();
         let config = StreamConfig {
             place,
-            side: settings.side,
+            side: self.side,
             clock: env.clock,
             stop: Arc::new(move || link.stop()),
             wake: Arc::clone(&env.wake),

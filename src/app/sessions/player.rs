@@ -249,7 +249,6 @@ impl SessionPlayer {
         let passed = live.now.since(self.ticked);
         self.ticked = live.now;
         self.state.settings.clone_from(&live.settings);
-        self.state.settings.side = self.file.opening().side;
         self.state.sessions.clone_from(&live.sessions);
         let eyes = live.hands.iter().any(HandState::may_move);
         match BackgroundJob::take_from(&mut self.beside) {
@@ -261,6 +260,10 @@ impl SessionPlayer {
         self.take_ahead();
         self.run(passed);
         self.read_ahead(env);
+        let side = self.file.opening().side;
+        let shown = self.state.hands.shown_mut();
+        // In place of the live hand that was shown, which the views go on with.
+        (shown.label.slot, shown.side) = (live.hand().label.slot, side);
         let waits = self.seeking.is_some();
         if let Some(line) = self.line() {
             (line.live_needs_eyes, line.waits) = (eyes, waits);

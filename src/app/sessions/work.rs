@@ -2,6 +2,7 @@
 //! thread.
 
 use crate::app::env::Env;
+use crate::app::hand::HandState;
 use crate::app::notices::NoticeKind;
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
@@ -354,9 +355,11 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
-/// True while something goes on at the live hand that a person must see.
+/// True while something goes on at a live hand that a person must see.
 fn is_busy(state: &State) -> bool {
-    let hand = state.hand();
-    let asks = hand.procedure.is_some() || hand.params.question.is_some();
-    hand.runs_series() || asks || state.exhibit.is_some()
+    let is_busy = |hand: &HandState| {
+        let asks = hand.procedure.is_some() || hand.params.question.is_some();
+        hand.runs_series() || asks
+    };
+    state.hands.iter().any(is_busy) || state.exhibit.is_some()
 }

@@ -69,6 +69,15 @@ impl TrialsState {
         }
     }
 
+    /// A series that was broken off with its link has ended there: no hand has it any more. What to tell of it.
+    pub(crate) fn close_broken_off(
+        &mut self,
+        runs: impl Fn(SessionId) -> bool,
+    ) -> Option<NoticeKind> {
+        let session = self.running.filter(|session| !runs(*session))?;
+        Some(self.close(session, Some(Abort::LinkLost)))
+    }
+
     /// The series that ran into this session is over; what to tell of it.
     fn close(&mut self, id: SessionId, aborted: Option<Abort>) -> NoticeKind {
         self.running = None;
@@ -98,7 +107,9 @@ impl HandState {
     /// Begins the series that is planned, in the arming of now. Without one nothing happens.
     pub(crate) fn start_series(&mut self, trials: &mut TrialsState, env: &Env) {
         let plan = trials.plan.clone();
-        if self.start_refusal(&plan).is_some() || plan.check().is_err() {
+        let is_refused = self.start_refusal(&plan).is_some() || plan.check().is_err();
+        // One series at a time: any key stops it, and it has the view to itself.
+        if is_refused || trials.running.is_some() {
             return;
         }
         self.take_over();
@@ -167,10 +178,6 @@ impl HandState {
     pub(crate) fn tick_series(&mut self, trials: &mut TrialsState, notices: &mut Notices) {
         let now = self.now;
         let Some(mut run) = self.series.take() else {
-            // One that was broken off with its link has ended there.
-            if let Some(session) = trials.running {
-                notices.push(now, trials.close(session, Some(Abort::LinkLost)));
-            }
             return;
         };
         let Some(task) = &mut run.task else {

@@ -23,6 +23,7 @@ pub(crate) struct ExhibitArgs {
 }
 
 pub(crate) fn run(out: &mut Out, args: ExhibitArgs) -> anyhow::Result<()> {
+    args.drawn.check(1)?;
     let start = match &args.file {
         Some(path) => exhibit_file::read(path)
             .with_context(|| format!("the exhibition in {} cannot be shown", path.display()))?,

@@ -3,6 +3,8 @@
 pub(crate) mod exhibit;
 pub(crate) mod snapshot;
 
+use crate::app::hands::list::HANDS_MAX;
+use crate::cli::out::WrongUsage;
 use crate::transport::Endpoint;
 use clap::Args;
 use std::path::PathBuf;
@@ -25,9 +27,9 @@ pub(crate) struct WindowArgs {
 /// The hand in the window, and what draws it.
 #[derive(Debug, Default, Args)]
 pub(crate) struct DrawnArgs {
-    /// The hand to open in the window, for example tcp:192.168.11.210:6000
+    /// The hand to open in the window, for example tcp:192.168.11.210:6000; given several times, up to eight hands side by side
     #[arg(long, value_name = "URL")]
-    pub(crate) hand: Option<Endpoint>,
+    pub(crate) hand: Vec<Endpoint>,
 
     /// Draw the window without OpenGL; chosen automatically where OpenGL does not start or is only software
     #[arg(long, conflicts_with = "opengl")]
@@ -40,6 +42,18 @@ pub(crate) struct DrawnArgs {
     /// The same as --software, with the reason for the window to show
     #[arg(long, value_name = "REASON", hide = true)]
     pub(crate) software_because: Option<String>,
+}
+
+impl DrawnArgs {
+    /// No more hands may be named than there is room for.
+    pub(crate) fn check(&self, most: usize) -> anyhow::Result<()> {
+        let named = self.hand.len();
+        if named <= most {
+            return Ok(());
+        }
+        let words = format!("--hand was given {named} times, and may be given {most} times here");
+        Err(WrongUsage(words).into())
+    }
 }
 
 /// A mistyped command must not be taken for a file.
@@ -63,6 +77,7 @@ fn recording(text: &str) -> Result<PathBuf, String> {
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     use crate::cli::recordings::session_file;
     use std::ffi::OsString;
+    args.drawn.check(HANDS_MAX)?;
     if let Some(path) = &args.replay {
         // Said where it was asked, and not in a window that opens without it.
         session_file::open(path)?;
@@ -105,12 +120,12 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
         None => Drawing::Software,
     };
     let mut again = shows.words;
-    if let Some(hand) = &args.hand {
+    for hand in &args.hand {
         again.extend(["--hand".into(), hand.to_string().into()]);
     }
     let ended = desktop::run(DesktopStart {
         snap: crate::shell::headless::snap::snap,
-        endpoint: args.hand,
+        endpoints: args.hand,
         drawing,
         loaded,
         settings_path,
@@ -152,7 +167,8 @@ fn restart_without_opengl(again: &[std::ffi::OsString], reason: &str) -> anyhow:
 
 /// Says that this program was built without a window.
 #[cfg(not(feature = "desktop"))]
-pub(crate) fn run(_args: WindowArgs) -> anyhow::Result<()> {
+pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
+    args.drawn.check(HANDS_MAX)?;
     without_window()
 }
 

@@ -44,8 +44,8 @@ pub struct ScanConfig {
     pub hosts: Vec<Hosts>,
     /// Ids on every bus.
     pub ids: Vec<HandId>,
-    /// The hand that is connected now: its port is left alone.
-    pub held: Option<Endpoint>,
+    /// The hands that are connected now: the port of each is left alone.
+    pub held: Vec<Endpoint>,
     /// The program's clock.
     pub clock: Clock,
     /// How wires are opened, and which there are.
@@ -123,7 +123,7 @@ async fn scan(config: ScanConfig, room: Arc<ScanContext>) {
             hosts: config.hosts,
         },
     };
-    let plan = ScanPlan::new(&places, &config.ids, config.held.as_ref());
+    let plan = ScanPlan::new(&places, &config.ids, &config.held);
     *room.board() = Board::new(&plan);
     room.tell(ScanEvent::Begun {
         places: plan.places(),

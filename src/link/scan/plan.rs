@@ -102,10 +102,10 @@ pub struct ScanPlan {
 }
 
 impl ScanPlan {
-    /// Plans for these places and ids. `held` is the hand that is connected now: its port is left alone, its CAN interface
+    /// Plans for these places and ids. `held` are the hands that are connected now: the port of each is left alone, its CAN interface
     /// too, where its link would take our questions for those of another controller.
     #[must_use]
-    pub fn new(places: &ScanTargets, ids: &[HandId], held: Option<&Endpoint>) -> Self {
+    pub fn new(places: &ScanTargets, ids: &[HandId], held: &[Endpoint]) -> Self {
         let mut plan = Self::default();
         for wish in &places.ports {
             plan.add(port_lane(wish, ids), held);
@@ -121,7 +121,7 @@ impl ScanPlan {
         plan
     }
 
-    fn add(&mut self, lane: Lane, held: Option<&Endpoint>) {
+    fn add(&mut self, lane: Lane, held: &[Endpoint]) {
         if self.held.contains(&lane.place) {
             return;
         }
@@ -138,7 +138,7 @@ impl ScanPlan {
             }
             return;
         }
-        let is_held = held.is_some_and(|held| held.place() == lane.place);
+        let is_held = held.iter().any(|held| held.place() == lane.place);
         match is_held {
             true => self.held.push(lane.place),
             false => self.lanes.push(lane),
@@ -370,7 +370,7 @@ mod tests {
 
     #[test]
     fn a_port_is_asked_for_the_first_id_everywhere_before_the_others() {
-        let plan = ScanPlan::new(&ports(1), &ids(3), None);
+        let plan = ScanPlan::new(&ports(1), &ids(3), &[]);
         let tries = spelled(&plan.lanes[0]);
         assert_eq!(tries.len(), 4 * 2 * 3);
         let start = [
@@ -403,7 +403,7 @@ mod tests {
             can: vec!["can0".into()],
             hosts: vec!["127.0.0.1:6001".parse().unwrap()],
         };
-        let plan = ScanPlan::new(&places, &ids(2), None);
+        let plan = ScanPlan::new(&places, &ids(2), &[]);
         let kinds = |nth: usize| -> Vec<&str> {
             let mut kinds: Vec<_> = plan.lanes[nth]
                 .tries
@@ -430,12 +430,12 @@ mod tests {
         for count in [1, 10, 254] {
             let waits = Duration::from_millis(4 * 60) + on_the_wire;
             let whole = waits * 2 * u32::try_from(count).unwrap();
-            let plan = ScanPlan::new(&ports(1), &ids(count), None);
+            let plan = ScanPlan::new(&ports(1), &ids(count), &[]);
             assert_eq!(plan.estimate(), whole, "{count} ids");
             // Ports are looked at beside each other, eight at a time.
-            let eight = ScanPlan::new(&ports(PORTS_AT_ONCE), &ids(count), None);
+            let eight = ScanPlan::new(&ports(PORTS_AT_ONCE), &ids(count), &[]);
             assert_eq!(eight.estimate(), whole);
-            let nine = ScanPlan::new(&ports(PORTS_AT_ONCE + 1), &ids(count), None);
+            let nine = ScanPlan::new(&ports(PORTS_AT_ONCE + 1), &ids(count), &[]);
             assert_eq!(nine.estimate(), 2 * whole);
         }
     }
@@ -449,7 +449,7 @@ mod tests {
             ("127.0.0.0/24", 4),
             ("127.0.0.0/22", 16),
         ] {
-            let plan = ScanPlan::new(&hosts(range), &ids(10), None);
+            let plan = ScanPlan::new(&hosts(range), &ids(10), &[]);
             assert_eq!(plan.estimate(), CONNECT_DEADLINE * calls, "{range}");
         }
         assert_eq!(ScanPlan::default().estimate(), Duration::ZERO);
@@ -461,7 +461,7 @@ mod tests {
             can: vec!["can0".into()],
             ..ports(3)
         };
-        let plan = ScanPlan::new(&places, &ids(254), None);
+        let plan = ScanPlan::new(&places, &ids(254), &[]);
         let tcp = plan
             .lanes
             .iter()
@@ -480,7 +480,7 @@ mod tests {
         ] {
             let mut places = ports(2);
             places.ports.extend(ports(2).ports);
-            let plan = ScanPlan::new(&places, &ids(1), Some(&held.parse().unwrap()));
+            let plan = ScanPlan::new(&places, &ids(1), &[held.parse().unwrap()]);
             let left: Vec<_> = plan.lanes.iter().map(|lane| lane.place.as_str()).collect();
             assert_eq!(left, kept, "{held}");
             assert_eq!(plan.held.len(), 2 - kept.len());
@@ -489,10 +489,10 @@ mod tests {
             can: vec!["can0".into(), "can1".into()],
             ..ScanTargets::default()
         };
-        let plan = ScanPlan::new(&can, &ids(1), Some(&"can:can1?id=9".parse().unwrap()));
+        let plan = ScanPlan::new(&can, &ids(1), &["can:can1?id=9".parse().unwrap()]);
         assert_eq!((plan.places(), plan.held), (1, vec!["can1".to_owned()]));
         let held = "tcp:127.0.0.1:6000?unit=1".parse().unwrap();
-        let plan = ScanPlan::new(&hosts("127.0.0.0/30"), &ids(1), Some(&held));
+        let plan = ScanPlan::new(&hosts("127.0.0.0/30"), &ids(1), &[held]);
         assert_eq!(plan.held, ["127.0.0.1:6000"]);
         assert_eq!(plan.places(), 1);
     }

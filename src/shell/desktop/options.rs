@@ -20,8 +20,8 @@ pub enum Drawing {
 
 /// What the window starts with.
 pub struct DesktopStart {
-    /// The hand named on the command line.
-    pub endpoint: Option<Endpoint>,
+    /// The hands named on the command line.
+    pub endpoints: Vec<Endpoint>,
     /// What draws.
     pub drawing: Drawing,
     /// What was kept from last time, and what is to be said about it.

@@ -122,7 +122,9 @@ impl Program {
         if !start.records {
             app.record_nothing();
         }
-        app.open(start.endpoint, clock.now());
+        let mut endpoints = start.endpoints.into_iter();
+        app.open(endpoints.next(), clock.now());
+        app.open_beside(endpoints.collect(), clock.now());
         if let Some(exhibit) = start.exhibit {
             app.enter_exhibit(exhibit, clock.now());
         }
@@ -170,6 +172,9 @@ impl Program {
         let title = match &state.hand().endpoint {
             _ if state.timeline.is_some() => "Handscope - RECORDED session".to_owned(),
             Some(_) if state.hand().is_simulated() => "Handscope - SIMULATED hand".to_owned(),
+            Some(_) if state.hands.is_several() => {
+                format!("Handscope - {} hands", state.hands.count())
+            }
             Some(endpoint) => format!("Handscope - {endpoint}"),
             None => "Handscope".to_owned(),
         };

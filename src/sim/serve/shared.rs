@@ -13,6 +13,12 @@ pub struct SharedHand {
 }
 
 impl SharedHand {
+    /// True while there is another handle to the same hand.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        Arc::strong_count(&self.hand) > 1
+    }
+
     /// Switches the hand's clock on at `epoch`, the instant of [`Moment::ZERO`].
     #[must_use]
     pub fn new(hand: SimHand, epoch: Instant) -> Self {

@@ -1,20 +1,23 @@
 //! Where the link stands, in a word and a colour.
 
+use crate::app::hand::HandState;
 use crate::link::Dialling;
 use crate::record::LinkState;
-use crate::ui::kit::Pane;
+use crate::ui::kit::{Look, Pane};
 use crate::ui::text::{Text, main};
 use egui::Color32;
 
-/// The word and the colour for where the link stands.
+/// The word and the colour for where the link of the shown hand stands.
 pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
-    let palette = pane.look.palette;
-    let link = &pane.state.hand().link;
+    link_words_of(pane.look, pane.state.hand())
+}
+
+/// The same of any hand.
+pub(crate) fn link_words_of(look: Look, hand: &HandState) -> (Text, Color32) {
+    let (palette, link) = (look.palette, &hand.link);
     match link.state {
         // A hand that never answered is not reached yet; only one that did can be lost.
-        LinkState::Offline
-            if link.trouble.is_some() && pane.state.hand().sample.angle.is_some() =>
-        {
+        LinkState::Offline if link.trouble.is_some() && hand.sample.angle.is_some() => {
             (main::STATE_LOST, palette.bad)
         }
         LinkState::Offline if link.dialling != Dialling::Idle => {

@@ -5,17 +5,19 @@ mod rows;
 pub(crate) mod scan;
 
 use crate::app::action::Action;
+use crate::app::hands::action::HandsAction;
 use crate::app::scan::ScanTarget;
 use crate::hand::SerialSpeed;
 use crate::hand::register::BytePacking;
 use crate::link::scan::plan::BITRATES;
+use crate::poses::library::NAME_CHARS_MAX;
 use crate::record::quirk_sheet::Fact;
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, refused_ui};
-use crate::ui::text::{errors, main, panels, scan as scan_text};
+use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, Weight, refused_ui};
+use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 use std::collections::BTreeMap;
@@ -154,6 +156,8 @@ impl ConnectionForm {
             self.connect_ui(ui, pane);
             let hint = look.tip(panels::kind(self.kind.0));
             Label::new(hint, look.palette.muted).wrap().ui(ui);
+            ui.add_space(theme::STEP);
+            hands_ui(ui, pane);
         });
         recent_ui(ui, pane);
     }
@@ -297,6 +301,34 @@ impl ConnectionForm {
             Label::new(&text, look.palette.warn).wrap().ui(ui);
         }
     }
+}
+
+/// Another hand in the window; of several, the name of this one, and away with it.
+fn hands_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, state) = (pane.look, pane.state);
+    let (hands, hand) = (&state.hands, state.hand());
+    let slot = hand.label.slot;
+    if let Some(endpoint) = hand.endpoint.as_ref().filter(|_| hands.is_several()) {
+        let caption = look.say(window::HAND_NAME);
+        row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
+            let name = state.settings.hand_name(endpoint).unwrap_or_default();
+            let field = TextField::new(caption, NAME_CHARS_MAX).hint(&hand.label.name);
+            if let Some(name) = field.ui(ui, pane, name) {
+                let named = HandsAction::Name(slot, name);
+                pane.actions.push(Action::Hands(named));
+            }
+        });
+    }
+    ui.horizontal_wrapped(|ui| {
+        let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
+        let add = Button::said(look, window::ADD_HAND).disabled(full);
+        add.large().sends(ui, pane, Action::Hands(HandsAction::Add));
+        if hands.is_several() {
+            let remove = Button::said(look, window::REMOVE_HAND).large();
+            let action = Action::Hands(HandsAction::Remove(slot));
+            remove.sends(ui, pane, action);
+        }
+    });
 }
 
 /// True for digits and dots that are no address; with letters it is a name. A port may stand behind it.

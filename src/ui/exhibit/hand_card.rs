@@ -33,7 +33,8 @@ impl HandCard {
         let (hand, feels) = above(inner, inner.height() - below, 14.0 * unit);
         // A little to the right: the badge stands before the little finger.
         let hand = hand.with_min_x(hand.left() + 64.0 * unit);
-        self.0.ui(ui, hand, pane, &tips);
+        let shown = (pane.state.hand(), &tips);
+        self.0.felt_ui(ui, hand, page.look, shown);
         feels_ui(ui, page, feels, &tips);
         badges_ui(
             ui,

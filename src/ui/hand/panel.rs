@@ -1,7 +1,7 @@
 //! The drawn hand in the window: what the state says goes into the picture, and the finger that was chosen comes out.
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
+use crate::app::hand::{Freshness, HandState};
 use crate::hand::kinematics::Side;
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::sim::Scenario;
@@ -15,7 +15,7 @@ use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use crate::ui::touch::fingertip::{Sense as Meant, Tip};
-use egui::{Id, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
 /// The drawn hand, turned as a person wants it.
 #[derive(Debug, Clone, Default)]
@@ -36,7 +36,7 @@ impl HandPanel {
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
             lit: pointed::pointed(ui, PointedPlace::Row),
-            ..picture(pane, tips)
+            ..picture(pane.state.hand(), tips)
         };
         let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
@@ -59,19 +59,23 @@ impl HandPanel {
 pub(crate) struct StillHand(HandView);
 
 impl StillHand {
-    /// Draws it.
-    pub(crate) fn ui(
+    /// Draws a hand, without what its fingertips feel.
+    pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look, hand: &HandState) {
+        self.felt_ui(ui, place, look, (hand, &PerFinger::default()));
+    }
+
+    /// Draws it with that.
+    pub(crate) fn felt_ui(
         &mut self,
         ui: &Ui,
         place: Rect,
-        pane: &Pane<'_>,
-        tips: &PerFinger<Option<Tip>>,
+        look: Look,
+        (hand, tips): (&HandState, &PerFinger<Option<Tip>>),
     ) {
-        let look = pane.look;
-        let response = ui.interact(place, Id::unique("still hand"), Sense::hover());
+        let response = ui.interact(place, ui.scope_id().with("still hand"), Sense::hover());
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
-        self.0.paint(ui, place, look.palette, &picture(pane, tips));
+        self.0.paint(ui, place, look.palette, &picture(hand, tips));
     }
 }
 
@@ -80,8 +84,7 @@ pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f3
     tile::pose_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
 }
 
-fn picture(pane: &Pane<'_>, tips: &PerFinger<Option<Tip>>) -> HandPicture {
-    let state = pane.state.hand();
+fn picture(state: &HandState, tips: &PerFinger<Option<Tip>>) -> HandPicture {
     let angle = state.sample.angle;
     let actual = PerDof::from_fn(|dof| {
         let raw = angle?.value[dof].documented()?;
@@ -93,10 +96,10 @@ fn picture(pane: &Pane<'_>, tips: &PerFinger<Option<Tip>>) -> HandPicture {
     });
     HandPicture {
         target,
-        is_stale: pane.freshness(angle.map(|angle| angle.asked)) == Freshness::Stale,
+        is_stale: state.freshness(angle.map(|angle| angle.asked)) == Freshness::Stale,
         tips: tips.map(|tip| tip.as_ref().map(load).unwrap_or_default()),
         held: state.endpoint.as_ref().and_then(held),
-        ..HandPicture::of(pane.look.side, &actual)
+        ..HandPicture::of(state.side, &actual)
     }
 }
 

@@ -27,12 +27,12 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// As the settings say.
+    /// As the settings and the shown hand say.
     pub(crate) fn of(state: &State) -> Self {
         Self {
             palette: Palette::of(state.settings.theme),
             language: state.settings.language,
-            side: state.settings.side,
+            side: state.hand().side,
         }
     }
 

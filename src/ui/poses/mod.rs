@@ -15,7 +15,7 @@ use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
-use crate::ui::poses::tiles::{capture_ui, tile_ui};
+use crate::ui::poses::tiles::{capture_ui, for_all_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
@@ -62,6 +62,9 @@ impl PoseView {
         kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
             ui.horizontal(|ui| self.head_ui(ui, pane));
+            if self.section != PoseSection::InHand {
+                for_all_ui(ui, pane);
+            }
             refused_ui(ui, pane);
             match self.section {
                 PoseSection::Mine => self.mine_ui(ui, pane),

@@ -2,13 +2,14 @@
 
 use crate::app::action::Action;
 use crate::app::hand::Play;
+use crate::app::hands::action::HandsAction;
 use crate::app::poses::PoseState;
 use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::library::{EntryId, LibraryPose};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight};
-use crate::ui::text::{Text, main, panels, poses};
+use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
@@ -96,6 +97,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
             gestures_ui(ui, pane);
+            for_all_ui(ui, pane);
         });
         let size = match ui.available_height() < TILE.y {
             true => LOW_TILE,
@@ -108,6 +110,17 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane, size));
         });
     });
+}
+
+/// Of several hands: whether a pose or demo goes to all that are armed.
+pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let hands = &pane.state.hands;
+    if hands.is_several() {
+        let on = hands.poses_for_all();
+        let switch = Button::said(pane.look, window::POSES_FOR_ALL).switch(on);
+        let action = Action::Hands(HandsAction::PosesForAll(!on));
+        switch.sends(ui, pane, action);
+    }
 }
 
 fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, size: egui::Vec2) {

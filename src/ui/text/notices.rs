@@ -1,6 +1,6 @@
 //! Messages, troubles of the link and failed requests as sentences in the window's language. Decides nothing.
 
-use crate::app::notices::{NoticeKind, RequestKind};
+use crate::app::notices::{Notice, NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
@@ -62,6 +62,15 @@ fn place(path: Option<&Path>) -> String {
         .unwrap_or_default()
 }
 
+/// A message, and of several hands the one that it is about.
+pub(crate) fn notice_of(look: Look, notice: &Notice) -> String {
+    let said = self::notice(look, &notice.what);
+    match &notice.hand {
+        Some(hand) if !hand.name.is_empty() => look.pair(&hand.name, &said),
+        _ => said,
+    }
+}
+
 /// A message as one or two sentences.
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
@@ -105,6 +114,10 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
         NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
+        NoticeKind::ExhibitWantsOneHand => said(window::EXHIBIT_ONE_HAND),
+        NoticeKind::OpenElsewhere { endpoint, hand } => {
+            look.fill(window::OPEN_ELSEWHERE, &[endpoint, hand])
+        }
         NoticeKind::ExhibitNotBegun => said(main::EXHIBIT_NOT_BEGUN),
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),

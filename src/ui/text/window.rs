@@ -33,6 +33,23 @@ texts! {
     PATH_NONE: "No path was typed.", "尚未输入路径。";
     PATH_OPEN: "Open path", "打开路径", "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
 
+    HAND_OF: "Hand {}: {}", "灵巧手 {}：{}", "Shows this hand in all views. Alt and its number do the same.", "在所有页面显示此灵巧手。Alt 加编号作用相同。";
+    STOP_ONE: "STOP hand {}", "停止灵巧手 {}", "Holds this hand and no other. STOP at the right, Space and Esc hold all hands.", "仅停止此灵巧手。右侧的“停止”、空格与 Esc 停止所有灵巧手。";
+    ALL_HANDS: "All hands", "所有灵巧手", "Shows all hands side by side, in place of the plots of one.", "并排显示所有灵巧手，代替单只的曲线。";
+    POSES_FOR_ALL: "To all armed hands", "用于所有已使能的灵巧手", "A pose or demo goes to every hand that is armed, not only to the one that is shown.", "姿态或演示会用于每只已使能的灵巧手，而不仅是当前显示的一只。";
+    ADD_HAND: "Add a hand", "添加灵巧手", "Another hand in this window, beside those that are open: at most eight. Connects to nothing by itself.", "在本窗口再打开一只灵巧手，最多八只。不会自动连接。";
+    ADD_HAND_FULL: "Eight hands are open, which is all that fit.", "已打开八只灵巧手，不能再添加。";
+    REMOVE_HAND: "Remove this hand", "移除此灵巧手", "Stops this hand if it may be moving, disconnects it, and takes it out of the window.", "若此灵巧手可能在运动则先停止，然后断开并从窗口移除。";
+    HAND_NAME: "Name of this hand", "灵巧手名称";
+    HAND_NAME_SHORT: "Name", "名称";
+    SIDE_RIGHT: "R", "右";
+    SIDE_LEFT: "L", "左";
+    MOVES: "moves", "运动中";
+    OPEN_ELSEWHERE: "{} is open already, as {}. Nothing was connected.", "{} 已打开（{}），未连接。";
+    EXHIBIT_ONE_HAND: "An exhibition is for one hand: disconnect the others first.", "展示模式仅用于一只灵巧手：请先断开其他灵巧手。";
+    KEY_HAND: "Hand 1; so each hand by its number", "灵巧手 1；其他按其编号";
+    KEY_HANDS: "Hands", "灵巧手";
+
     KEYS: "Keys", "快捷键", "Shows what each key does.", "显示各个按键的作用。";
     KEYS_CLOSE: "Close the list of keys", "关闭快捷键列表";
     KEY_ENTRY: "Fist; so each tile by its letter or digit", "握拳；其他图块按其字母或数字";

@@ -62,7 +62,7 @@ impl KeyList {
 /// The groups of the list, column by column.
 const COLUMNS: [&[Text]; 3] = [
     &[window::KEY_MOTION, window::KEY_MEASURING],
-    &[window::KEY_JOINTS],
+    &[window::KEY_JOINTS, window::KEY_HANDS],
     &[window::KEY_WINDOW],
 ];
 
@@ -71,6 +71,8 @@ fn rows(group: Text) -> Vec<(String, Text)> {
     let wishes = ROWS.iter().map(|row| row.wish);
     let mut wishes: Vec<Wish> = wishes.filter(|wish| wish.group() == group).collect();
     wishes.dedup();
+    // One stands for all.
+    wishes.retain(|wish| !matches!(wish, Wish::Hand(1..)));
     let mut rows: Vec<_> = wishes
         .into_iter()
         .map(|wish| (wish.keys(), wish.words()))

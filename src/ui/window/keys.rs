@@ -24,6 +24,8 @@ pub(crate) enum Wish {
     Half,
     /// All joints bent.
     Close,
+    /// The hand with this index, from 0.
+    Hand(usize),
     /// The pose or demo of this key.
     Entry(EntryKey),
     /// The keyboard goes to this joint's angle.
@@ -75,11 +77,12 @@ const NONE: Modifiers = Modifiers::NONE;
 /// What may let the hand move wants two keys, so that a book on the keyboard moves nothing.
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
+const ALT: Modifiers = Modifiers::ALT;
 /// What is held to run.
 const HOLD_TO_RUN: Key = Key::H;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 33] = [
+pub(crate) static ROWS: [KeyRow; 41] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -101,6 +104,14 @@ pub(crate) static ROWS: [KeyRow; 33] = [
     ),
     row(COMMAND, Key::Num9, Wish::Opens(Opens::View(View::Traffic))),
     row(COMMAND, Key::R, Wish::Opens(Opens::View(View::Sessions))),
+    row(ALT, Key::Num1, Wish::Hand(0)),
+    row(ALT, Key::Num2, Wish::Hand(1)),
+    row(ALT, Key::Num3, Wish::Hand(2)),
+    row(ALT, Key::Num4, Wish::Hand(3)),
+    row(ALT, Key::Num5, Wish::Hand(4)),
+    row(ALT, Key::Num6, Wish::Hand(5)),
+    row(ALT, Key::Num7, Wish::Hand(6)),
+    row(ALT, Key::Num8, Wish::Hand(7)),
     row(NONE, Key::Num1, Wish::Joint(Dof::Little)),
     row(NONE, Key::Num2, Wish::Joint(Dof::Ring)),
     row(NONE, Key::Num3, Wish::Joint(Dof::Middle)),
@@ -143,6 +154,7 @@ impl KeyRow {
         };
         match self.modifiers {
             SHIFT => format!("Shift+{key}"),
+            ALT => format!("Alt+{key}"),
             COMMAND if cfg!(target_os = "macos") => format!("Cmd+{key}"),
             COMMAND => format!("Ctrl+{key}"),
             _ => key.to_owned(),
@@ -173,6 +185,7 @@ impl Wish {
             Self::Half => main::HALF,
             Self::Close => main::CLOSE,
             Self::Entry(_) => window::KEY_ENTRY,
+            Self::Hand(_) => window::KEY_HAND,
             Self::Joint(dof) => words::dof(dof),
             Self::LinkFingers => window::KEY_LINK,
             Self::AngleUnit => window::KEY_UNIT,
@@ -199,6 +212,7 @@ impl Wish {
             | Self::Half
             | Self::Close
             | Self::Entry(_) => window::KEY_MOTION,
+            Self::Hand(_) => window::KEY_HANDS,
             Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => window::KEY_JOINTS,
             Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => {
                 window::KEY_MEASURING

@@ -112,7 +112,7 @@ pub(crate) fn message_ui(
 
 /// A message with how often it came.
 fn words(look: Look, notice: &Notice) -> String {
-    let text = notices::notice(look, &notice.what);
+    let text = notices::notice_of(look, notice);
     match notice.count {
         0 | 1 => text,
         count => format!("{text} ({count} ×)"),

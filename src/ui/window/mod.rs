@@ -3,6 +3,7 @@
 //! ```text
 //! +----------------------------------------------------------+
 //! | header: hand, link, rates                      arm, STOP |
+//! | several hands: a strip for each, with its STOP            |
 //! | status: warning, what moves the hand, message, note      |
 //! | tabs                              keys, theme, language, ≡ |
 //! +----------+-----------------------------------------------+
@@ -23,8 +24,11 @@ pub(crate) mod status;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
+use crate::app::hand::HandState;
 use crate::app::hand::held_key::HoldKey;
+use crate::app::hand::slot::SlotId;
 use crate::app::hand::{Play, Preset};
+use crate::app::hands::action::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::WindowRoom;
 use crate::app::params::action::ParamAction;
@@ -38,6 +42,8 @@ use crate::hand::Moment;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::exhibit::{self, ExhibitPage};
 use crate::ui::faults::{self, FaultsView};
+use crate::ui::hands::beside::BesideView;
+use crate::ui::hands::strips;
 use crate::ui::inputs::InputsView;
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
@@ -64,6 +70,7 @@ use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
 use egui::{Frame, Key, Margin, Panel, Rect, Stroke, Ui, UiBuilder};
+use std::collections::BTreeMap;
 
 /// The least width of the joints: every number in its place.
 const JOINTS_LEAST: f32 = 384.0;
@@ -84,24 +91,36 @@ pub struct Window {
     typing: Typing,
     /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
     typed: bool,
-    joints: JointsView,
-    plots: PlotView,
-    faults: FaultsView,
-    status: StatusLine,
+    /// The slot of the hand that was shown last, what its views remember, and what those of the others do.
+    slot: SlotId,
+    own: HandViews,
+    others: BTreeMap<SlotId, HandViews>,
+    /// All hands are shown side by side in place of the live view.
+    shows_all: bool,
+    all: BesideView,
     rooms: Rooms,
     key_list: KeyList,
     cards: CardView,
     poses: PoseView,
-    device: DeviceView,
-    connection: ConnectionForm,
-    inputs: InputsView,
-    touch: TouchView,
-    traffic: TrafficView,
     tune: TuneView,
     compare: CompareView,
     sessions: SessionsView,
     /// The page that is shown in place of all else.
     exhibit: Option<ExhibitPage>,
+}
+
+/// What the views of one hand remember between frames. Nothing of it is taken for another hand's.
+#[derive(Debug, Default)]
+struct HandViews {
+    joints: JointsView,
+    plots: PlotView,
+    faults: FaultsView,
+    status: StatusLine,
+    device: DeviceView,
+    connection: ConnectionForm,
+    inputs: InputsView,
+    touch: TouchView,
+    traffic: TrafficView,
 }
 
 /// Puts fonts and style into a context. The window does it itself when the settings change.
@@ -126,9 +145,14 @@ impl Window {
         self.view = view;
     }
 
+    /// Shows all hands side by side.
+    pub fn show_all_hands(&mut self) {
+        (self.view, self.shows_all) = (View::Live, true);
+    }
+
     /// Lets the plots show just this stretch of time, in seconds.
     pub const fn show_stretch(&mut self, stretch: (f64, f64)) {
-        self.plots.pin(stretch);
+        self.own.plots.pin(stretch);
     }
 
     /// The open view.
@@ -153,9 +177,10 @@ impl Window {
             None => self.installed.and_then(|_| zoomed(ui, state)),
         };
         self.install_if_changed(ui, state);
+        self.follow_shown(ui, state);
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
-        let mut wishes = match state.hand().runs_series() {
+        let mut wishes = match state.hands.iter().any(HandState::runs_series) {
             true => keys::take_any(ui),
             false => keys::take(ui, escape),
         };
@@ -216,13 +241,20 @@ impl Window {
             Wish::UndoTare => state.hand().tare.can_undo().then_some(Action::UndoTare),
             Wish::Language => Some(Action::Language(state.settings.language.other())),
             Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
-            Wish::Pause => Some(Action::PausePlots(self.plots.view.time.toggle())),
+            Wish::Pause => Some(Action::PausePlots(self.own.plots.view.time.toggle())),
+            // With the pointer still held, the next hand would go on with what was begun at this one.
+            Wish::Hand(_) if ui.input(|input| input.pointer.any_down()) => None,
+            Wish::Hand(at) if state.timeline.is_none() => {
+                let hand = state.hands.iter().nth(at);
+                hand.map(|hand| Action::Hands(HandsAction::Show(hand.label.slot)))
+            }
+            Wish::Hand(_) => None,
             Wish::Joint(dof) => {
                 JointRow::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
                 None
             }
             Wish::LinkFingers => {
-                self.joints.toggle_link();
+                self.own.joints.toggle_link();
                 None
             }
             Wish::Opens(opens) => {
@@ -233,20 +265,42 @@ impl Window {
         pane.actions.extend(action);
     }
 
+    /// Another hand is shown: its views are as they were left, and nothing that was begun at the one before goes on at it.
+    fn follow_shown(&mut self, ui: &Ui, state: &State) {
+        let slot = state.hand().label.slot;
+        if slot == self.slot {
+            return;
+        }
+        let next = self.others.remove(&slot).unwrap_or_default();
+        let before = std::mem::replace(&mut self.own, next);
+        self.others
+            .insert(std::mem::replace(&mut self.slot, slot), before);
+        let is_there = |slot: &SlotId| state.hands.iter().any(|hand| hand.label.slot == *slot);
+        self.others.retain(|slot, _| is_there(slot));
+        self.typing = Typing::default();
+        ui.ctx().stop_dragging();
+        ui.memory_mut(|memory| {
+            if let Some(focused) = memory.focused() {
+                memory.surrender_focus(focused);
+            }
+        });
+        egui::Popup::close_all(ui.ctx());
+    }
+
     /// What Esc does now: it closes what is open while the hand rests for certain.
     fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
         let is_open = self.key_list.is_open()
-            || self.status.writes_note()
+            || self.own.status.writes_note()
             || self.cards.informs()
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
-        if !is_open || !state.hand().rests() {
+        if !is_open || !state.hands.iter().all(HandState::rests) {
             return Escape::Stops;
         }
         // Popups, fields and cards do so themselves.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
-            self.status.drop_note();
+            self.own.status.drop_note();
         }
         Escape::Closes
     }
@@ -257,9 +311,9 @@ impl Window {
         }
         match opens {
             Opens::View(view) => self.view = view,
-            Opens::Faults => self.faults.choose(None),
-            Opens::Drive(dof) => self.faults.choose(Some(dof)),
-            Opens::Note => self.status.open_note(now),
+            Opens::Faults => self.own.faults.choose(None),
+            Opens::Drive(dof) => self.own.faults.choose(Some(dof)),
+            Opens::Note => self.own.status.open_note(now),
             Opens::Keys => self.key_list.toggle(),
         }
     }
@@ -300,6 +354,17 @@ impl Window {
                 timeline::timeline_ui(ui, pane, line);
             });
         }
+        if pane.state.hands.is_several() {
+            let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
+            let room = ui.available_width() - STRIPS_MARGIN.sum().x;
+            let height = strips::height(room, pane.state.hands.count());
+            bar_ui(ui, ("hands", height), frame, |ui| {
+                let is_on = self.shows_all && self.view == View::Live;
+                if strips::strips_ui(ui, pane, is_free, is_on) {
+                    (self.shows_all, self.view) = (!is_on, View::Live);
+                }
+            });
+        }
         let status = Frame::new().inner_margin(Margin {
             bottom: 0,
             ..MARGIN
@@ -309,7 +374,7 @@ impl Window {
             if !is_free {
                 ui.disable();
             }
-            self.status.ui(ui, pane);
+            self.own.status.ui(ui, pane);
         });
         // What is below is covered by a card; what is above stays bright.
         let covered = ui.available_rect_before_wrap();
@@ -356,9 +421,9 @@ impl Window {
             least: JOINTS_LEAST + theme::GAP,
             rest: PLOTS_LEAST + theme::GAP + SIDE_LEAST,
         };
-        let Self { rooms, joints, .. } = self;
+        let Self { rooms, own, .. } = self;
         rooms.room_ui(ui, pane, (WindowRoom::Joints, size), |ui, pane| {
-            joints.ui(ui, pane);
+            own.joints.ui(ui, pane);
         });
     }
 
@@ -367,33 +432,43 @@ impl Window {
             self.sessions.leave();
         }
         match self.view {
+            View::Live if self.shows_all && pane.state.hands.is_several() => {
+                self.all_ui(ui, pane);
+            }
             View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => self.touch.large_ui(ui, pane),
+            View::Touch => self.own.touch.large_ui(ui, pane),
             View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.compare.ui(ui, pane),
-            View::Faults => self.faults.ui(ui, pane),
+            View::Faults => self.own.faults.ui(ui, pane),
             View::Poses => self.poses.ui(ui, pane),
-            View::Device => self.device.ui(ui, pane),
-            View::Connection => self.connection.ui(ui, pane),
-            View::Inputs => self.inputs.ui(ui, pane),
-            View::Traffic => self.traffic.ui(ui, pane),
+            View::Device => self.own.device.ui(ui, pane),
+            View::Connection => self.own.connection.ui(ui, pane),
+            View::Inputs => self.own.inputs.ui(ui, pane),
+            View::Traffic => self.own.traffic.ui(ui, pane),
             View::Sessions => self.sessions.ui(ui, pane),
         }
     }
 
+    /// All hands side by side, over the poses.
+    fn all_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let strip = RoomSize {
+            designed: strip_height(ui.available_height()) + theme::GAP,
+            least: STRIP_LEAST + theme::GAP,
+            rest: 300.0,
+        };
+        let Self { rooms, all, .. } = self;
+        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
+        all.ui(ui, pane);
+    }
+
     fn live_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        if self.plots.large {
+        if self.own.plots.large {
             self.plots_ui(ui, rect, pane);
             return;
         }
-        let Self { rooms, touch, .. } = self;
-        let strip = if rect.height() < 640.0 {
-            STRIP_LEAST
-        } else {
-            212.0
-        };
+        let Self { rooms, own, .. } = self;
         let strip = RoomSize {
-            designed: strip + theme::GAP,
+            designed: strip_height(rect.height()) + theme::GAP,
             least: STRIP_LEAST + theme::GAP,
             rest: 300.0,
         };
@@ -419,7 +494,7 @@ impl Window {
                 (WindowRoom::Faults, faults),
                 faults::faults_card_ui,
             );
-            touch.small_ui(ui, pane);
+            own.touch.small_ui(ui, pane);
         });
         let rect = ui.available_rect_before_wrap();
         self.plots_ui(ui, rect, pane);
@@ -429,24 +504,30 @@ impl Window {
     pub fn plots_alone_ui(&mut self, ui: &mut Ui, state: &State) {
         alone_ui(ui, state, |ui, rect, pane| {
             ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-                self.plots.ui(ui, pane)
+                self.own.plots.ui(ui, pane)
             });
         });
     }
 
     /// Draws the hand and nothing else, over all of `ui`: for pictures and measurements.
     pub fn hand_alone_ui(&mut self, ui: &mut Ui, state: &State) {
-        alone_ui(ui, state, |ui, _, pane| self.touch.hand_ui(ui, pane));
+        alone_ui(ui, state, |ui, _, pane| self.own.touch.hand_ui(ui, pane));
     }
 
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-            self.plots.ui(ui, pane)
+            self.own.plots.ui(ui, pane)
         });
     }
 }
 
 const MARGIN: Margin = Margin::same(8);
+const STRIPS_MARGIN: Margin = Margin::symmetric(12, 4);
+
+/// Height of the strip of poses in a view as high as this.
+const fn strip_height(view: f32) -> f32 {
+    if view < 640.0 { STRIP_LEAST } else { 212.0 }
+}
 
 /// A row of the window of this name and height, over its whole width.
 fn bar_ui(
@@ -520,7 +601,7 @@ fn held(ui: &Ui, state: &State, wishes: &[Wish]) -> Option<Action> {
     if is_held {
         ui.request_repaint();
     }
-    (is_held || state.hand().is_key_held()).then_some(Action::HoldKey(key))
+    (is_held || state.hands.iter().any(HandState::is_key_held)).then_some(Action::HoldKey(key))
 }
 
 /// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.

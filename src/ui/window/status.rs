@@ -62,6 +62,12 @@ impl Warning {
         self
     }
 
+    /// Says first which hand it is about.
+    fn of(mut self, pane: &Pane<'_>, hand: &str) -> Self {
+        self.body = pane.look.pair(hand, &self.body);
+        self
+    }
+
     /// Tells when the link is tried again.
     fn retried(mut self, pane: &Pane<'_>) -> Self {
         self.aside = match pane.state.hand().link.dialling {
@@ -87,6 +93,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
         unsent(pane),
         alarm(pane),
         lost(pane),
+        lost_elsewhere(pane),
         faults(pane),
         other_controller(pane),
         stale(pane),
@@ -101,12 +108,35 @@ fn unsent(pane: &Pane<'_>) -> Option<Warning> {
     let mut all = pane.state.notices.iter();
     let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
     let unsent = Warning::new(pane, window::STOP_NOT_SENT, pane.look.palette.bad);
+    let unsent = match &notice.hand {
+        Some(hand) => unsent.of(pane, &hand.name),
+        None => unsent,
+    };
     Some(unsent.help(Help::Dismiss(notice.id)))
 }
 
+/// The shown hand, or another, that does not stop.
 fn alarm(pane: &Pane<'_>) -> Option<Warning> {
-    let alarm = || Warning::new(pane, main::ALARM_TITLE, pane.look.palette.bad);
-    matches!(pane.state.hand().link.hold, Hold::Alarm { .. }).then(alarm)
+    let shown = pane.state.hand();
+    let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
+    let hand = hands.find(|hand| matches!(hand.link.hold, Hold::Alarm { .. }))?;
+    let alarm = Warning::new(pane, main::ALARM_TITLE, pane.look.palette.bad);
+    Some(match pane.state.hands.is_several() {
+        true => alarm.of(pane, &hand.label.name),
+        false => alarm,
+    })
+}
+
+/// Another hand than the shown one, lost while it may have been moving.
+fn lost_elsewhere(pane: &Pane<'_>) -> Option<Warning> {
+    let shown = pane.state.hand().label.slot;
+    let mut others = pane.state.hands.iter();
+    let lost = others.find(|hand| {
+        let is_lost = hand.link.trouble.is_some() && hand.sample.angle.is_some();
+        hand.label.slot != shown && hand.link.state == LinkState::Offline && is_lost
+    })?;
+    let warning = Warning::new(pane, main::LOST_TITLE, pane.look.palette.bad);
+    Some(warning.of(pane, &lost.label.name))
 }
 
 fn lost(pane: &Pane<'_>) -> Option<Warning> {
@@ -356,7 +386,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let palette = look.palette;
     let (words, color) = match (news, mover(pane)) {
         (Some(newest), _) => {
-            let said = notices::notice(look, &newest.what);
+            let said = notices::notice_of(look, newest);
             (said, look.level(newest.level))
         }
         (None, Some((words, _))) => (words, palette.armed),

@@ -73,3 +73,14 @@ fn hands_of_one_bus_are_watched_one_after_another_without_loss() {
         }
     }
 }
+
+#[test]
+fn more_hands_than_a_window_has_room_for_are_wrong_usage() {
+    for (words, count) in [(&[][..], 9), (&["exhibit", "--check"][..], 2)] {
+        let hands = (0..count).flat_map(|_| ["--hand", "sim:"]);
+        let words: Vec<&str> = words.iter().copied().chain(hands).collect();
+        let ended = run(&words);
+        assert_eq!(ended.code, Some(2), "{words:?}: {}", ended.err);
+        assert!(ended.err.contains("--hand was given"), "{}", ended.err);
+    }
+}

@@ -75,7 +75,7 @@ async fn a_scan_of_the_interface_finds_each_hand_on_it() {
         },
         hosts: Vec::new(),
         ids: HandId::all().take(6).collect(),
-        held: None,
+        held: Vec::new(),
         clock: Clock::start(),
         dial: Arc::new(SystemDial),
         wake: Arc::new(|| ()),

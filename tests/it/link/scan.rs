@@ -211,7 +211,7 @@ fn begin(street: &Arc<Street>, local: Local, hosts: &[&str], ids: Vec<HandId>) -
         local,
         hosts: hosts.iter().map(|text| text.parse().unwrap()).collect(),
         ids,
-        held: None,
+        held: Vec::new(),
         clock: Clock::start(),
         dial: Arc::clone(street) as Arc<dyn Dial>,
         wake: Arc::new(|| ()),

@@ -227,3 +227,24 @@ pub(crate) fn usb_port(path: &str) -> PortFound {
         }),
     }
 }
+
+/// Three hands: one armed, one with a fault and a name, one that is not reached; the first is shown.
+pub(crate) fn several() -> State {
+    let mut state = armed();
+    let mut other = faulted();
+    state.hands.add();
+    let slot = state.hand().label.slot;
+    *state.hand_mut() = std::mem::take(other.hand_mut());
+    state.hand_mut().label.slot = slot;
+    state.hand_mut().label.name = "bench at the window".into();
+    state.hand_mut().side = handscope::hand::kinematics::Side::Left;
+    state.hands.add();
+    let hand = state.hand_mut();
+    hand.endpoint = Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
+    hand.label.name = "192.168.11.210:6000".into();
+    hand.link.dialling = Dialling::Trying { attempt: 2 };
+    let first = state.hands.iter().next().unwrap().label.slot;
+    state.hands.show(first);
+    state.hand_mut().label.name = "sim:?seed=1".into();
+    state
+}

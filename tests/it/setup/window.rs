@@ -12,6 +12,7 @@ use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::exhibit::Exhibition;
+use handscope::app::hands::action::HandsAction;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::exhibit::plan::ExhibitPlan;
@@ -42,9 +43,19 @@ pub(crate) const SPEED_SET: u16 = 1522;
 pub(crate) const CLEAR_ERROR: u16 = 1004;
 pub(crate) const GESTURE: u16 = 1008;
 
+/// A hand at a place of its own, with a cable of its own.
+struct Placed {
+    endpoint: Endpoint,
+    hand: SharedHand,
+    is_plugged: bool,
+    served: Vec<AbortHandle>,
+}
+
 /// The far end of the cable: plugged in or not.
 struct Socket {
     hand: SharedHand,
+    /// Hands at other places.
+    placed: Mutex<Vec<Placed>>,
     /// Hands beside it on the next wire.
     others: Mutex<Vec<SharedHand>>,
     plugged: Mutex<bool>,
@@ -60,6 +71,7 @@ impl Socket {
     fn to(hand: SharedHand) -> Self {
         Self {
             hand,
+            placed: Mutex::default(),
             others: Mutex::default(),
             plugged: Mutex::new(true),
             faults: Mutex::default(),
@@ -73,6 +85,17 @@ impl Socket {
 impl Dial for Socket {
     fn dial(&self, endpoint: &Endpoint) -> link::Dialled {
         self.dials.fetch_add(1, Ordering::Relaxed);
+        let mut placed = self.placed.lock().unwrap();
+        if let Some(placed) = placed.iter_mut().find(|one| one.endpoint == *endpoint) {
+            if !placed.is_plugged {
+                return link::missing(endpoint.to_string());
+            }
+            let (ours, its) = pair();
+            let served = hand::serve(placed.hand.clone(), endpoint, its);
+            placed.served.push(served.abort_handle());
+            return link::opened(ours);
+        }
+        drop(placed);
         if !*self.plugged.lock().unwrap() {
             return link::missing(endpoint.to_string());
         }
@@ -823,6 +846,48 @@ impl Bench {
         let room = self.harness.state();
         let _inside = room.program.enter();
         room.socket.hand.with(act)
+    }
+
+    /// Puts a hand at a place of its own, opens another slot for it, and waits until it is live there.
+    pub(crate) fn open_another(&mut self, endpoint: &str) {
+        let endpoint: Endpoint = endpoint.parse().unwrap();
+        let room = self.harness.state();
+        let inside = room.program.enter();
+        room.socket.placed.lock().unwrap().push(Placed {
+            endpoint: endpoint.clone(),
+            hand: hand::plain(),
+            is_plugged: true,
+            served: Vec::new(),
+        });
+        drop(inside);
+        self.act(Action::Hands(HandsAction::Add));
+        self.act(Action::Connect(endpoint));
+        self.until(2000, |bench| {
+            let hand = bench.state().hand();
+            hand.link.state == LinkState::Monitoring && hand.pose_now().is_some()
+        });
+    }
+
+    /// Pulls the cable of the hand at this place.
+    pub(crate) fn unplug_at(&mut self, endpoint: &str) {
+        let endpoint: Endpoint = endpoint.parse().unwrap();
+        let mut placed = self.harness.state().socket.placed.lock().unwrap();
+        for one in placed.iter_mut().filter(|one| one.endpoint == endpoint) {
+            one.is_plugged = false;
+            one.served.drain(..).for_each(|task| task.abort());
+        }
+    }
+
+    /// The addresses of every write that reached the hand at this place.
+    pub(crate) fn addresses_at(&self, endpoint: &str) -> Vec<u16> {
+        let endpoint: Endpoint = endpoint.parse().unwrap();
+        let room = self.harness.state();
+        let _inside = room.program.enter();
+        let placed = room.socket.placed.lock().unwrap();
+        let one = placed.iter().find(|one| one.endpoint == endpoint).unwrap();
+        let journal =
+            |hand: &mut SimHand, _| hand.journal().iter().map(|entry| entry.address).collect();
+        one.hand.with(journal)
     }
 
     /// Puts a hand beside the first one, on every wire that is opened from now on.

@@ -204,7 +204,11 @@ fn reached(rect: Rect, all: &[(String, Rect)], reach: f32) -> Vec2 {
 fn every_target_is_as_large_as_a_finger_on_a_touch_display() {
     let scale = 1.5;
     // All joints are to be seen, and with no room to spare.
-    for (state, height) in [(states::armed(), 852.0), (states::faulted(), 904.0)] {
+    for (state, height) in [
+        (states::armed(), 852.0),
+        (states::faulted(), 904.0),
+        (states::several(), 904.0),
+    ] {
         let mut harness = open_at(state, scale, vec2(1280.0, height));
         for view in View::ALL {
             harness.state_mut().window.set_view(view);
@@ -248,6 +252,47 @@ fn nothing_is_cut_or_covered_with_a_fault() {
 #[test]
 fn nothing_is_cut_or_covered_while_armed() {
     walk(states::armed, "armed");
+}
+
+#[test]
+fn nothing_is_cut_or_covered_with_several_hands() {
+    walk(states::several, "several hands");
+}
+
+#[test]
+fn nothing_is_cut_or_covered_with_all_hands_side_by_side() {
+    let mut harness = open_at(states::several(), 1.0, SIZES[0]);
+    let switch = harness.get_by_role_and_label(Role::Button, "All hands");
+    switch.click();
+    for size in SIZES {
+        harness.set_size(size);
+        for language in [Language::En, Language::Zh] {
+            harness.state_mut().state.settings.language = language;
+            harness.run_steps(3);
+            let when = format!("side by side {size} {language:?}");
+            check(&harness, size, &when);
+            // At the edge of what is scrolled a text may be cut.
+            let cut = unreadable(&harness);
+            let cut: Vec<_> = cut.iter().filter(|cut| !cut.contains("210")).collect();
+            assert!(cut.is_empty() || size.x < 1900.0, "{when}: {cut:?}");
+        }
+    }
+}
+
+/// Draws all hands side by side where somebody wants to see it.
+#[test]
+fn all_hands_side_by_side_are_drawn_for_who_wants_to_see_them() {
+    let Some(folder) = std::env::var_os("HANDSCOPE_PICTURES") else {
+        return;
+    };
+    let (mut window, state) = (Window::new(), states::several());
+    let mut canvas = Canvas::new((1440, 900), 1.0);
+    window.show_all_hands();
+    canvas.frame(0.0, |ui| drop(window.ui(ui, &state)));
+    canvas.hold_still();
+    let picture = canvas.picture(0.0, |ui| drop(window.ui(ui, &state)));
+    let path = Path::new(&folder).join("side-by-side.png");
+    png::save(&path, &picture.rgba, picture.size).unwrap();
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod compare;
 mod device;
 mod exhibit;
 mod faults;
+mod hands;
 mod inputs;
 mod joints;
 mod keys;

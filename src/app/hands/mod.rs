@@ -1,0 +1,5 @@
+//! Several hands in one window: the list of them, and what a person does with it.
+
+pub mod action;
+pub mod list;
+pub(crate) mod work;

@@ -1,0 +1,133 @@
+//! All hands side by side: of each the drawn hand, its state, and what its joints do now.
+
+use crate::app::hand::HandState;
+use crate::app::hand::slot::SlotId;
+use crate::app::settings::PlotKind;
+use crate::hand::PerDof;
+use crate::ui::hand::panel::StillHand;
+use crate::ui::hands::strips::HandWords;
+use crate::ui::kit::{self, Label, Pane};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::panels::PANELS;
+use crate::ui::plots::times::Times;
+use crate::ui::text::panels as text;
+use crate::ui::theme;
+use egui::{Align, Layout, ScrollArea, Stroke, Ui, UiBuilder, vec2};
+use std::collections::BTreeMap;
+
+/// A column is no narrower: the plots would have no room beside their numbers.
+const COLUMN_LEAST: f32 = 272.0;
+/// Height of a plot, as a part of its column, and at least.
+const PLOT_PART: f32 = 0.24;
+const PLOT_LEAST: f32 = 96.0;
+/// What is drawn of each hand, from top to bottom.
+const PLOTS: [PlotKind; 2] = [PlotKind::Force, PlotKind::Angle];
+
+/// What one column needs between frames.
+#[derive(Debug, Default)]
+struct HandColumn {
+    picture: StillHand,
+    charts: ChartView,
+}
+
+/// What the columns need between frames, each of its own hand.
+#[derive(Debug, Default)]
+pub(crate) struct BesideView(BTreeMap<SlotId, HandColumn>);
+
+impl BesideView {
+    /// Draws a column for each hand; those for which there is no room are scrolled to.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
+        let hands = &pane.state.hands;
+        self.0
+            .retain(|slot, _| hands.iter().any(|hand| hand.label.slot == *slot));
+        let count = f32::from(u8::try_from(hands.count()).unwrap_or(u8::MAX));
+        let room = ui.available_width() - theme::GAP * (count - 1.0);
+        let width = (room / count).floor().max(COLUMN_LEAST);
+        ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+            let height = ui.available_height();
+            ui.spacing_mut().item_spacing.x = theme::GAP;
+            ui.horizontal_top(|ui| {
+                for (at, hand) in hands.iter().enumerate() {
+                    let (_, rect) = ui.allocate_space(vec2(width, height));
+                    // What is scrolled away is not computed.
+                    if !ui.is_rect_visible(rect) {
+                        continue;
+                    }
+                    let slot = hand.label.slot;
+                    let down = Layout::top_down(Align::Min);
+                    let place = UiBuilder::new().max_rect(rect).id_salt(slot).layout(down);
+                    let column = self.0.entry(slot).or_default();
+                    ui.scope_builder(place, |ui| column.ui(ui, pane, at, hand));
+                }
+            });
+        });
+    }
+}
+
+impl HandColumn {
+    fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, at: usize, hand: &HandState) {
+        let look = pane.look;
+        let words = HandWords::of(look, at, hand);
+        kit::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            let title = format!("{}  {}", words.number, words.name);
+            let [_, side] = words.side;
+            kit::head_ui(ui, look, &title, |ui| {
+                let side = Label::muted(look, side).small();
+                side.ui(ui);
+            });
+            ui.horizontal(|ui| {
+                kit::lamp_ui(ui, Some(words.color));
+                Label::new(&words.state, look.palette.text).ui(ui);
+            });
+            let whole = ui.available_height();
+            let plot = (whole * PLOT_PART).max(PLOT_LEAST).floor();
+            let plots = 2.0 * plot + theme::PLOT_TIME_AXIS + theme::GAP;
+            let picture = vec2(ui.available_width(), (whole - plots).max(1.0));
+            let (_, place) = ui.allocate_space(picture);
+            self.picture.ui(ui, place, look, hand);
+            self.plots_ui(ui, pane, hand, plot);
+        });
+    }
+
+    fn plots_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, hand: &HandState, height: f32) {
+        let look = pane.look;
+        let now = pane.state.now.secs();
+        let first = hand.history.first_secs().unwrap_or(now);
+        let window = pane.state.settings.plot_window.seconds();
+        self.charts.time.advance((first.min(now), now), window);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let panels = PANELS.iter().filter(|panel| PLOTS.contains(&panel.kind));
+        for panel in panels {
+            let is_lowest = panel.kind == PlotKind::Angle;
+            let lines = panel.measured(&PerDof::default());
+            let curves = lines.iter().map(|line| ChartCurve {
+                told: Some(panel.row.decimals),
+                ..ChartCurve::new(
+                    Points::Measured(&hand.history, line.series),
+                    Stroke::new(theme::LINE, look.palette.dof[line.dof]),
+                )
+            });
+            let chart = Chart {
+                curves: curves.collect(),
+                least: panel.row.least_scale,
+                times: match self.charts.time.is_held() {
+                    true => Times::Clock,
+                    false => Times::From(self.charts.time.span().1, look.say(text::NOW)),
+                },
+                is_lowest,
+                ..Chart::new(
+                    look,
+                    panel.title,
+                    height
+                        + if is_lowest {
+                            theme::PLOT_TIME_AXIS
+                        } else {
+                            0.0
+                        },
+                )
+            };
+            chart.ui(ui, &mut self.charts);
+        }
+    }
+}

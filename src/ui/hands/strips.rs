@@ -1,0 +1,195 @@
+//! A strip for each hand below the header, with its state and a STOP of its own. Only where there are several.
+
+use crate::app::action::Action;
+use crate::app::hand::HandState;
+use crate::app::hand::mover::Mover;
+use crate::app::hand::slot::SlotId;
+use crate::app::hands::action::HandsAction;
+use crate::hand::kinematics::Side;
+use crate::record::Hold;
+use crate::ui::connection::link_words::link_words_of;
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
+use crate::ui::text::{Text, main, panels, window};
+use crate::ui::theme;
+use egui::{Color32, Rect, Ui, pos2, vec2};
+
+/// Height of a strip.
+const STRIP: f32 = 44.0;
+/// No strip is wider; where there is no room for so much, there are two rows of them.
+const WIDTH_MAX: f32 = 280.0;
+const WIDTH_LEAST: f32 = 140.0;
+/// Width of its STOP.
+const STOP: f32 = 60.0;
+/// Room for the number of a hand.
+const NUMBER: f32 = 18.0;
+/// Width of the switch at the right end.
+const SWITCH: f32 = 108.0;
+
+/// How the strips are laid out: so many in a row, each as wide as this.
+struct StripRows {
+    in_row: usize,
+    width: f32,
+}
+
+impl StripRows {
+    fn of(room: f32, count: usize) -> Self {
+        let room = room - SWITCH;
+        let width = |in_row: usize| {
+            let in_row = f32::from(u8::try_from(in_row).unwrap_or(u8::MAX)).max(1.0);
+            (room / in_row - theme::GAP).floor()
+        };
+        let in_row = match width(count) < WIDTH_LEAST {
+            true => count.div_ceil(2),
+            false => count,
+        };
+        let width = width(in_row).min(WIDTH_MAX);
+        Self { in_row, width }
+    }
+}
+
+/// Height of the strips of so many hands, with the room around them.
+pub(crate) fn height(room: f32, count: usize) -> f32 {
+    match StripRows::of(room, count).in_row < count {
+        true => 2.0 * STRIP + 2.0 * theme::GAP,
+        false => STRIP + theme::GAP,
+    }
+}
+
+/// What the strip and the column of a hand say of it.
+pub(crate) struct HandWords {
+    /// Its number in the window, by which a key shows it.
+    pub(crate) number: usize,
+    /// What it is called.
+    pub(crate) name: String,
+    /// How its link stands and whether something moves it, or that it does not stop.
+    pub(crate) state: String,
+    /// The colour of that.
+    pub(crate) color: Color32,
+    /// Left or right, as a letter and in words.
+    pub(crate) side: [Text; 2],
+}
+
+impl HandWords {
+    /// Of the hand with this index.
+    pub(crate) fn of(look: Look, at: usize, hand: &HandState) -> Self {
+        let (state, color) = match hand.link.hold {
+            Hold::Alarm { .. } => (main::ALARM_TITLE, look.palette.bad),
+            _ => link_words_of(look, hand),
+        };
+        let is_moved = !matches!(hand.mover(), None | Some(Mover::Stop));
+        let state = match is_moved {
+            true => format!("{} · {}", look.say(state), look.say(window::MOVES)),
+            false => look.say(state).to_owned(),
+        };
+        let name = match &hand.endpoint {
+            Some(_) => hand.label.name.to_string(),
+            None => look.say(main::NO_HAND).to_owned(),
+        };
+        Self {
+            number: at + 1,
+            name,
+            state,
+            color,
+            side: match hand.side {
+                Side::Right => [window::SIDE_RIGHT, panels::RIGHT_HAND],
+                Side::Left => [window::SIDE_LEFT, panels::LEFT_HAND],
+            },
+        }
+    }
+}
+
+/// Draws the strips. A STOP can be pressed whatever card is open, the rest only if `is_free`. True if the switch was pressed that
+/// shows all hands side by side, which `shows_all` tells to be on.
+pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_all: bool) -> bool {
+    let look = pane.look;
+    let place = ui.available_rect_before_wrap();
+    let hands = &pane.state.hands;
+    let rows = StripRows::of(place.width(), hands.count());
+    let size = vec2(rows.width, STRIP);
+    let mut corner = place.left_top();
+    for (at, hand) in hands.iter().enumerate() {
+        if at == rows.in_row {
+            corner = place.left_top() + vec2(0.0, STRIP + theme::GAP);
+        }
+        let rect = Rect::from_min_size(corner, size);
+        corner.x += rows.width + theme::GAP;
+        ui.push_id(hand.label.slot, |ui| {
+            strip_ui(ui, pane, (at, hand), (rect, is_free));
+        });
+    }
+    if !is_free {
+        ui.disable();
+    }
+    let middle = place.top() + STRIP / 2.0;
+    let right = pos2(place.right(), middle + theme::CONTROL_LARGE / 2.0);
+    let switch = vec2(SWITCH - theme::GAP, theme::CONTROL_LARGE);
+    let rect = Rect::from_min_max(right - switch, right);
+    let button = Button::said(look, window::ALL_HANDS).switch(shows_all);
+    let id = ui.scope_id().with("all hands");
+    button.put(ui, look, rect, id).clicked()
+}
+
+fn strip_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (at, hand): (usize, &HandState),
+    (rect, is_free): (Rect, bool),
+) {
+    let look = pane.look;
+    let palette = look.palette;
+    let words = HandWords::of(look, at, hand);
+    let slot = hand.label.slot;
+    let (strip, stop) = rect.split_left_right_at_x(rect.right() - STOP);
+    let strip = strip.with_max_x(strip.right() - theme::STEP);
+    stop_ui(ui, pane, (slot, words.number), stop);
+    if !is_free {
+        ui.disable();
+    }
+    let is_shown = pane.state.hand().label.slot == slot;
+    let name = look.fill(window::HAND_OF, &[&words.number, &words.name]);
+    let [letter, side] = words.side.map(|text| look.say(text));
+    let state = &words.state;
+    let tip = format!("{name}\n{side}, {state}\n{}", look.tip(window::HAND_OF));
+    let button = Button::new(&words.name, &tip).named(&name).switch(is_shown);
+    let response = button.ground(ui, look, strip, ui.scope_id().with("show"));
+    let inner = strip.shrink2(vec2(theme::GAP, theme::STEP));
+    let (number, inner) = inner.split_left_right_at_x(inner.left() + NUMBER);
+    let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
+    let digit = words.number.to_string();
+    let label = Label::new(&digit, palette.muted).font(theme::title());
+    label.paint(ui, number);
+    let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
+    let is_wide = width < upper.width() * 0.5;
+    let (title, corner) = match is_wide {
+        true => upper.split_left_right_at_x(upper.right() - width),
+        false => (upper, upper),
+    };
+    Label::new(&words.name, palette.text).paint(ui, title);
+    if is_wide {
+        let letter = Label::new(letter, palette.muted).small().right();
+        letter.paint(ui, corner);
+    }
+    kit::lamp(
+        ui,
+        pos2(lower.left() + theme::LAMP, lower.center().y),
+        words.color,
+    );
+    let told = lower.with_min_x(lower.left() + theme::PAD);
+    Label::new(state, palette.text).small().paint(ui, told);
+    if response.clicked() && !is_shown {
+        pane.actions.push(Action::Hands(HandsAction::Show(slot)));
+    }
+}
+
+fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>, (slot, number): (SlotId, usize), rect: Rect) {
+    let look = pane.look;
+    let name = look.fill(window::STOP_ONE, &[&number]);
+    let button = Button::new(look.say(main::STOP), look.tip(window::STOP_ONE));
+    let button = button.named(&name).weight(Weight::Stop);
+    let response = button.ground(ui, look, rect, ui.scope_id().with("stop"));
+    let word = Label::new(look.say(main::STOP), look.palette.on_strong).center();
+    word.font(theme::title()).paint(ui, rect);
+    if kit::pressed(ui, &response) {
+        pane.actions.push(Action::Hands(HandsAction::StopOne(slot)));
+    }
+}
