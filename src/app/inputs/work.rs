@@ -29,8 +29,8 @@ impl HandState {
             InputAction::Listen(place) => self.listen(place, env),
             InputAction::ReadPad(on) => self.read_pad(on, settings, env),
             InputAction::Share(place) => self.share(place, env),
-            InputAction::Show(place) => self.show_viewers(place, settings, env),
-            InputAction::JoinDds(interface) => self.join_dds(interface, settings, env),
+            InputAction::Show(place) => self.show_viewers(place, env),
+            InputAction::JoinDds(interface) => self.join_dds(interface, env),
             InputAction::GrantStream => self.grant_stream(settings, env),
             InputAction::GrantDds => self.grant_dds(settings, env),
             InputAction::GrantPad => self.grant_pad(settings, env),
@@ -133,7 +133,7 @@ impl HandState {
         }
     }
 
-    fn show_viewers(&mut self, place: Option<SocketAddr>, settings: &Settings, env: &Env) {
+    fn show_viewers(&mut self, place: Option<SocketAddr>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.foxglove = None;
         let Some((address, open)) = place.zip(self.open.as_ref()) else {
@@ -142,7 +142,7 @@ impl HandState {
         let moments = (open.link.clock().now(), since_1970());
         let config = FoxgloveConfig {
             address,
-            opening: Opening::begin(self.name(), moments, settings.side),
+            opening: Opening::begin(self.name(), moments, self.side),
         };
         match FoxgloveServer::open(config, &env.runtime) {
             Ok(mut server) => {
@@ -153,7 +153,7 @@ impl HandState {
         }
     }
 
-    fn join_dds(&mut self, interface: Option<String>, settings: &Settings, env: &Env) {
+    fn join_dds(&mut self, interface: Option<String>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.dds = None;
         let Some((interface, open)) = interface.zip(self.open.as_ref()) else {
@@ -171,8 +171,8 @@ impl HandState {
             wake: Arc::clone(&env.wake),
         };
         let joined = DdsNode::open(&place).and_then(|node| {
-            let publisher = DdsPublisher::open(&node, &open.link, settings.side)?;
-            let messages = node.reader(&ctrl::topic(settings.side))?;
+            let publisher = DdsPublisher::open(&node, &open.link, self.side)?;
+            let messages = node.reader(&ctrl::topic(self.side))?;
             Ok(JoinedDds {
                 source: DdsSource::open(config, messages),
                 publisher,
