@@ -57,6 +57,9 @@ impl ShownRows {
     }
 }
 
+/// In a low window the table scrolls rather than to lie on what is below it.
+const SCROLLED_LEAST: f32 = 64.0;
+
 /// Draws the table.
 pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let look = pane.look;
@@ -75,6 +78,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let mut table = TableBuilder::new(ui)
         .cell_layout(Layout::left_to_right(Align::Center))
         .auto_shrink(false)
+        .min_scrolled_height(SCROLLED_LEAST)
         .column(Column::remainder());
     for part in COLUMNS {
         table = table.column(Column::exact(width * part));
