@@ -9,7 +9,7 @@ use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::poses::library::EntryId;
-use crate::ui::text::{Text, main};
+use crate::ui::text::{Text, inputs, main};
 use crate::ui::theme::Palette;
 use crate::ui::view::View;
 use egui::{Color32, Id};
@@ -144,6 +144,9 @@ impl Pane<'_> {
     pub(crate) fn unready(&self) -> Option<&'static str> {
         if self.state.hand().runs_series() {
             return Some(self.look.say(main::SERIES_RUNS));
+        }
+        if self.state.hand().outside_owner().is_some() {
+            return Some(self.look.say(inputs::TAKEN));
         }
         (!self.state.hand().is_armed()).then(|| self.look.say(main::NOT_ARMED))
     }

@@ -366,18 +366,18 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// The gravest message that nobody read and that is still so, while it is new; of equal ones the newest. A fault has a warning and a
-/// list of its own.
+/// The newest message that nobody read and that is still so, while it is new. A fault has a warning and a list of its own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let now = pane.state.now;
     let all = pane.state.notices.iter();
-    let new = all.take_while(|notice| now.since(notice.at) < NEWS_FOR);
-    let gravest = new.reduce(|newer, older| match older.level > newer.level {
-        true => older,
-        false => newer,
-    })?;
+    let mut new = all.take_while(|notice| now.since(notice.at) < NEWS_FOR);
+    let newest = new.next()?;
+    // That the hand rests is not news beside why it was stopped.
+    let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });
+    let why = new.next().filter(|why| is_rest && why.level > newest.level);
+    let shown = why.unwrap_or(newest);
     let moves = pane.state.hand().mover().is_some();
-    (gravest.level > Level::Info || !moves).then_some(gravest)
+    (shown.level > Level::Info || !moves).then_some(shown)
 }
 
 /// Without a warning: the newest message, else what moves the hand, else that nothing does.
