@@ -9,7 +9,7 @@ use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::inputs::{Offer, OfferLimits};
 use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
 use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
-use handscope::sim::SimConfig;
+use handscope::sim::{SharedHand, SimConfig};
 use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -43,7 +43,11 @@ pub(super) struct Sent {
 
 impl Stage {
     pub(super) async fn begin() -> Self {
-        let hand = hand::begin(hand::free(SimConfig::default()));
+        Self::at(hand::begin(hand::free(SimConfig::default()))).await
+    }
+
+    /// At this hand.
+    pub(super) async fn at(hand: SharedHand) -> Self {
         let config = crate::setup::link::config("rs485:x", to_hand(hand));
         let clock = config.clock;
         let (link, records) = link::open(config, &Handle::current());
@@ -118,7 +122,7 @@ impl Stage {
     }
 
     /// A person lets this source move the hand.
-    fn start(
+    pub(super) fn start(
         &self,
         lease: Lease,
     ) -> (

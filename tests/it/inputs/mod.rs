@@ -3,4 +3,5 @@
 mod dds;
 mod follow;
 mod mirror;
+mod pad;
 mod stream;

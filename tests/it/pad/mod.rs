@@ -6,6 +6,6 @@ mod map;
 mod random;
 #[cfg(target_os = "linux")]
 mod reader;
-mod setup;
+pub(crate) mod setup;
 #[cfg(target_os = "linux")]
 mod uinput;

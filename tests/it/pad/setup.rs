@@ -71,21 +71,21 @@ pub(super) fn angles(raw: [i64; 6]) -> PerDof<Option<Angle>> {
 }
 
 /// A pad in a person's hands, with a clock that only the test moves.
-pub(super) struct Played {
-    pub(super) input: PadInput,
-    pub(super) now: Moment,
+pub(crate) struct Played {
+    pub(crate) input: PadInput,
+    pub(crate) now: Moment,
 }
 
-pub(super) const PAD: PadId = PadId(3);
+pub(crate) const PAD: PadId = PadId(3);
 
 impl Played {
     /// The usual map on an Xbox pad that was just found, nothing held.
-    pub(super) fn xbox() -> Self {
+    pub(crate) fn xbox() -> Self {
         Self::of(facts(XBOX), &[])
     }
 
     /// A pad that is found while this is held.
-    pub(super) fn of(facts: PadFacts, now: &[KernelEvent]) -> Self {
+    pub(crate) fn of(facts: PadFacts, now: &[KernelEvent]) -> Self {
         let mut input = PadInput::new(PadMap::usual());
         let poses = [
             ("Open", [1000; 6]),
@@ -108,29 +108,29 @@ impl Played {
         played
     }
 
-    pub(super) fn news(&mut self, news: PadNews) -> Option<PadEvent> {
+    pub(crate) fn news(&mut self, news: PadNews) -> Option<PadEvent> {
         let at = self.now;
         self.input.take(&PadReport { at, news })
     }
 
     /// The kernel says this.
-    pub(super) fn says(&mut self, name: &str, value: i32) -> Option<PadEvent> {
+    pub(crate) fn says(&mut self, name: &str, value: i32) -> Option<PadEvent> {
         let event = event(name, value);
         self.news(PadNews::Moved { pad: PAD, event })
     }
 
     /// Presses the dead-man of the usual map.
-    pub(super) fn hold(&mut self) {
+    pub(crate) fn hold(&mut self) {
         assert_eq!(self.says("BTN_TL", 1), None);
         assert_eq!(self.offer().held, Some(true));
     }
 
-    pub(super) fn offer(&mut self) -> Offer {
+    pub(crate) fn offer(&mut self) -> Offer {
         self.input.offer(self.now).unwrap()
     }
 
     /// The aims as numbers; -1 for a joint that is left alone.
-    pub(super) fn aims(&mut self) -> [i16; 6] {
+    pub(crate) fn aims(&mut self) -> [i16; 6] {
         let aims = self.offer().aims;
         aims.map(|aim| aim.map_or(-1, Angle::get))
             .as_array()
@@ -138,7 +138,7 @@ impl Played {
     }
 
     /// Time passes, and the pad says that it is there.
-    pub(super) fn pass(&mut self, ms: u64) {
+    pub(crate) fn pass(&mut self, ms: u64) {
         self.now = self.now.plus(Duration::from_millis(ms));
         self.news(PadNews::Alive(PAD));
     }
