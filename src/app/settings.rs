@@ -307,6 +307,7 @@ pub struct Settings {
     /// The hand that is drawn where nobody said another of it: no register says which one it is.
     pub side: Side,
     /// What a person says of each hand, by its endpoint.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub hands: BTreeMap<String, KnownHand>,
     /// Language of the window.
     pub language: Language,
