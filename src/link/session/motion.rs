@@ -10,6 +10,9 @@ use std::time::Duration;
 
 /// Setpoint rounds a second at most: as soon as hand tracking has a new target. Before each the pose is looked at.
 pub const SETPOINT_HZ_MAX: u32 = 200;
+/// On a slow line rounds leave three quarters of the time to what is read, as long as that lets this many a second.
+const SETPOINT_HZ_SLOW: u32 = 50;
+const ROUND_SHARE: u32 = 4;
 /// Angles older than this are neither armed with nor held to.
 pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 /// An armed hand whose angles grow this old is disarmed.
@@ -30,6 +33,8 @@ pub(crate) struct Motion {
     /// The round that is being sent, in order.
     round: ArrayVec<RegisterWrite, ROUND_MAX>,
     round_began: Option<Moment>,
+    /// What its writes took on the wire so far.
+    round_took: Duration,
     /// No pose was asked for since the round began: on a slow line writes alone must not fill it.
     pose_due: bool,
     /// Rounds since anything but the motion state was asked for.
@@ -77,7 +82,9 @@ impl Motion {
         }
         self.setpoints.as_ref()?;
         Some(self.round_began.map_or(now, |began| {
-            began.plus(Duration::from_secs(1) / SETPOINT_HZ_MAX)
+            let second = Duration::from_secs(1);
+            let gap = self.round_took.saturating_mul(ROUND_SHARE);
+            began.plus(gap.clamp(second / SETPOINT_HZ_MAX, second / SETPOINT_HZ_SLOW))
         }))
     }
 
@@ -93,11 +100,17 @@ impl Motion {
             }
             let setpoints = self.setpoints.take()?;
             self.round_began = Some(now);
+            self.round_took = Duration::ZERO;
             self.pose_due = true;
             self.rounds = self.rounds.saturating_add(1);
             self.round = round(&setpoints);
         }
         self.round.pop_at(0)
+    }
+
+    /// A write of the round took so long.
+    pub(crate) const fn took(&mut self, took: Duration) {
+        self.round_took = self.round_took.saturating_add(took);
     }
 
     /// True if the next round waits only for a look at the pose.
@@ -275,6 +288,22 @@ mod tests {
                 .next_write(now.plus(Duration::from_millis(5)))
                 .is_some()
         );
+    }
+
+    #[test]
+    fn rounds_leave_a_slow_line_to_what_is_read() {
+        let epoch = ArmEpoch(1);
+        for (took, next) in [(0, 5), (1, 5), (3, 12), (40, 20)] {
+            let mut motion = Motion::default();
+            let mut wish = Setpoints::none(epoch);
+            wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
+            motion.want(&wish, Some(epoch));
+            assert!(motion.next_write(Moment::ZERO).is_some());
+            motion.took(Duration::from_millis(took));
+            motion.want(&wish, Some(epoch));
+            let due = motion.next_send(Moment::ZERO);
+            assert_eq!(due, Some(Moment::from_micros(next * 1000)), "{took}");
+        }
     }
 
     #[test]

@@ -85,6 +85,7 @@ impl Session {
             self.send_hold(bus).await?;
         } else if let Some(write) = self.motion.next_write(now) {
             self.send_setpoint(bus, write).await?;
+            self.motion.took(self.now().since(now));
         } else {
             return Ok(false);
         }

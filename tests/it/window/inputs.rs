@@ -4,6 +4,7 @@
 use crate::setup::window::{ANGLE_SET, Bench, Role};
 use egui::Key;
 use handscope::app::action::Action;
+use handscope::app::inputs::InputAction;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
 use handscope::record::LinkState;
@@ -114,8 +115,8 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(TcpStream::connect(at).is_ok());
     bench.show(View::Connection);
     bench.run(100);
-    bench.type_into("Address for viewers", "127.0.0.1:0");
-    bench.click_button("Show");
+    let free = "127.0.0.1:0".parse().unwrap();
+    bench.act(Action::Input(InputAction::Show(Some(free))));
     bench.click_button("Join");
     bench.run(200);
     let inputs = &bench.state().hand().inputs;
