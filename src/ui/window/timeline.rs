@@ -9,7 +9,10 @@ use crate::ui::sessions::marks::{clock, shown};
 use crate::ui::sessions::{beside, strip};
 use crate::ui::text::{Text, panels, sessions};
 use crate::ui::theme;
-use egui::{Color32, Popup, Rect, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Color32, Event, PointerButton, Popup, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
+    Ui, WidgetInfo, pos2, vec2,
+};
 use std::time::Duration;
 
 /// Height of the whole.
@@ -180,7 +183,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         info
     });
     let length = line.last.since(line.first);
-    if let Some(pointer) = response.interact_pointer_pos() {
+    if let Some(pointer) = dragged_to(ui, &response) {
         let here = moment(line, length, share(place, pointer.x));
         let (shift, pressed_at) =
             ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
@@ -202,6 +205,23 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         let words = near.map_or_else(|| look.tip(sessions::LINE).to_owned(), |entry| entry.words);
         response.on_hover_text(format!("{clock}\n{words}"));
     }
+}
+
+/// Where a person drags it, or let it go. In a slow frame the pointer may have gone on after that.
+fn dragged_to(ui: &Ui, response: &Response) -> Option<Pos2> {
+    let now = response.interact_pointer_pos()?;
+    let let_go = ui.input(|input| {
+        input.events.iter().find_map(|event| match event {
+            Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed: false,
+                ..
+            } => Some(*pos),
+            _ => None,
+        })
+    });
+    Some(let_go.unwrap_or(now))
 }
 
 fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {
