@@ -20,6 +20,7 @@ use handscope::record::LinkState;
 use handscope::sim::SimConfig;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
+use std::time::Duration;
 
 const SECOND: &str = "tcp:10.0.0.2:6000";
 const THIRD: &str = "tcp:10.0.0.3:6000";
@@ -379,19 +380,18 @@ fn two_hands_are_recorded_each_into_its_own_file() {
         handscope::app::sessions::SessionAction::RecordSimulated(true),
     ));
     bench.open_another("sim:?seed=2");
-    bench.run(400);
-    let paths: Vec<_> = hands(&bench)
-        .iter()
-        .map(|hand| {
-            hand.recording
-                .as_ref()
-                .unwrap()
-                .status
-                .path
-                .clone()
-                .unwrap()
-        })
-        .collect();
+    let path = |hand: &&HandState| hand.recording.as_ref()?.status.path.clone();
+    // Files are made by a thread of their own.
+    let mut paths = Vec::new();
+    for _ in 0..500 {
+        bench.run(20);
+        std::thread::sleep(Duration::from_millis(10));
+        paths = hands(&bench).iter().filter_map(path).collect();
+        if paths.len() == 2 {
+            break;
+        }
+    }
+    assert_eq!(paths.len(), 2, "{paths:?}");
     assert_ne!(paths[0], paths[1]);
     assert!(paths.iter().all(|path| path.exists()), "{paths:?}");
 }
