@@ -113,8 +113,6 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     bench.run(200);
     let at = bench.state().hand().inputs.gateway_at.unwrap();
     assert!(TcpStream::connect(at).is_ok());
-    bench.show(View::Connection);
-    bench.run(100);
     let free = "127.0.0.1:0".parse().unwrap();
     bench.act(Action::Input(InputAction::Show(Some(free))));
     bench.click_button("Join");
@@ -125,6 +123,8 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(inputs.dds_view.as_ref().unwrap().at.is_loopback());
     assert!(!bench.is_disabled(Role::Button, "Join"));
     assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
+    bench.show(View::Connection);
+    bench.run(100);
     // A badge in every view leads to where it can be ended.
     bench.click_button("Shared · DDS");
     bench.run(100);
