@@ -46,16 +46,19 @@ def main(recording, to, side="right"):
     host, port = to.rsplit(":", 1)
     udp, began = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), time.monotonic()
     with open(recording, newline="") as file:
-        rows = csv.reader(file)
-        next(rows)
-        for seq, row in enumerate(rows):
-            seconds, numbers = float(row[0]), [float(cell) for cell in row[1:]]
-            points = [numbers[at : at + 3] for at in range(0, 63, 3)]
-            # Frames in which the hand was not seen are not in the file: nothing is sent, and the hand holds.
-            time.sleep(max(0.0, began + seconds - time.monotonic()))
-            values = [round(value, 4) for value in bends(points)]
-            udp.sendto(json.dumps({"seq": seq, side: values}).encode(), (host, int(port)))
+        rows = list(csv.reader(file))[1:]
+    if not rows or any(len(row) != 64 for row in rows):
+        sys.exit(f"{recording} is no recording: it needs a head and rows of 64 numbers")
+    for seq, row in enumerate(rows):
+        seconds, numbers = float(row[0]), [float(cell) for cell in row[1:]]
+        points = [numbers[at : at + 3] for at in range(0, 63, 3)]
+        # Frames in which the hand was not seen are not in the file: nothing is sent, and the hand holds.
+        time.sleep(max(0.0, began + seconds - time.monotonic()))
+        values = [round(value, 4) for value in bends(points)]
+        udp.sendto(json.dumps({"seq": seq, side: values}).encode(), (host, int(port)))
 
 
 if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
     main(*sys.argv[1:])
