@@ -11,7 +11,6 @@ use crate::app::files::quirk_notes::QuirkNotes;
 use crate::app::files::settings_file;
 use crate::app::hand::HandState;
 use crate::app::hand::connection::REST_WITHIN;
-use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamAction;
@@ -330,7 +329,7 @@ impl App {
             Action::Disconnect => self.connect(None),
             Action::Hands(action) => self.state.hands_action(action, &self.env),
             Action::Stop => self.stop(),
-            Action::HoldKey(key) => self.hold_key(key),
+            Action::HoldKey(key) => self.state.hold_key(key),
             Action::Scan(wish) => {
                 let held = self.state.hands.iter();
                 let held = held.filter_map(|hand| hand.endpoint.clone()).collect();
@@ -361,26 +360,6 @@ impl App {
         self.state.stop_all();
         if let Some(exhibit) = &mut self.state.exhibit {
             exhibit.wish(ExhibitWish::Stop);
-        }
-    }
-
-    /// The key that is held lets every hand move that is armed; its press arms the shown one alone.
-    fn hold_key(&mut self, key: HoldKey) {
-        let State {
-            hands,
-            notices,
-            now,
-            ..
-        } = &mut self.state;
-        let (shown, is_several) = (hands.shown().label.slot, hands.is_several());
-        for hand in hands.iter_mut() {
-            let key = match key {
-                HoldKey::Pressed if hand.label.slot != shown => HoldKey::Held,
-                key => key,
-            };
-            hand.now = *now;
-            notices.about(is_several.then_some(&hand.label));
-            hand.hold_key(key, notices);
         }
     }
 

@@ -29,7 +29,9 @@ const HEAD: usize = 4;
 #[derive(Debug, thiserror::Error)]
 pub enum DdsError {
     /// No interface of this computer is named so, or has such an address.
-    #[error("there is no network interface {name} with an IPv4 address here")]
+    #[error(
+        "there is no network interface {name} with an IPv4 address here; 'ip address' lists them"
+    )]
     NoInterface {
         /// As the person named it.
         name: String,

@@ -2,6 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
+use crate::app::hand::held_key::HoldKey;
 use crate::app::hand::slot::SlotId;
 use crate::app::hands::action::HandsAction;
 use crate::app::notices::NoticeKind;
@@ -112,6 +113,26 @@ impl State {
             .collect();
         for slot in slots {
             self.stop_hand(slot);
+        }
+    }
+
+    /// The key that is held lets every hand move that is armed; its press arms the shown one alone.
+    pub(crate) fn hold_key(&mut self, key: HoldKey) {
+        let State {
+            hands,
+            notices,
+            now,
+            ..
+        } = self;
+        let (shown, is_several) = (hands.shown().label.slot, hands.is_several());
+        for hand in hands.iter_mut() {
+            let key = match key {
+                HoldKey::Pressed if hand.label.slot != shown => HoldKey::Held,
+                key => key,
+            };
+            hand.now = *now;
+            notices.about(is_several.then_some(&hand.label));
+            hand.hold_key(key, notices);
         }
     }
 

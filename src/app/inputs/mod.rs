@@ -7,16 +7,16 @@ mod work;
 use crate::app::running::Running;
 use crate::inputs::dds::source::{DdsSource, DdsView};
 use crate::inputs::follow::FollowLimits;
-use crate::inputs::pad::PadMap;
 use crate::inputs::pad::source::{PadSource, PadView};
+use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
 use crate::share::dds::{DdsPublisher, DdsTold};
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
-use crate::transport::dds::DdsNode;
-use std::fmt::Display;
+use crate::transport::dds::{DdsError, DdsNode};
+use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
 
@@ -64,6 +64,23 @@ pub enum InputKind {
     Dds,
 }
 
+/// Why something was not opened.
+#[derive(Debug)]
+pub enum OpenRefusal {
+    /// The system's words for it.
+    System(String),
+    /// Gamepads are not read.
+    Pad(PadTrouble),
+    /// DDS does not come up.
+    Dds(DdsError),
+}
+
+impl From<io::Error> for OpenRefusal {
+    fn from(error: io::Error) -> Self {
+        Self::System(error.to_string())
+    }
+}
+
 /// The inputs and the gateway of one connection. Dropped with it, they are closed.
 #[derive(Debug, Default)]
 pub struct HandInputs {
@@ -87,7 +104,7 @@ pub struct HandInputs {
     /// What is known of DDS, while it is joined.
     pub dds_view: Option<DdsState>,
     /// What was to be opened last and was not, and why.
-    pub refused: Option<(InputKind, String)>,
+    pub refused: Option<(InputKind, OpenRefusal)>,
     /// What the hand follows.
     pub follow: Option<FollowRun>,
 }
@@ -123,15 +140,12 @@ pub struct FollowRun {
 }
 
 impl HandInputs {
-    fn refuse(&mut self, what: InputKind, why: &dyn Display) {
-        self.refused = Some((what, why.to_string()));
-    }
-
     /// Takes in what came and who is there.
     fn look(&mut self) {
-        if let Some(source) = &self.stream {
-            self.stream_view = source.view();
-        }
+        self.stream_at = self.stream.as_ref().map(StreamSource::local);
+        let lines = self.stream.as_ref().map(StreamSource::view);
+        self.stream_view = lines.unwrap_or_default();
+        self.gateway_at = self.gateway.as_ref().map(Gateway::address);
         self.pad_view = self.pad.as_ref().map(PadSource::view);
         let clients = self.gateway.as_ref().map(Gateway::clients);
         self.clients = clients.unwrap_or_default();

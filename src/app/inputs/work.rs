@@ -2,14 +2,14 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::inputs::{InputAction, InputKind, JoinedDds};
+use crate::app::inputs::{InputAction, InputKind, JoinedDds, OpenRefusal};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::settings::Settings;
 use crate::inputs::dds::ctrl;
 use crate::inputs::dds::source::{DdsSource, DdsSourceConfig};
-use crate::inputs::pad::PadInput;
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
+use crate::inputs::pad::{PadInput, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::record::file::Opening;
 use crate::share::dds::DdsPublisher;
@@ -40,11 +40,9 @@ impl HandState {
                 }
             }
             InputAction::TakeBack => self.take_back(),
-            InputAction::Limit(limits) => {
-                settings.follow = limits.within();
-            }
+            InputAction::Limit(limits) => settings.follow = limits.within(),
             InputAction::Map(map) => {
-                settings.pad_map = Some(crate::inputs::pad::file::write(&map));
+                settings.pad_map = Some(file::write(&map));
                 // What is held has to be pressed anew.
                 if self.inputs.pad.is_some() {
                     self.read_pad(true, settings, env);
@@ -56,7 +54,6 @@ impl HandState {
     fn listen(&mut self, place: Option<StreamPlace>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.stream = None;
-        self.inputs.stream_at = None;
         let Some((place, open)) = place.zip(self.open.as_ref()) else {
             return;
         };
@@ -69,18 +66,14 @@ impl HandState {
             wake: Arc::clone(&env.wake),
         };
         match StreamSource::open(config, &env.runtime) {
-            Ok(source) => {
-                self.inputs.stream_at = Some(source.local());
-                self.inputs.stream = Some(source);
-            }
-            Err(error) => self.inputs.refuse(InputKind::Stream, &error),
+            Ok(source) => self.inputs.stream = Some(source),
+            Err(error) => self.inputs.refused = Some((InputKind::Stream, error.into())),
         }
     }
 
     fn read_pad(&mut self, on: bool, settings: &Settings, env: &Env) {
         self.inputs.refused = None;
         self.inputs.pad = None;
-        self.inputs.pad_view = None;
         let Some(open) = self.open.as_ref().filter(|_| on) else {
             return;
         };
@@ -90,32 +83,23 @@ impl HandState {
             Ok(reader) => {
                 let _entered = env.runtime.enter();
                 let link = open.link.clone();
-                let poses = crate::poses::starter::starter().poses.iter();
-                let mut input = PadInput::new(settings.pad_map());
-                input.set_poses(
-                    poses
-                        .map(|pose| (pose.name.clone(), pose.targets()))
-                        .collect(),
-                );
                 let source = PadSource::open(PadSourceConfig {
                     reader,
-                    input,
+                    input: PadInput::starting(settings.pad_map()),
                     records: open.link.records(),
                     clock,
                     stop: Arc::new(move || link.stop()),
                     wake: Arc::clone(&env.wake),
                 });
-                self.inputs.pad_view = Some(source.view());
                 self.inputs.pad = Some(source);
             }
-            Err(error) => self.inputs.refuse(InputKind::Pad, &error),
+            Err(error) => self.inputs.refused = Some((InputKind::Pad, OpenRefusal::Pad(error))),
         }
     }
 
     fn share(&mut self, place: Option<SocketAddr>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.gateway = None;
-        self.inputs.gateway_at = None;
         let Some((address, open)) = place.zip(self.open.as_ref()) else {
             return;
         };
@@ -125,11 +109,8 @@ impl HandState {
             silence: SILENCE,
         };
         match Gateway::open(open.link.clone(), config, &env.runtime) {
-            Ok(gateway) => {
-                self.inputs.gateway_at = Some(gateway.address());
-                self.inputs.gateway = Some(gateway);
-            }
-            Err(error) => self.inputs.refuse(InputKind::Gateway, &error),
+            Ok(gateway) => self.inputs.gateway = Some(gateway),
+            Err(error) => self.inputs.refused = Some((InputKind::Gateway, error.into())),
         }
     }
 
@@ -149,7 +130,7 @@ impl HandState {
                 server.show(&open.link);
                 self.inputs.foxglove = Some(server);
             }
-            Err(error) => self.inputs.refuse(InputKind::Viewers, &error),
+            Err(error) => self.inputs.refused = Some((InputKind::Viewers, error.into())),
         }
     }
 
@@ -181,7 +162,7 @@ impl HandState {
         });
         match joined {
             Ok(joined) => self.inputs.dds = Some(joined),
-            Err(error) => self.inputs.refuse(InputKind::Dds, &error),
+            Err(error) => self.inputs.refused = Some((InputKind::Dds, OpenRefusal::Dds(error))),
         }
     }
 

@@ -16,7 +16,6 @@ use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
-use crate::poses::starter::starter;
 use crate::store::toml_file;
 use crate::transport::Endpoint;
 use anyhow::Context as _;
@@ -208,11 +207,12 @@ impl FollowSource {
                 let held = if view.is_held { "held" } else { "not held" };
                 let words = match (&view.name, &view.trouble) {
                     (Some(name), _) => format!("{name}, dead-man {held}"),
-                    (None, Some(trouble)) => trouble.clone(),
+                    (None, Some(trouble)) => trouble.to_string(),
                     (None, None) => "no gamepad yet: plug one in, or pair it".into(),
                 };
+                let trouble = view.trouble.map(|trouble| trouble.to_string());
                 let object =
-                    json!({"gamepad": view.name, "trouble": view.trouble, "held": view.is_held});
+                    json!({"gamepad": view.name, "trouble": trouble, "held": view.is_held});
                 (words, object)
             }
             Self::Mirror(other, source) => {
@@ -269,9 +269,5 @@ pub(super) fn pad_input(map: Option<&Path>) -> anyhow::Result<PadInput> {
         Some(path) => toml_file::load(path, file::BYTES_MAX, file::read)
             .with_context(|| path.display().to_string())?,
     };
-    let mut input = PadInput::new(map);
-    let poses = starter().poses.iter();
-    let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
-    input.set_poses(poses.collect());
-    Ok(input)
+    Ok(PadInput::starting(map))
 }

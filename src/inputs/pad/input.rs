@@ -6,6 +6,7 @@ use crate::inputs::pad::control::{ControlKind, PadControl};
 use crate::inputs::pad::map::{PadAction, PadMap};
 use crate::inputs::pad::report::{KernelEvent, PadId, PadNews, PadReport};
 use crate::inputs::pad::state::{FULL, PadState, StickPlace};
+use crate::poses::starter::starter;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
@@ -84,6 +85,16 @@ impl PadInput {
             fingers: FingerChoice::All,
             push: None,
         }
+    }
+
+    /// No gamepad yet; its buttons go to the poses that are built in.
+    #[must_use]
+    pub fn starting(map: PadMap) -> Self {
+        let poses = starter().poses.iter();
+        let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
+        let mut input = Self::new(map);
+        input.set_poses(poses.collect());
+        input
     }
 
     /// Names the poses that buttons go to. A button whose pose is not among them does nothing.

@@ -4,7 +4,7 @@ use crate::hand::{Angle, AngleReading, PerDof};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::inputs::pad::device::PadReader;
 use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput};
-use crate::inputs::pad::report::PadNews;
+use crate::inputs::pad::report::{PadNews, PadTrouble};
 use crate::inputs::pad::state::PadState;
 use crate::link::{Clock, Records, Wake};
 use crate::record::Record;
@@ -39,7 +39,7 @@ pub struct PadView {
     /// What it calls itself; `None` without one.
     pub name: Option<String>,
     /// Why there is none, if the system says so.
-    pub trouble: Option<String>,
+    pub trouble: Option<PadTrouble>,
     /// Its dead-man is held.
     pub is_held: bool,
     /// Where it wants the joints, while its dead-man is held.
@@ -105,7 +105,7 @@ async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: 
                         view.name = Some(facts.name.clone());
                         view.trouble = None;
                     }
-                    PadNews::Trouble(trouble) => view.trouble = Some(trouble.to_string()),
+                    PadNews::Trouble(trouble) => view.trouble = Some(trouble.clone()),
                     _ => {}
                 }
                 match config.input.take(&report) {

@@ -9,10 +9,10 @@ use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::owner::figures_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{Text, inputs, words};
+use crate::ui::text::{Text, errors, inputs, words};
 use crate::ui::theme;
 use egui::{Ui, vec2};
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 
 /// What was typed.
 #[derive(Debug)]
@@ -37,19 +37,10 @@ impl Default for SourceCards {
     }
 }
 
-/// A switch, the place it is for, and where that is now.
-struct Switch {
-    kind: InputKind,
-    text: Text,
-    /// What a press does.
-    action: InputAction,
-    /// Where it is open.
-    at: Option<String>,
-    /// Others than this computer can reach it.
-    is_reachable: bool,
-    /// Nothing can be opened at what was typed.
-    is_wrong: bool,
-}
+/// What a switch opens, its words, and what a press does.
+type Switch = (InputKind, Text, InputAction);
+/// Where something is open, and what is wrong with the place that was typed.
+type Place = (Option<(IpAddr, String)>, Option<Text>);
 
 impl SourceCards {
     /// Draws all.
@@ -81,9 +72,9 @@ impl SourceCards {
             false => StreamPlace::Udp(at),
         });
         let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
-        let switch = Switch::new(InputKind::Stream, (inputs::LISTEN, action), at);
         ui.horizontal_wrapped(|ui| {
-            switch.wrong(wanted.is_none()).ui(ui, pane);
+            let switch = (InputKind::Stream, inputs::LISTEN, action);
+            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
             let sender = pane.state.hand().inputs.stream_view.intake.sender;
             let missing = silence(pane, sender.map(|(_, last)| last).filter(|_| at.is_some()));
             let source = (look.say(inputs::STREAM), InputAction::GrantStream);
@@ -102,11 +93,13 @@ impl SourceCards {
         });
         let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
         let action = InputAction::JoinDds(wanted.clone().filter(|_| view.is_none()));
-        let at = view.as_ref().map(|view| SocketAddr::from((view.at, 0)));
-        let mut switch = Switch::new(InputKind::Dds, (inputs::JOIN, action), at);
-        switch.at = view.as_ref().map(|view| view.at.to_string());
+        let at = view
+            .as_ref()
+            .map(|view| (view.at.into(), view.at.to_string()));
+        let wrong = wanted.is_none().then_some(inputs::INTERFACE_WRONG);
         ui.horizontal_wrapped(|ui| {
-            switch.wrong(wanted.is_none()).ui(ui, pane);
+            let switch = (InputKind::Dds, inputs::JOIN, action);
+            switch_ui(ui, pane, switch, (at, wrong));
             let sender = view.as_ref().and_then(|view| view.view.sender);
             let missing = silence(pane, sender.map(|(_, last)| last));
             let source = (look.say(inputs::DDS), InputAction::GrantDds);
@@ -141,8 +134,10 @@ impl SourceCards {
         });
         let wanted = place(&self.share);
         let action = InputAction::Share(wanted.filter(|_| at.is_none()));
-        let switch = Switch::new(InputKind::Gateway, (inputs::SHARE, action), at);
-        ui.horizontal_wrapped(|ui| switch.wrong(wanted.is_none()).ui(ui, pane));
+        ui.horizontal_wrapped(|ui| {
+            let switch = (InputKind::Gateway, inputs::SHARE, action);
+            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
+        });
         let clients = pane.state.hand().inputs.clients.clone();
         if at.is_some() && clients.is_empty() {
             Label::muted(look, inputs::NO_CLIENTS).ui(ui);
@@ -161,8 +156,10 @@ impl SourceCards {
         let wanted = place(&self.viewers);
         let action = InputAction::Show(wanted.filter(|_| served.is_none()));
         let at = served.map(|(at, _)| at);
-        let switch = Switch::new(InputKind::Viewers, (inputs::SHOW, action), at);
-        ui.horizontal_wrapped(|ui| switch.wrong(wanted.is_none()).ui(ui, pane));
+        ui.horizontal_wrapped(|ui| {
+            let switch = (InputKind::Viewers, inputs::SHOW, action);
+            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
+        });
         if let Some((_, count)) = served {
             let rows = [(look.say(inputs::VIEWERS_NOW), count.to_string())];
             figures_ui(ui, look, "viewers", &rows);
@@ -201,41 +198,30 @@ pub(crate) fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
     (!is_live).then(|| pane.look.say(inputs::NO_HAND))
 }
 
-impl Switch {
-    fn new(kind: InputKind, (text, action): (Text, InputAction), at: Option<SocketAddr>) -> Self {
-        Self {
-            kind,
-            text,
-            action,
-            at: at.map(|at| at.to_string()),
-            is_reachable: at.is_some_and(|at| !at.ip().is_loopback()),
-            is_wrong: false,
-        }
-    }
+fn socket(at: Option<SocketAddr>, is_wrong: bool) -> Place {
+    let wrong = is_wrong.then_some(inputs::ADDRESS_WRONG);
+    (at.map(|at| (at.ip(), at.to_string())), wrong)
+}
 
-    fn wrong(mut self, is_wrong: bool) -> Self {
-        self.is_wrong = is_wrong;
-        self
-    }
-
-    /// Opens something or closes it, and says where it is, or why it is not.
-    fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let look = pane.look;
-        let is_open = self.at.is_some();
-        let wrong = (self.is_wrong && !is_open).then(|| look.say(inputs::ADDRESS_WRONG));
-        let button = Button::said(look, self.text).selected(is_open).large();
-        let button = button.disabled(no_hand(pane).or(wrong));
-        button.sends(ui, pane, Action::Input(self.action));
-        let refused = pane.state.hand().inputs.refused.as_ref();
-        match (&self.at, refused.filter(|(kind, _)| *kind == self.kind)) {
-            (Some(at), _) if self.is_reachable => {
-                let label = Label::new(at, look.palette.warn).number().ui(ui);
-                label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
-            }
-            (Some(at), _) => drop(Label::new(at, look.palette.text).number().ui(ui)),
-            (None, Some((_, why))) => drop(Label::new(why, look.palette.warn).wrap().ui(ui)),
-            (None, None) => {}
+/// Opens something or closes it, and says where it is, or why it is not.
+fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, (kind, text, action): Switch, (at, wrong): Place) {
+    let look = pane.look;
+    let wrong = wrong.filter(|_| at.is_none()).map(|wrong| look.say(wrong));
+    let button = Button::said(look, text).selected(at.is_some()).large();
+    let button = button.disabled(no_hand(pane).or(wrong));
+    button.sends(ui, pane, Action::Input(action));
+    let refused = pane.state.hand().inputs.refused.as_ref();
+    match (at, refused.filter(|(refused, _)| *refused == kind)) {
+        (Some((ip, at)), _) if !ip.is_loopback() => {
+            let label = Label::new(&at, look.palette.warn).number().ui(ui);
+            label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
         }
+        (Some((_, at)), _) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
+        (None, Some((_, why))) => {
+            let why = errors::not_opened(look, why);
+            Label::new(&why, look.palette.warn).wrap().ui(ui);
+        }
+        (None, None) => {}
     }
 }
 
@@ -317,6 +303,6 @@ fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
     );
     kit::say_ui(ui, &words, look.palette.muted);
     if let Some(refusal) = &client.refusal {
-        kit::say_ui(ui, &refusal.to_string(), look.palette.warn);
+        kit::say_ui(ui, &errors::write_refusal(look, refusal), look.palette.warn);
     }
 }

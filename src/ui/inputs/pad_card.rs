@@ -12,7 +12,7 @@ use crate::ui::inputs::cards::{grant_ui, no_hand};
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
-use crate::ui::text::inputs;
+use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
 use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
@@ -91,16 +91,17 @@ fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
     let Some(view) = view else {
         let refused = pane.state.hand().inputs.refused.as_ref();
         if let Some((_, why)) = refused.filter(|(kind, _)| *kind == InputKind::Pad) {
-            Label::new(why, look.palette.warn).wrap().ui(ui);
+            let why = errors::not_opened(look, why);
+            Label::new(&why, look.palette.warn).wrap().ui(ui);
         }
         return;
     };
     let (text, color) = match (&view.name, &view.trouble) {
-        (Some(name), _) => (name.as_str(), look.palette.text),
-        (None, Some(trouble)) => (trouble.as_str(), look.palette.warn),
-        (None, None) => (look.say(inputs::PLUG_IN), look.palette.muted),
+        (Some(name), _) => (name.clone(), look.palette.text),
+        (None, Some(trouble)) => (errors::pad(look, trouble), look.palette.warn),
+        (None, None) => (look.say(inputs::PLUG_IN).to_owned(), look.palette.muted),
     };
-    Label::new(text, color).wrap().ui(ui);
+    Label::new(&text, color).wrap().ui(ui);
 }
 
 /// Where the gamepad wants the hand, drawn, whether it may move it or not; joints that it leaves alone are where they are.

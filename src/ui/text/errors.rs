@@ -1,15 +1,20 @@
 //! Every error that reaches a person, as a sentence in the window's language. English is the error's own words, except
 //! where they speak of the command line.
 
+use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
 use crate::hand::OutOfRange;
+use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
+use crate::share::gateway::WriteRefusal;
 use crate::store::{FileCause, FileError};
 use crate::tasks::TaskError;
+use crate::transport::dds::DdsError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
 use crate::ui::kit::{Look, format};
+use crate::ui::text::inputs;
 use std::fmt::Display;
 
 /// The error's own words in English; else what `zh` makes of it.
@@ -134,6 +139,30 @@ chinese! {
         TaskError::NotAsked(error) => "{}", request_zh(error);
     }
 
+    fn write_refusal_zh(&WriteRefusal) {
+        WriteRefusal::NotGranted => "没有程序获准控制：需由人允许。";
+        WriteRefusal::Taken => "其他来源正在控制。";
+        WriteRefusal::Over => "此连接的控制权已结束：需重新连接。";
+        WriteRefusal::NotArmed(_) => "未能使能。";
+        WriteRefusal::Limits => "灵巧手现有的速度与力阈值不合理。";
+        WriteRefusal::Address { address, words } => "程序不允许写入地址 {address} 起的 {words} 个字。";
+        WriteRefusal::Value { address } => "地址 {address} 的值超出手册范围。";
+        WriteRefusal::Request(error) => "{}", request_zh(error);
+    }
+
+    fn pad_zh(&PadTrouble) {
+        PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄。";
+        PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_zh(why);
+        PadTrouble::MayNotOpen { path, remedy, .. } => "没有打开 {} 的权限：{}。", path.display(), remedy_zh(remedy);
+        PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_zh(why);
+    }
+
+    fn dds_zh(&DdsError) {
+        DdsError::NoInterface { name } => "本机没有带 IPv4 地址的网络接口 {name}：可用 'ip address' 查看。";
+        DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_zh(&error.to_string());
+        DdsError::Library { error } => "DDS 未能启动：“{error}”。";
+    }
+
     fn file_cause_zh(&FileCause) {
         FileCause::Toml(_) => "格式不对";
         FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
@@ -226,7 +255,9 @@ pub(crate) fn system(look: Look, message: &str) -> String {
 }
 
 /// Words of systems and of the readers of files, as they stand somewhere in a message.
-const SYSTEM: [(&str, &str); 27] = [
+const SYSTEM: [(&str, &str); 29] = [
+    ("Address already in use", "地址已被占用"),
+    ("Cannot assign requested address", "本机没有此地址"),
     ("Permission denied", "权限不足"),
     ("Access is denied", "权限不足"),
     ("Operation not permitted", "不允许此操作"),
@@ -268,6 +299,25 @@ fn system_zh(message: &str) -> String {
         (None, Some(line), _) => format!("第 {line} 行格式不对"),
         (None, None, Some(code)) => format!("系统错误 {code}"),
         (None, None, None) => format!("系统信息为“{message}”"),
+    }
+}
+
+/// Why the write of a gateway's client was not done.
+pub(crate) fn write_refusal(look: Look, refusal: &WriteRefusal) -> String {
+    told(look, refusal, write_refusal_zh)
+}
+
+/// Why there is no gamepad.
+pub(crate) fn pad(look: Look, trouble: &PadTrouble) -> String {
+    told(look, trouble, pad_zh)
+}
+
+/// Why something was not opened at the place that a person named.
+pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
+    match refusal {
+        OpenRefusal::System(message) => look.fill(inputs::NOT_OPENED, &[&system(look, message)]),
+        OpenRefusal::Pad(trouble) => pad(look, trouble),
+        OpenRefusal::Dds(error) => told(look, error, dds_zh),
     }
 }
 
@@ -313,6 +363,7 @@ mod tests {
     use crate::hand::kinematics::Side;
     use crate::link::Owner;
     use crate::params::rows::ParamId;
+    use crate::record::ArmRefusal;
     use crate::tasks::Risks;
     use crate::ui::theme::Palette;
     use std::collections::HashSet;
@@ -567,6 +618,59 @@ mod tests {
         let source = include_str!("../../store/toml_file.rs");
         check(&all, (source, "FileCause"), |cause| {
             file(chinese(), &at(cause.clone()))
+        });
+    }
+
+    #[test]
+    fn what_keeps_others_out_is_whole_in_chinese() {
+        let all = [
+            WriteRefusal::NotGranted,
+            WriteRefusal::Taken,
+            WriteRefusal::Over,
+            WriteRefusal::NotArmed(ArmRefusal::Fault),
+            WriteRefusal::Limits,
+            WriteRefusal::Address {
+                address: 1000,
+                words: 1,
+            },
+            WriteRefusal::Value { address: 1486 },
+            WriteRefusal::Request(RequestError::NotArmed),
+        ];
+        let source = include_str!("../../share/gateway/refusal.rs");
+        check(&all, (source, "WriteRefusal"), |refusal| {
+            write_refusal(chinese(), refusal)
+        });
+        let message = |code| std::io::Error::from_raw_os_error(code).to_string();
+        let all = [
+            PadTrouble::LinuxOnly,
+            PadTrouble::NoFolder {
+                folder: "/dev/input".into(),
+                why: message(2),
+            },
+            PadTrouble::MayNotOpen {
+                path: "/dev/input/event3".into(),
+                count: 1,
+                remedy: Remedy::JoinGroup("input".into()),
+            },
+            PadTrouble::NoThread(message(11)),
+        ];
+        let source = include_str!("../../inputs/pad/report.rs");
+        check(&all, (source, "PadTrouble"), |trouble| {
+            pad(chinese(), trouble)
+        });
+        let name = || "eth9".to_owned();
+        let all = [
+            OpenRefusal::System(message(98)),
+            OpenRefusal::Pad(PadTrouble::LinuxOnly),
+            OpenRefusal::Dds(DdsError::NoInterface { name: name() }),
+            OpenRefusal::Dds(DdsError::System {
+                name: name(),
+                error: std::io::Error::from_raw_os_error(1),
+            }),
+        ];
+        let source = include_str!("../../app/inputs/mod.rs");
+        check(&all, (source, "OpenRefusal"), |refusal| {
+            not_opened(chinese(), refusal)
         });
     }
 

@@ -14,6 +14,8 @@ texts! {
     TAKEN: "Another moves the hand: take it back first.", "其他来源正在控制：请先收回。";
     NO_HAND: "No hand answers.", "没有灵巧手应答。";
     ADDRESS_WRONG: "Write an address in numbers and a port, for example 127.0.0.1:6010.", "请输入数字地址和端口，例如 127.0.0.1:6010。";
+    INTERFACE_WRONG: "Write the name of a network interface, or its address.", "请输入网络接口的名称或地址。";
+    NOT_OPENED: "This cannot be opened: {}. Choose another address or port.", "无法打开：{}。请选择其他地址或端口。";
     OPEN_TO_ALL: "Anyone in the network can reach this; 127.0.0.1 keeps it to this computer.", "网络中的任何人都能访问；使用 127.0.0.1 则仅限本机。";
     STREAM: "Another program", "其他程序", "Lines of JSON over UDP or TCP: hand tracking, a glove, a script ('handscope help stream').", "通过 UDP 或 TCP 发送的 JSON 数据：手部追踪、手套或脚本（'handscope help stream'）。";
     STREAM_AT: "Address for lines", "数据地址";
