@@ -104,6 +104,8 @@ pub enum Action {
     Scan(ScanTarget),
     /// Look no further; what was found stays.
     CancelScan,
+    /// Listen for hands that other Handscopes share, at this network interface, or no more.
+    FindShared(Option<String>),
     /// This fault was seen by a person.
     SeenFault(Dof, FaultKind),
     /// All faults were seen by a person.

@@ -5,6 +5,7 @@ pub mod connect;
 pub mod env;
 pub mod exhibit;
 pub mod files;
+pub mod fleet;
 pub mod hand;
 pub mod hands;
 pub mod inputs;

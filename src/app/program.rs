@@ -193,6 +193,7 @@ impl App {
             trials,
             settings,
             scan,
+            fleet,
             ..
         } = &mut self.state;
         let env = &self.env;
@@ -222,6 +223,7 @@ impl App {
         let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
         told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
+        fleet.drain();
         self.state.sweep();
         self.exhibit.tick(&mut self.state, &self.env, now);
         self.take_jobs(now);
@@ -336,6 +338,7 @@ impl App {
                 self.state.scan.begin(wish, held, &self.env);
             }
             Action::CancelScan => self.state.scan.cancel(),
+            Action::FindShared(interface) => self.state.fleet.listen(interface, &self.env),
             Action::Dismiss(id) => self.state.notices.dismiss(id),
             Action::Stay => self.state.leave = None,
             Action::Leave => (self.leaves, self.state.leave) = (true, None),

@@ -337,6 +337,9 @@ pub struct Settings {
     pub hold_to_run: bool,
     /// How far and how fast a hand follows a source.
     pub follow: FollowLimits,
+    /// The first client of the gateway that writes may move the hand, without a person here who lets it. Only who edits the file
+    /// says so.
+    pub first_client_moves: bool,
     /// What the controls of a gamepad do, as a file of it says; as delivered if nothing changed that.
     pub pad_map: Option<String>,
     /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils

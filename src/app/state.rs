@@ -1,6 +1,7 @@
 //! Everything the window shows, as plain values. Changed only by [`crate::app::program::App`]; draws nothing, opens nothing.
 
 use crate::app::exhibit::ExhibitState;
+use crate::app::fleet::FleetState;
 use crate::app::hand::HandState;
 use crate::app::hands::list::HandList;
 use crate::app::notices::Notices;
@@ -38,6 +39,8 @@ pub struct State {
     pub ports: Vec<PortFound>,
     /// The newest scan for hands.
     pub scan: ScanState,
+    /// The hands that other Handscopes share.
+    pub fleet: FleetState,
     /// Recorded sessions.
     pub sessions: SessionsState,
     /// What would be lost if the window closed now, once a person tried to.

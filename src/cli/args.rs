@@ -14,6 +14,7 @@ use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::share::ShareArgs;
+use crate::cli::share::fleet::FleetArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::trial::TrialArgs;
 use crate::cli::watch::WatchArgs;
@@ -128,6 +129,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --dds\n  handscope share --hand sim: --foxglove 127.0.0.1:8765\n\nIt prints 'ready tcp ADDRESS', 'ready foxglove ADDRESS' or 'ready dds ADDRESS' and runs until Ctrl-C. With --dds the hand's state is told as Unitree's driver does it, and to ROS 2 ('handscope help dds'); no other computer is contacted unless you name an interface. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
     )]
     Share(ShareArgs),
+    /// List the hands that other Handscopes share, as they come and go
+    #[command(
+        after_help = "Examples:\n  handscope fleet\n  handscope fleet eth0 --for 3 --json\n\nIt listens on DDS for who shares a hand with 'share --dds' or *Join* in its window ('handscope help dds'), and connects to none. A line says the computer, the hand, how it is, who moves it, and the URL to watch it at.\n\nExit status: 0 ended by Ctrl-C or by --for; 1 there is no such interface; 2 wrong usage."
+    )]
+    Fleet(FleetArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
     #[command(
         after_help = sim::help()

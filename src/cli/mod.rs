@@ -1,7 +1,6 @@
 //! The command line: one file a command, each of which carries out its command and reports the outcome.
 
 mod args;
-mod dds;
 mod doctor;
 mod help;
 mod inputs;
@@ -79,6 +78,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Recover(args) => recordings::export::recover(&mut out, &args),
         Command::Import(args) => recordings::import::run(&mut out, &args),
         Command::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
+        Command::Fleet(args) => wait_for(share::fleet::run(&mut out, &args)),
         Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),

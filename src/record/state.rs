@@ -131,6 +131,11 @@ pub enum ArmRefusal {
     /// The hand did not acknowledge its speed and force limits.
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,
+    /// The hand, or the gateway that it is behind, refused them.
+    #[error(
+        "the hand refused its speed and force limits; if another Handscope shares it, a person there has to let you"
+    )]
+    Refused,
     /// A joint without a fresh, sensible angle.
     #[error("the angle of a joint is unknown or old")]
     UnknownPose {

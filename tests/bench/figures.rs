@@ -4,6 +4,7 @@
 mod clock;
 mod codec;
 mod cycles;
+mod fleet;
 mod foxglove;
 mod frames;
 #[cfg(unix)]
@@ -52,12 +53,13 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 14] = [
+const PARTS: [Part; 15] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
     ("gateway", gateway::run),
     ("foxglove", foxglove::run),
+    ("fleet", fleet::run),
     ("ui", frames::run),
     ("hand", hand::run),
     ("png", pictures::run),

@@ -35,10 +35,10 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         .split_whitespace()
         .map(str::parse)
         .collect::<Result<_, _>>()?;
-    let [one, all] = figures.as_chunks::<4>().0 else {
+    let [one, all] = figures.as_chunks::<7>().0 else {
         return Err("the measured process said nothing".into());
     };
-    for (what, [rate, cpu, median, slow]) in [
+    for (what, [rate, cpu, median, slow, parts @ ..]) in [
         (
             "eight hands over tcp, one shown: states a second of each",
             one,
@@ -51,12 +51,15 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         report.row("  window frame, median", *median, "ms cpu", Aim::None)?;
         let aim = Aim::AtMost(AIM_FRAME_MS);
         report.row("  99 of 100", *slow, "ms cpu", aim)?;
+        for (part, median) in ["  logic", "  layout", "  triangles"].iter().zip(parts) {
+            report.row(part, *median, "ms cpu", Aim::None)?;
+        }
     }
     Ok(())
 }
 
 /// Shows the hands, and says for one shown and for all side by side: states a second of the slowest, percent of a core, and
-/// milliseconds of a frame, the middle one and 99 of 100.
+/// milliseconds of a frame, the middle one, 99 of 100, and the middle ones of its parts.
 pub(crate) fn child(endpoints: &[String]) -> Result<(), Failure> {
     let mut endpoints = endpoints.iter().map(|text| text.parse::<Endpoint>());
     let first = endpoints.next().ok_or("no hand")??;
@@ -76,9 +79,19 @@ pub(crate) fn child(endpoints: &[String]) -> Result<(), Failure> {
             .zip(&after)
             .map(|(before, after)| after - before);
         let rate = rates.fold(f64::INFINITY, f64::min) / wall * 1000.0;
-        let frames = Sorted::new(frames);
-        let (median, slow) = (frames.median(), frames.percentile(99));
-        words.push(format!("{rate} {} {median} {slow}", cpu / wall * 100.0));
+        let parts: [fn(&[f64; 3]) -> f64; 4] = [
+            |frame| frame.iter().sum(),
+            |[logic, _, _]| *logic,
+            |[_, layout, _]| *layout,
+            |[_, _, triangles]| *triangles,
+        ];
+        let parts = parts.map(|part| Sorted::new(frames.iter().map(part).collect()));
+        let slow = parts[0].percentile(99);
+        let [median, logic, layout, triangles] = parts.map(|part| part.median());
+        let cpu = cpu / wall * 100.0;
+        words.push(format!(
+            "{rate} {cpu} {median} {slow} {logic} {layout} {triangles}"
+        ));
     }
     line(&words.join(" "))
 }
@@ -88,14 +101,14 @@ fn reads(scene: &Scene) -> Vec<f64> {
     hands.map(|hand| count(hand.stats.state_reads)).collect()
 }
 
-/// Draws as the window does; processor milliseconds of each frame.
-fn draw(scene: &mut Scene, length: Duration) -> Vec<f64> {
+/// Draws as the window does; processor milliseconds of each frame's parts.
+fn draw(scene: &mut Scene, length: Duration) -> Vec<[f64; 3]> {
     let begun = Instant::now();
     let mut frames = Vec::new();
     while begun.elapsed() < length {
         scene.wait(AT_LEAST);
         scene.pass(scene.frame_within());
-        frames.push(scene.frame().iter().sum());
+        frames.push(scene.frame());
     }
     frames
 }

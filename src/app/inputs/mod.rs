@@ -12,6 +12,7 @@ use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
 use crate::share::dds::{DdsPublisher, DdsTold};
+use crate::share::fleet::FleetTeller;
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
@@ -115,6 +116,7 @@ pub(crate) struct JoinedDds {
     pub(crate) node: DdsNode,
     pub(crate) publisher: DdsPublisher,
     pub(crate) source: DdsSource,
+    pub(crate) teller: FleetTeller,
 }
 
 /// What is known of DDS.

@@ -13,6 +13,7 @@ use crate::inputs::pad::{PadInput, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::record::file::Opening;
 use crate::share::dds::DdsPublisher;
+use crate::share::fleet::{self, FleetCard, FleetTeller};
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
@@ -28,9 +29,9 @@ impl HandState {
         match action {
             InputAction::Listen(place) => self.listen(place, env),
             InputAction::ReadPad(on) => self.read_pad(on, settings, env),
-            InputAction::Share(place) => self.share(place, env),
+            InputAction::Share(place) => self.share(place, settings, env),
             InputAction::Show(place) => self.show_viewers(place, env),
-            InputAction::JoinDds(interface) => self.join_dds(interface, env),
+            InputAction::JoinDds(interface) => self.join_dds(interface, settings, env),
             InputAction::GrantStream => self.grant_stream(settings, env),
             InputAction::GrantDds => self.grant_dds(settings, env),
             InputAction::GrantPad => self.grant_pad(settings, env),
@@ -97,7 +98,7 @@ impl HandState {
         }
     }
 
-    fn share(&mut self, place: Option<SocketAddr>, env: &Env) {
+    fn share(&mut self, place: Option<SocketAddr>, settings: &Settings, env: &Env) {
         self.inputs.refused = None;
         self.inputs.gateway = None;
         let Some((address, open)) = place.zip(self.open.as_ref()) else {
@@ -105,7 +106,10 @@ impl HandState {
         };
         let config = GatewayConfig {
             address,
-            writers: Writers::Granted,
+            writers: match settings.first_client_moves {
+                true => Writers::First,
+                false => Writers::Granted,
+            },
             silence: SILENCE,
         };
         match Gateway::open(open.link.clone(), config, &env.runtime) {
@@ -134,7 +138,7 @@ impl HandState {
         }
     }
 
-    fn join_dds(&mut self, interface: Option<String>, env: &Env) {
+    fn join_dds(&mut self, interface: Option<String>, settings: &Settings, env: &Env) {
         self.inputs.refused = None;
         self.inputs.dds = None;
         let Some((interface, open)) = interface.zip(self.open.as_ref()) else {
@@ -156,6 +160,7 @@ impl HandState {
             let messages = node.reader(&ctrl::topic(self.side))?;
             Ok(JoinedDds {
                 source: DdsSource::open(config, messages),
+                teller: FleetTeller::open(&node, &open.link, self.fleet_card(settings))?,
                 publisher,
                 node,
             })
@@ -166,10 +171,24 @@ impl HandState {
         }
     }
 
+    /// What others are told of this hand.
+    fn fleet_card(&self, settings: &Settings) -> FleetCard {
+        FleetCard {
+            host: fleet::host(),
+            name: self.label.name.to_string(),
+            side: self.side,
+            at: self.inputs.gateway.as_ref().map(Gateway::address),
+            first_may_move: settings.first_client_moves,
+        }
+    }
+
     /// Takes in what inputs and clients did.
     pub(crate) fn tick_inputs(&mut self, notices: &mut Notices, settings: &Settings) {
         let terms = self.follow_terms(settings);
         self.inputs.look();
+        if let Some(joined) = &self.inputs.dds {
+            joined.teller.say(self.fleet_card(settings));
+        }
         let Some(run) = &mut self.inputs.follow else {
             return;
         };

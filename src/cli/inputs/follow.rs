@@ -98,7 +98,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
     let source = tokio::select! {
         biased;
         () = interrupt.wished() => return Ok(()),
-        source = FollowSource::open(&args.from, (&link, clock), args.arm_request()) => source?,
+        source = FollowSource::open(&args.from, &args.hand, (&link, clock), args.arm_request()) => source?,
     };
     out.line(&source.ready())?;
     out.flush()?;

@@ -1,8 +1,8 @@
 //! What a hand follows from the command line: lines of JSON at an address, programs on DDS, the gamepad of this computer, or another
 //! hand.
 
-use crate::cli::dds::{DdsArgs, DdsOut};
 use crate::cli::parse::number;
+use crate::cli::share::dds::{DdsArgs, DdsOut};
 use crate::cli::{listen, parse, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -16,6 +16,7 @@ use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
+use crate::share::fleet::FleetCard;
 use crate::store::toml_file;
 use crate::transport::Endpoint;
 use anyhow::Context as _;
@@ -84,6 +85,7 @@ impl FollowSource {
     /// Opens what the person named; nothing it takes goes beyond what is allowed.
     pub(super) async fn open(
         args: &SourceArgs,
+        hand: &Endpoint,
         (link, clock): (&LinkHandle, Clock),
         allowed: ArmRequest,
     ) -> anyhow::Result<Self> {
@@ -94,7 +96,11 @@ impl FollowSource {
             let source = MirrorSource::open(leader, scale);
             return Ok(Self::Mirror(other.clone(), source));
         }
-        if let Some(out) = args.dds.open(link, args.side)? {
+        let card = FleetCard {
+            side: args.side,
+            ..args.dds.card(hand)
+        };
+        if let Some(out) = args.dds.open(link, card)? {
             let messages = out.node.reader(&ctrl::topic(args.side))?;
             let config = DdsSourceConfig {
                 allowed,

@@ -133,6 +133,7 @@ impl Session {
             false
         });
         self.status.holder = wishes.book.holder();
+        self.publish();
         if wishes.stop {
             self.begin_hold(wishes.why.unwrap_or(Disarmed::Stop));
         }
@@ -199,7 +200,10 @@ impl Session {
             }
             if let Err(error) = self.write(bus, &write, WriteCause::Arming).await {
                 self.failed(bus, &error).await?;
-                self.refuse_arm(ArmRefusal::NoAnswer);
+                self.refuse_arm(match error {
+                    BusError::Refused { .. } => ArmRefusal::Refused,
+                    _ => ArmRefusal::NoAnswer,
+                });
                 return Ok(());
             }
         }

@@ -23,15 +23,18 @@ pub(crate) fn link_words_of(look: Look, hand: &HandState) -> (Text, Color32) {
         LinkState::Offline if link.dialling != Dialling::Idle => {
             (main::STATE_CONNECTING, palette.warn)
         }
-        state => {
-            let color = match state {
-                LinkState::Offline => palette.faint,
-                LinkState::Identifying | LinkState::Holding => palette.warn,
-                LinkState::Monitoring => palette.ok,
-                LinkState::Armed => palette.armed,
-                LinkState::Fault => palette.bad,
-            };
-            (main::link_state(state), color)
-        }
+        state => (main::link_state(state), state_color(look, state)),
+    }
+}
+
+/// The colour for where a link stands.
+pub(crate) const fn state_color(look: Look, state: LinkState) -> Color32 {
+    let palette = look.palette;
+    match state {
+        LinkState::Offline => palette.faint,
+        LinkState::Identifying | LinkState::Holding => palette.warn,
+        LinkState::Monitoring => palette.ok,
+        LinkState::Armed => palette.armed,
+        LinkState::Fault => palette.bad,
     }
 }

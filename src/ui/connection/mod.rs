@@ -3,6 +3,7 @@ pub(crate) mod figures;
 pub(crate) mod link_words;
 mod rows;
 pub(crate) mod scan;
+mod shared;
 
 use crate::app::action::Action;
 use crate::app::hands::action::HandsAction;
@@ -16,6 +17,7 @@ use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::connection::rows::{expert_ui, row_ui};
 use crate::ui::connection::scan::ScanPanel;
+use crate::ui::connection::shared::SharedPanel;
 use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, Weight, refused_ui};
 use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
@@ -55,6 +57,7 @@ pub(crate) struct ConnectionForm {
     /// By their keys; kinds share them.
     fields: BTreeMap<&'static str, String>,
     scan: ScanPanel,
+    shared: SharedPanel,
     /// The spelling with which connecting was tried and that is no endpoint.
     refused: Option<String>,
     /// The endpoint that the fields were filled from, so that a new one fills them again.
@@ -67,6 +70,7 @@ impl Default for ConnectionForm {
             kind: ("", &[]),
             fields: BTreeMap::new(),
             scan: ScanPanel::default(),
+            shared: SharedPanel::default(),
             refused: None,
             filled_from: None,
         };
@@ -88,18 +92,23 @@ impl ConnectionForm {
         ui.columns(if is_wide { 3 } else { 2 }, |columns| match columns {
             [left, middle, right] => {
                 scroll_ui(left, "form", |ui| self.form_ui(ui, pane));
-                scroll_ui(middle, "scan", |ui| self.scan.ui(ui, pane));
+                scroll_ui(middle, "scan", |ui| self.find_ui(ui, pane));
                 scroll_ui(right, "link", |ui| link_ui(ui, pane));
             }
             [left, right] => {
                 scroll_ui(left, "form", |ui| {
                     self.form_ui(ui, pane);
-                    self.scan.ui(ui, pane);
+                    self.find_ui(ui, pane);
                 });
                 scroll_ui(right, "link", |ui| link_ui(ui, pane));
             }
             _ => {}
         });
+    }
+
+    fn find_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        self.scan.ui(ui, pane);
+        self.shared.ui(ui, pane);
     }
 
     /// Takes the fields from an endpoint's spelling.

@@ -312,12 +312,17 @@ pub(crate) fn pad(look: Look, trouble: &PadTrouble) -> String {
     told(look, trouble, pad_zh)
 }
 
+/// Why there is no DDS.
+pub(crate) fn dds(look: Look, error: &DdsError) -> String {
+    told(look, error, dds_zh)
+}
+
 /// Why something was not opened at the place that a person named.
 pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     match refusal {
         OpenRefusal::System(message) => look.fill(inputs::NOT_OPENED, &[&system(look, message)]),
         OpenRefusal::Pad(trouble) => pad(look, trouble),
-        OpenRefusal::Dds(error) => told(look, error, dds_zh),
+        OpenRefusal::Dds(error) => dds(look, error),
     }
 }
 

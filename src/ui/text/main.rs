@@ -35,6 +35,7 @@ texts! {
     REFUSED_FAULT: "A drive reports a fault: clear it first.", "驱动器报告故障，请先清除。";
     REFUSED_BUSY: "The hand writes its flash or calibrates: wait until that is over.", "灵巧手正在写闪存或校准：请等待完成。";
     REFUSED_LET_GO: "Hold the H key: hold to run is on.", "请按住 H 键：已开启“按住运行”。";
+    REFUSED_AFAR: "The hand refused its speed and force limits. If another Handscope shares it, a person there has to let you.", "灵巧手拒绝了速度与力阈值设置。若由其他 Handscope 共享，需由对方的人允许。";
     REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力阈值设置。";
     REFUSED_POSE: "The angle of a joint is unknown or old:", "有自由度的角度未知或已过时：";
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";

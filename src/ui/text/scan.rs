@@ -3,12 +3,12 @@
 use crate::app::scan::{IdRange, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
 use crate::link::scan::ScanEvent;
-use crate::link::{TouchDoubt, TouchVariant};
+use crate::link::{Owner, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::{Text, texts};
-use crate::ui::text::{errors, panels};
+use crate::ui::text::{errors, panels, words};
 
 texts! {
     FIND: "Find hands", "查找灵巧手";
@@ -41,6 +41,14 @@ texts! {
     MORE: "more", "更多";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
+    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, in Inputs, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, a person there has to let you.", "其他 Handscope 共享的灵巧手：需在对方的“输入”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
+    SHARED_FIND: "Look for them", "查找", "Joins DDS at this interface and listens. Nothing is connected to.", "在此接口加入 DDS 并监听，不会连接任何灵巧手。";
+    SHARED_STOP: "Look no more", "停止查找", "Leaves DDS; the list is cleared.", "退出 DDS，并清空列表。";
+    SHARED_NONE: "No hand is shared at this interface.", "此接口上没有共享的灵巧手。";
+    SHARED_UNREACHABLE: "Its gateway is closed, or not open to this network.", "对方的网关未打开，或未对此网络开放。";
+    SHARED_OWN: "This window shares it itself.", "由本窗口共享。";
+    NOBODY_MOVES: "nobody moves it", "无人控制";
+    FIRST_MOVES: "whoever writes first may move it", "先写入者可控制";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
 
     /// What two sheets disagree about.
@@ -69,6 +77,16 @@ texts! {
         BytePacking::LowFirst => "low first", "低字节在前";
         BytePacking::HighFirst => "high first", "高字节在前";
         BytePacking::OnePerWord => "one a word", "每字一字节";
+    }
+}
+
+/// Who moves a hand that another Handscope shares.
+pub(crate) fn mover(look: Look, owner: Owner) -> String {
+    const THERE: Text = Text::new("moved by a person there", "由对方的人控制");
+    const MOVED: Text = Text::new("moved by: {}", "控制者：{}");
+    match owner {
+        Owner::Person | Owner::Task => look.say(THERE).into(),
+        owner => look.fill(MOVED, &[&words::owner(look, owner)]),
     }
 }
 

@@ -36,6 +36,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::Fault => look.say(main::REFUSED_FAULT).into(),
         ArmRefusal::HandBusy => look.say(main::REFUSED_BUSY).into(),
         ArmRefusal::LetGo => look.say(main::REFUSED_LET_GO).into(),
+        ArmRefusal::Refused => look.say(main::REFUSED_AFAR).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
             look.told(main::REFUSED_POSE, look.say(dof(joint)))

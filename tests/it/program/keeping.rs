@@ -118,6 +118,7 @@ async fn settings_are_kept_and_setpoints_never() {
         keys,
         [
             "angle_unit",
+            "first_client_moves",
             "follow",
             "gesture_names",
             "gesture_route",

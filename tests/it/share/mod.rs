@@ -5,6 +5,8 @@ mod cli;
 mod clients;
 #[cfg(target_os = "linux")]
 mod dds;
+#[cfg(target_os = "linux")]
+mod fleet;
 mod foxglove;
 mod place;
 mod reads;

@@ -42,6 +42,11 @@ impl Wires {
         reads.iter().filter(|span| span.covers(byte)).count()
     }
 
+    /// All reads so far.
+    pub(crate) fn reads(&self) -> usize {
+        self.reads.lock().unwrap().len()
+    }
+
     /// Addresses of all writes so far.
     pub(crate) fn writes(&self) -> Vec<u16> {
         self.writes.lock().unwrap().clone()

@@ -4,9 +4,17 @@ use crate::setup::states::usb_port;
 use crate::setup::window::{Bench, LARGE, Role};
 use crate::window::layout::check;
 use egui::vec2;
+use handscope::app::action::Action;
+use handscope::app::inputs::InputAction;
 use handscope::app::scan::ScanStage;
+use handscope::hand::kinematics::Side;
+use handscope::link::Owner;
 use handscope::record::LinkState;
+use handscope::share::fleet::{self, FleetCard, FleetHand};
 use handscope::sim::{SimConfig, SimHand};
+use handscope::transport::dds::{DdsNode, DdsPlace};
+use handscope::ui::View;
+use std::time::{Duration, Instant};
 
 const PORT: &str = "/dev/ttyUSB7";
 const URL: &str = "rs485:/dev/ttyUSB7?baud=115200&id=1";
@@ -189,4 +197,97 @@ fn the_serial_port_that_was_typed_is_scanned_alone() {
     let found = &bench.state().scan.found[0];
     assert_eq!(found.endpoint.port(), Some("/dev/ttyUSB9"));
     assert!(bench.writes().is_empty());
+}
+
+/// Tells on DDS of a hand of another Handscope until the window is as wanted.
+#[cfg(target_os = "linux")]
+fn told_until(bench: &mut Bench, hand: &FleetHand, wanted: impl Fn(&Bench) -> bool) {
+    let (interface, domain) = ("127.0.0.1".into(), 0);
+    let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
+    let writer = node.writer(&fleet::topic()).unwrap();
+    let patience = Instant::now() + Duration::from_secs(20);
+    while !wanted(bench) {
+        assert!(Instant::now() < patience, "{:?}", bench.state().fleet);
+        let _is_sent = writer.send(hand.message());
+        bench.run(100);
+        // Its way through the sockets takes real time.
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_one() {
+    let mut bench = at_connection(SimConfig::default());
+    assert_eq!(bench.state().fleet.interface(), None);
+    let mut hand = FleetHand {
+        card: FleetCard {
+            host: "lab".into(),
+            name: "their hand".into(),
+            side: Side::Left,
+            at: None,
+            first_may_move: false,
+        },
+        state: LinkState::Fault,
+        owner: Some(Owner::Gamepad),
+    };
+    bench.type_into("Interface of DDS", "nowhere0");
+    bench.click_button("Look for them");
+    bench.run(100);
+    assert!(!bench.texts_with("network interface nowhere0").is_empty());
+    bench.type_into("Interface of DDS", "127.0.0.1");
+    bench.click_button("Look for them");
+    bench.run(100);
+    told_until(&mut bench, &hand, |bench| bench.shows("their hand · lab"));
+    assert!(bench.is_disabled(Role::Button, "Connect: their hand"));
+    assert!(bench.shows("Left hand · moved by: Gamepad"));
+    hand.card.at = "127.0.0.1:6111".parse().ok();
+    hand.state = LinkState::Monitoring;
+    let is_open = |bench: &Bench| !bench.is_disabled(Role::Button, "Connect: their hand");
+    told_until(&mut bench, &hand, is_open);
+    bench.click("Connect: their hand");
+    bench.run(100);
+    let endpoint = bench.state().hand().endpoint.clone();
+    assert_eq!(endpoint, Some("tcp:127.0.0.1:6111".parse().unwrap()));
+    assert!(bench.writes().is_empty());
+    bench.run(2500);
+    assert!(
+        !bench.shows("their hand · lab"),
+        "nobody tells of it any more"
+    );
+    bench.click_button("Look no more");
+    bench.run(100);
+    assert_eq!(bench.state().fleet.interface(), None);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_window_tells_of_its_own_shared_hand_and_does_not_connect_to_it() {
+    let mut bench = Bench::live();
+    for action in [
+        InputAction::Share("127.0.0.1:0".parse().ok()),
+        InputAction::JoinDds(Some("127.0.0.1".into())),
+    ] {
+        bench.act(Action::Input(action));
+    }
+    bench.show(View::Connection);
+    bench.run(100);
+    bench.click_button("Look for them");
+    let at = bench.state().hand().inputs.gateway_at;
+    let is_own = |bench: &Bench| {
+        let hands = &bench.state().fleet.hands;
+        hands.iter().any(|hand| hand.card.at == at)
+    };
+    let patience = Instant::now() + Duration::from_secs(20);
+    while !is_own(&bench) {
+        assert!(Instant::now() < patience);
+        bench.run(100);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let name = bench.state().hand().label.name.clone();
+    assert!(
+        bench
+            .all_disabled(&format!("Connect: {name}"))
+            .contains(&true)
+    );
 }

@@ -1,15 +1,19 @@
 //! `share`: one hand for several programs, over Modbus TCP, DDS and for live viewers, until a person ends it.
 
-use crate::cli::dds::DdsArgs;
+pub(crate) mod dds;
+pub(crate) mod fleet;
+
 use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{number, side};
 use crate::cli::session;
+use crate::cli::share::dds::DdsArgs;
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
 use crate::record::file::Opening;
 use crate::record::{Disarmed, LinkState};
+use crate::share::fleet::FleetCard;
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
     ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
@@ -74,7 +78,13 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     for (way, address) in ways {
         out.line(&format!("ready {way} {address}"))?;
     }
-    let dds = args.dds.open(&link, args.side)?;
+    let card = FleetCard {
+        side: args.side,
+        at: gateway.as_ref().map(Gateway::address),
+        first_may_move: args.writers,
+        ..args.dds.card(&args.hand)
+    };
+    let dds = args.dds.open(&link, card)?;
     if let Some(dds) = &dds {
         out.line(&dds.ready())?;
     }

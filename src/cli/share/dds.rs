@@ -5,10 +5,12 @@ use crate::cli::parse::number;
 use crate::hand::kinematics::Side;
 use crate::link::LinkHandle;
 use crate::share::dds::{DdsPublisher, DdsTold};
+use crate::share::fleet::{self, FleetCard, FleetTeller};
+use crate::transport::Endpoint;
 use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
 
 /// Nobody outside of this computer, unless a person says so.
-const LOOPBACK: &str = "127.0.0.1";
+pub(crate) const LOOPBACK: &str = "127.0.0.1";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct DdsArgs {
@@ -19,9 +21,12 @@ pub(crate) struct DdsArgs {
     /// With --dds: the domain, 0 to 232; Unitree's simulation uses 1
     #[arg(long, value_name = "NUMBER", requires = "dds", default_value = "0", value_parser = domain)]
     domain: u16,
+    /// With --dds: what other Handscopes' lists call the hand [default: its URL]
+    #[arg(long, value_name = "NAME", requires = "dds")]
+    name: Option<String>,
 }
 
-fn domain(text: &str) -> Result<u16, String> {
+pub(crate) fn domain(text: &str) -> Result<u16, String> {
     number(text, 0..=DOMAIN_MAX, "a domain of 0 to 232")
 }
 
@@ -29,11 +34,27 @@ fn domain(text: &str) -> Result<u16, String> {
 pub(crate) struct DdsOut {
     pub(crate) node: DdsNode,
     publisher: DdsPublisher,
+    _teller: FleetTeller,
 }
 
 impl DdsArgs {
+    /// What is said of this hand, a right one without a gateway.
+    pub(crate) fn card(&self, hand: &Endpoint) -> FleetCard {
+        FleetCard {
+            host: fleet::host(),
+            name: self.name.clone().unwrap_or_else(|| hand.to_string()),
+            side: Side::Right,
+            at: None,
+            first_may_move: false,
+        }
+    }
+
     /// Tells this hand from now on, if the person wants it.
-    pub(crate) fn open(&self, link: &LinkHandle, side: Side) -> anyhow::Result<Option<DdsOut>> {
+    pub(crate) fn open(
+        &self,
+        link: &LinkHandle,
+        card: FleetCard,
+    ) -> anyhow::Result<Option<DdsOut>> {
         let Some(interface) = &self.dds else {
             return Ok(None);
         };
@@ -47,8 +68,12 @@ impl DdsArgs {
                 node.address()
             ));
         }
-        let publisher = DdsPublisher::open(&node, link, side)?;
-        Ok(Some(DdsOut { node, publisher }))
+        let publisher = DdsPublisher::open(&node, link, card.side)?;
+        Ok(Some(DdsOut {
+            _teller: FleetTeller::open(&node, link, card)?,
+            publisher,
+            node,
+        }))
     }
 }
 

@@ -1,0 +1,93 @@
+//! Listens to who tells of hands.
+
+use crate::link::{Clock, Wake};
+use crate::share::fleet::{FleetBook, FleetHand, topic};
+use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
+use std::net::Ipv4Addr;
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::task::AbortHandle;
+use tokio::time::interval;
+
+/// How often the list is looked through, and may change for those who look at it.
+const SHOWN_EACH: Duration = Duration::from_millis(100);
+
+/// The list of hands, kept. Dropped, nobody listens any more.
+#[derive(Debug)]
+pub struct FleetList {
+    interface: Ipv4Addr,
+    shown: watch::Receiver<Vec<FleetHand>>,
+    abort: AbortHandle,
+}
+
+impl Drop for FleetList {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl FleetList {
+    /// Listens from now on; `wake` is called when the list changed. Must be called within a tokio runtime.
+    ///
+    /// # Errors
+    /// [`DdsError`], if the library does not make the reader.
+    pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Result<Self, DdsError> {
+        let messages = node.reader(&topic())?;
+        let (told, shown) = watch::channel(Vec::new());
+        let interface = node.address();
+        let listening = listen(messages, interface, clock, move |list| {
+            told.send_replace(list);
+            wake();
+        });
+        Ok(Self {
+            interface,
+            shown,
+            abort: tokio::spawn(listening).abort_handle(),
+        })
+    }
+
+    /// The address of the interface at which it listens.
+    #[must_use]
+    pub const fn interface(&self) -> Ipv4Addr {
+        self.interface
+    }
+
+    /// The hands that are there now, by computer and name, if that changed since the last call.
+    pub fn news(&mut self) -> Option<Vec<FleetHand>> {
+        let changed = self.shown.has_changed().unwrap_or_default();
+        changed.then(|| self.shown.borrow_and_update().clone())
+    }
+
+    /// The same, once it changed; `None` once nobody listens.
+    pub async fn changed(&mut self) -> Option<Vec<FleetHand>> {
+        self.shown.changed().await.ok()?;
+        Some(self.shown.borrow_and_update().clone())
+    }
+}
+
+async fn listen(
+    mut messages: mpsc::Receiver<DdsMessage>,
+    interface: Ipv4Addr,
+    clock: Clock,
+    show: impl Fn(Vec<FleetHand>),
+) {
+    let mut book = FleetBook::default();
+    let mut tick = interval(SHOWN_EACH);
+    let mut is_new = false;
+    loop {
+        tokio::select! {
+            message = messages.recv() => {
+                let Some(message) = message else { return };
+                if let Some(hand) = FleetHand::parse(&message.bytes, interface) {
+                    is_new |= book.take(message.from, hand, clock.now());
+                }
+            }
+            _ = tick.tick() => {
+                is_new |= book.sweep(clock.now());
+                if std::mem::take(&mut is_new) {
+                    show(book.list());
+                }
+            }
+        }
+    }
+}

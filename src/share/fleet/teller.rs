@@ -1,0 +1,91 @@
+//! Tells of one hand that is shared.
+
+use crate::link::{LinkHandle, LinkStatus};
+use crate::share::fleet::{FleetCard, FleetHand, TOLD_EACH, reachable, topic};
+use crate::transport::dds::{DdsError, DdsNode, DdsWriter};
+use std::net::Ipv4Addr;
+use tokio::sync::watch;
+use tokio::task::AbortHandle;
+use tokio::time::sleep;
+
+/// Tells of a hand. Dropped, or once the link is closed, it tells nothing any more.
+#[derive(Debug)]
+pub struct FleetTeller {
+    card: watch::Sender<FleetCard>,
+    abort: AbortHandle,
+}
+
+impl Drop for FleetTeller {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl FleetTeller {
+    /// Tells of this hand from now on, with what its link says of itself; of its gateway only if those who listen reach it. Must be
+    /// called within a tokio runtime.
+    ///
+    /// # Errors
+    /// [`DdsError`], if the library does not make the writer.
+    pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
+        let telling = Telling {
+            writer: node.writer(&topic())?,
+            interface: node.address(),
+            status: link.observe().status,
+        };
+        let (card, cards) = watch::channel(card);
+        Ok(Self {
+            card,
+            abort: tokio::spawn(telling.run(cards)).abort_handle(),
+        })
+    }
+
+    /// Says this of it from now on.
+    pub fn say(&self, card: FleetCard) {
+        self.card.send_if_modified(|said| {
+            let is_new = *said != card;
+            *said = card;
+            is_new
+        });
+    }
+}
+
+struct Telling {
+    writer: DdsWriter,
+    interface: Ipv4Addr,
+    status: watch::Receiver<LinkStatus>,
+}
+
+impl Telling {
+    async fn run(mut self, mut cards: watch::Receiver<FleetCard>) {
+        let of = |status: &LinkStatus| (status.state, status.holder.map(|holder| holder.owner));
+        loop {
+            let mut card = cards.borrow_and_update().clone();
+            card.at = card.at.and_then(|at| reachable(at, self.interface));
+            let told = of(&self.status.borrow_and_update());
+            let (state, owner) = told;
+            // One that is lost is told again soon.
+            let _is_sent = self.writer.send(FleetHand { card, state, owner }.message());
+            let is_open = tokio::select! {
+                changed = self.status.wait_for(|status| of(status) != told) => changed.is_ok(),
+                changed = cards.changed() => changed.is_ok(),
+                () = sleep(TOLD_EACH) => true,
+            };
+            if !is_open {
+                return;
+            }
+        }
+    }
+}
+
+/// What this computer is called.
+#[must_use]
+pub fn host() -> String {
+    #[cfg(unix)]
+    let name = nix::unistd::gethostname()
+        .ok()
+        .map(|name| name.to_string_lossy().into_owned());
+    #[cfg(not(unix))]
+    let name = std::env::var("COMPUTERNAME").ok();
+    name.unwrap_or_default()
+}

@@ -1,0 +1,135 @@
+//! Hands that other Handscopes share: where to look for them, which are there, and the button that watches one.
+
+use crate::app::action::Action;
+use crate::hand::kinematics::Side;
+use crate::share::fleet::{FleetHand, reachable};
+use crate::ui::connection::link_words::state_color;
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::text::{Text, errors, inputs, main, panels, scan};
+use crate::ui::theme;
+use egui::{Ui, vec2};
+
+/// What was typed.
+#[derive(Debug)]
+pub(crate) struct SharedPanel {
+    interface: String,
+}
+
+impl Default for SharedPanel {
+    /// This computer only, unless a person says otherwise.
+    fn default() -> Self {
+        Self {
+            interface: "127.0.0.1".into(),
+        }
+    }
+}
+
+impl SharedPanel {
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        kit::card_ui(ui, look, |ui| {
+            kit::head_ui(ui, look, look.say(scan::SHARED), |_| ());
+            kit::say_ui(ui, look.tip(scan::SHARED), look.palette.muted);
+            self.switch_ui(ui, pane);
+            if let Some(error) = &pane.state.fleet.refused {
+                let text = errors::dds(look, error);
+                Label::new(&text, look.palette.warn).wrap().ui(ui);
+            }
+            if pane.state.fleet.interface().is_some() && pane.state.fleet.hands.is_empty() {
+                Label::muted(look, scan::SHARED_NONE).wrap().ui(ui);
+            }
+            for hand in &pane.state.fleet.hands {
+                hand_ui(ui, pane, hand);
+            }
+        });
+    }
+
+    fn switch_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let is_on = pane.state.fleet.interface().is_some();
+        let text = if is_on {
+            scan::SHARED_STOP
+        } else {
+            scan::SHARED_FIND
+        };
+        ui.horizontal(|ui| {
+            let width = kit::text_width(ui, look.say(text), theme::body()) + 2.0 * theme::PAD;
+            let width = ui.available_width() - width - theme::GAP;
+            ui.add_enabled_ui(!is_on, |ui| {
+                ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
+                    let name = look.say(inputs::DDS_AT);
+                    kit::edit_ui(ui, (name, name), &mut self.interface)
+                });
+            });
+            let interface = self.interface.trim().to_owned();
+            let missing = interface.is_empty() && !is_on;
+            let missing = missing.then(|| look.say(inputs::INTERFACE_WRONG));
+            let action = Action::FindShared((!is_on).then_some(interface));
+            let button = Button::said(look, text).disabled(missing);
+            button.sends(ui, pane, action);
+        });
+    }
+}
+
+/// A hand with the button that connects to its gateway.
+fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>, hand: &FleetHand) {
+    let look = pane.look;
+    let card = &hand.card;
+    let endpoint = hand.endpoint();
+    let is_now = endpoint.is_some() && pane.state.hand().endpoint == endpoint;
+    let (text, weight) = match is_now && pane.state.hand().link.state.is_live() {
+        true => (scan::CONNECTED, Weight::Chosen),
+        false => (panels::CONNECT, Weight::Normal),
+    };
+    ui.horizontal(|ui| {
+        let name = format!("{}: {}", look.say(text), card.name);
+        let refusal = refusal(pane, hand).map(|reason| look.say(reason));
+        let button = Button::said(look, text).named(&name).disabled(refusal);
+        let clicked = button.weight(weight).large().ui(ui, look).clicked();
+        if let Some(endpoint) = endpoint.filter(|_| clicked && !is_now) {
+            pane.actions.push(Action::Connect(endpoint));
+        }
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let title = format!("{} · {}", card.name, card.host);
+            Label::new(&title, look.palette.text).wrap().ui(ui);
+            ui.horizontal_wrapped(|ui| {
+                let state = look.say(main::link_state(hand.state));
+                Label::new(state, state_color(look, hand.state))
+                    .small()
+                    .ui(ui);
+                let side = look.say(match card.side {
+                    Side::Left => panels::LEFT_HAND,
+                    Side::Right => panels::RIGHT_HAND,
+                });
+                let owner = match hand.owner {
+                    Some(owner) => scan::mover(look, owner),
+                    None => look.say(scan::NOBODY_MOVES).to_owned(),
+                };
+                let first = card.first_may_move.then(|| look.say(scan::FIRST_MOVES));
+                let at = card.at.map(|at| at.to_string());
+                let rest = [
+                    Some(side.to_owned()),
+                    Some(owner),
+                    first.map(str::to_owned),
+                    at,
+                ];
+                let rest: Vec<String> = rest.into_iter().flatten().collect();
+                let rest = rest.join(" · ");
+                Label::new(&rest, look.palette.muted).small().wrap().ui(ui);
+            });
+        });
+    });
+}
+
+/// Why this hand cannot be connected to.
+fn refusal(pane: &Pane<'_>, hand: &FleetHand) -> Option<Text> {
+    let Some(at) = hand.card.at else {
+        return Some(scan::SHARED_UNREACHABLE);
+    };
+    let interface = pane.state.fleet.interface()?;
+    let gateways = pane.state.hands.iter().map(|own| own.inputs.gateway_at);
+    let mut own = gateways.flatten().map(|at| reachable(at, interface));
+    own.any(|own| own == Some(at)).then_some(scan::SHARED_OWN)
+}
