@@ -68,7 +68,7 @@ impl State {
             Action::FactoryReset => hand.open_reset(),
             Action::CalibrateForce => hand.open_calibration(),
             Action::Procedure(action) => hand.procedure_action(action, env),
-            Action::Input(action) => hand.input_action(action, settings, env),
+            Action::Input(action) => self.input_action(action, env),
             Action::Tare(finger) => {
                 hand.tare(finger, notices);
                 hand.keep_tare(settings);

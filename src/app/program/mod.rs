@@ -142,6 +142,7 @@ impl App {
         let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
         told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
+        self.state.stop_led();
         self.state.sweep();
         self.exhibit.tick(&mut self.state, &self.env, now);
         let told = self.jobs.tick(&mut self.state, &self.env);

@@ -23,6 +23,7 @@ pub(super) fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action>
                     InputAction::GrantStream
                         | InputAction::GrantDds
                         | InputAction::GrantPad
+                        | InputAction::GrantMirror
                         | InputAction::GrantClient(_)
                 )
                 | Action::Target(..)
@@ -57,6 +58,7 @@ mod tests {
                 Action::Input(InputAction::GrantStream),
                 Action::Input(InputAction::GrantPad),
                 Action::Input(InputAction::GrantDds),
+                Action::Input(InputAction::GrantMirror),
                 Action::Target(Dof::Index, Angle::MAX),
                 Action::Preset(Preset::Open),
                 Action::Gesture(Gesture::MIN),
