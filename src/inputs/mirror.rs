@@ -4,8 +4,8 @@
 use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
 use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
+use crate::link::Records;
 use crate::link::rate::EventRate;
-use crate::link::{LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
 use tokio::sync::{mpsc, watch};
 use tokio::task::AbortHandle;
@@ -17,6 +17,8 @@ pub struct MirrorScale(f32);
 impl MirrorScale {
     /// Smallest and largest share.
     pub const RANGE: (f32, f32) = (0.2, 1.0);
+    /// The same in percent.
+    pub const PERCENT: [u8; 2] = [20, 100];
     /// As the other hand is.
     pub const WHOLE: Self = Self(1.0);
 
@@ -25,6 +27,18 @@ impl MirrorScale {
     pub fn new(share: f32) -> Option<Self> {
         let (least, most) = Self::RANGE;
         (least..=most).contains(&share).then_some(Self(share))
+    }
+
+    /// A share of so many percent within [`Self::PERCENT`].
+    #[must_use]
+    pub fn of_percent(percent: u8) -> Option<Self> {
+        Self::new(f32::from(percent) / 100.0)
+    }
+
+    /// This share in percent.
+    #[must_use]
+    pub fn percent(self) -> f32 {
+        (self.0 * 100.0).round()
     }
 
     /// Where a joint goes while the same joint of the other hand is here: its way from open, times the share.
@@ -54,10 +68,9 @@ impl MirrorView {
     }
 }
 
-/// Another hand that is watched. Dropped, it is watched no more.
+/// Another hand that is watched; its link is not kept open by that. Dropped, it is watched no more.
 #[derive(Debug)]
 pub struct MirrorSource {
-    leader: LinkHandle,
     view: watch::Receiver<MirrorView>,
     outlet: OfferOutlet,
     abort: AbortHandle,
@@ -72,12 +85,11 @@ impl Drop for MirrorSource {
 impl MirrorSource {
     /// Watches from now on. The links of both hands must count from the same clock. Must be called within a tokio runtime.
     #[must_use]
-    pub fn open(leader: LinkHandle, scale: MirrorScale) -> Self {
+    pub fn open(leader: Records, scale: MirrorScale) -> Self {
         let (told, view) = watch::channel(MirrorView::default());
         let outlet = OfferOutlet::default();
-        let watching = watch(leader.records(), scale, told, outlet.clone());
+        let watching = watch(leader, scale, told, outlet.clone());
         Self {
-            leader,
             view,
             outlet,
             abort: tokio::spawn(watching).abort_handle(),
@@ -90,10 +102,10 @@ impl MirrorSource {
         *self.view.borrow()
     }
 
-    /// Why it does not answer, if it does not.
+    /// True once its link was closed: nothing is heard of it any more.
     #[must_use]
-    pub fn trouble(&self) -> Option<LinkTrouble> {
-        self.leader.status().trouble
+    pub fn is_over(&self) -> bool {
+        self.abort.is_finished()
     }
 
     /// Its angles as targets from now on, for whoever follows; whoever did before does no more.
@@ -159,6 +171,11 @@ mod tests {
             let scale = MirrorScale::new(share).unwrap();
             let leader = Angle::new(leader).unwrap();
             assert_eq!(scale.aim(leader).get(), aim, "{share} of {leader:?}");
+        }
+        for percent in 0..=u8::MAX {
+            let scale = MirrorScale::of_percent(percent);
+            assert_eq!(scale.is_some(), (20..=100).contains(&percent), "{percent}");
+            assert!(scale.is_none_or(|scale| scale.percent() == f32::from(percent)));
         }
         for share in [0.19, 1.01, -0.5, f32::NAN, f32::INFINITY] {
             assert_eq!(MirrorScale::new(share), None, "{share}");

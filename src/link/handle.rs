@@ -13,7 +13,7 @@ use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
 use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Calibrated, Disarmed, Record, Reset, Saved, Written};
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
@@ -328,6 +328,12 @@ impl LinkHandle {
         }
     }
 
+    /// What stops the hand from elsewhere without keeping the link open.
+    #[must_use]
+    pub fn stopper(&self) -> LinkStopper {
+        LinkStopper(Arc::downgrade(&self.0))
+    }
+
     /// The memory as it was read last.
     pub(crate) fn image(&self) -> watch::Receiver<RegisterImage> {
         self.0.image.clone()
@@ -356,6 +362,22 @@ pub struct LinkObserver {
     pub status: watch::Receiver<LinkStatus>,
     /// Its statistics.
     pub stats: watch::Receiver<LinkStats>,
+}
+
+/// Stops a hand from elsewhere. The wire closes with the last handle, whoever still has this.
+#[derive(Debug, Clone)]
+pub struct LinkStopper(Weak<LinkShared>);
+
+impl LinkStopper {
+    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise.
+    pub fn stop_if_moved(&self) {
+        let Some(link) = self.0.upgrade().map(LinkHandle) else {
+            return;
+        };
+        if link.status().holder.is_some() {
+            link.stop();
+        }
+    }
 }
 
 /// What happens at a hand, one record after the other. A reader that is too slow loses the oldest, and they are counted.

@@ -32,7 +32,7 @@ mod wanted_tests;
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
 pub use entries::LinkEntries;
-pub use handle::{LinkHandle, LinkObserver, Records, open};
+pub use handle::{LinkHandle, LinkObserver, LinkStopper, Records, open};
 pub use latency::Ticks;
 pub use lease::{HoldToRun, Lease, LeaseHolder, LeaseRefusal, Owner};
 pub use poll::line_time::line_time;

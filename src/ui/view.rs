@@ -80,3 +80,16 @@ impl View {
         Self::ALL.into_iter().find(|view| view.name() == name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_view_is_found_by_its_name() {
+        for view in View::ALL {
+            assert_eq!(View::by_name(view.name()), Some(view));
+        }
+        assert_eq!(View::by_name("LIVE"), None);
+    }
+}

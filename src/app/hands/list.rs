@@ -68,6 +68,18 @@ impl HandList {
         self.iter_mut().find(|hand| hand.label.slot == slot)
     }
 
+    /// True if this hand would lead itself by leading that one, directly or over others.
+    #[must_use]
+    pub fn is_circle(&self, leader: SlotId, follower: SlotId) -> bool {
+        let before = |slot| {
+            let mut all = self.iter();
+            let hand = all.find(|hand| hand.label.slot == slot)?;
+            hand.inputs.leader()
+        };
+        let line = std::iter::successors(Some(leader), |slot| before(*slot));
+        line.take(HANDS_MAX).any(|slot| slot == follower)
+    }
+
     /// The shown hand, and where poses go to all, the others of which this is so.
     pub(crate) fn with_shown(
         &mut self,

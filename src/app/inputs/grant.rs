@@ -8,10 +8,28 @@ use crate::app::settings::Settings;
 use crate::hand::{Angle, Dof, PerDof};
 use crate::inputs::Offer;
 use crate::inputs::follow::HOLDS_AFTER;
-use crate::link::Owner;
+use crate::link::{LeaseRefusal, LinkStopper, Owner};
 use crate::record::{ArmRefusal, Disarmed};
-use crate::tasks::follow::{FollowStart, FollowTerms, follow};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use tokio::sync::{mpsc, watch};
+
+/// A source that may move the hand.
+struct Granted {
+    owner: Owner,
+    offers: mpsc::Receiver<Offer>,
+    /// The hand that leads, if one does.
+    leader: Option<LinkStopper>,
+}
+
+impl Granted {
+    const fn source(owner: Owner, offers: mpsc::Receiver<Offer>) -> Self {
+        Self {
+            owner,
+            offers,
+            leader: None,
+        }
+    }
+}
 
 impl HandState {
     /// Nobody is given the right to move a hand that is being left, under a card, or in a series.
@@ -27,8 +45,8 @@ impl HandState {
             return;
         };
         if self.now.since(last) < HOLDS_AFTER {
-            let offers = source.follow();
-            self.follow_source(Owner::Stream(sender), offers, settings, env);
+            let granted = Granted::source(Owner::Stream(sender), source.follow());
+            self.follow_source(granted, settings, env);
         }
     }
 
@@ -37,8 +55,8 @@ impl HandState {
             return;
         };
         if source.view().name.is_some() {
-            let offers = source.follow();
-            self.follow_source(Owner::Gamepad, offers, settings, env);
+            let granted = Granted::source(Owner::Gamepad, source.follow());
+            self.follow_source(granted, settings, env);
         }
     }
 
@@ -48,19 +66,28 @@ impl HandState {
         };
         let last = joined.source.view().sender.map(|(_, last)| last);
         if last.is_some_and(|last| self.now.since(last) < HOLDS_AFTER) {
-            let offers = joined.source.follow();
-            self.follow_source(Owner::Dds, offers, settings, env);
+            let granted = Granted::source(Owner::Dds, joined.source.follow());
+            self.follow_source(granted, settings, env);
+        }
+    }
+
+    /// Lets the hand that is watched lead this one, which it must not follow itself.
+    pub(in crate::app) fn grant_mirror(&mut self, settings: &Settings, env: &Env) {
+        let Some(mirror) = &self.inputs.mirror else {
+            return;
+        };
+        if mirror.source.view().is_fresh(self.now) {
+            let granted = Granted {
+                owner: Owner::Mirror,
+                offers: mirror.source.follow(),
+                leader: Some(mirror.stopper.clone()),
+            };
+            self.follow_source(granted, settings, env);
         }
     }
 
     /// Lets this source move the hand; what moved it before does not any more.
-    fn follow_source(
-        &mut self,
-        owner: Owner,
-        offers: mpsc::Receiver<Offer>,
-        settings: &Settings,
-        env: &Env,
-    ) {
+    fn follow_source(&mut self, granted: Granted, settings: &Settings, env: &Env) {
         let refusal = self.arm_refusal();
         if !self.may_grant() || refusal.is_some_and(|refusal| refusal != ArmRefusal::LetGo) {
             return;
@@ -69,6 +96,11 @@ impl HandState {
             run.leave();
         }
         let Some(open) = &self.open else { return };
+        let Granted {
+            owner,
+            offers,
+            leader,
+        } = granted;
         let lease = open.link.grant(owner);
         let (terms, watched) = watch::channel(self.follow_terms(settings));
         let start = FollowStart {
@@ -80,7 +112,11 @@ impl HandState {
         };
         let link = open.link.clone();
         let task = Running::start(env, |views| async move {
-            follow(&link, start, offers, |view| views.tell(view)).await
+            let end = follow(&link, start, offers, |view| views.tell(view)).await;
+            if let Some(leader) = leader.filter(|_| stops_leader(end)) {
+                leader.stop_if_moved();
+            }
+            end
         });
         self.inputs.follow = Some(FollowRun {
             owner,
@@ -90,14 +126,14 @@ impl HandState {
         });
     }
 
-    /// A click here ends whoever moves the hand from outside.
-    pub(super) fn take_back(&mut self) {
+    /// Ends whoever moves the hand from outside, for this reason; the hand is stopped.
+    pub(in crate::app) fn end_outside(&self, why: Disarmed) {
         let Some(open) = &self.open else { return };
         if let Some(holder) = open.link.status().holder
             && holder.owner.is_outside()
         {
             // One that ended meanwhile has stopped already.
-            let _done = open.link.give_back(holder.lease, Disarmed::Person);
+            let _done = open.link.give_back(holder.lease, why);
         }
     }
 
@@ -125,5 +161,14 @@ impl HandState {
     pub fn outside_owner(&self) -> Option<Owner> {
         let holder = self.link.holder.filter(|_| self.link.state.is_live())?;
         holder.owner.is_outside().then_some(holder.owner)
+    }
+}
+
+/// True if a hand that was led is lost or stopped, so that the one that leads must not go on alone. One that a person took back, or
+/// let another move, may.
+const fn stops_leader(end: FollowEnd) -> bool {
+    match end {
+        FollowEnd::Lease(LeaseRefusal::Ended(why)) => !matches!(why, Disarmed::Person),
+        FollowEnd::Lease(LeaseRefusal::Taken(_)) | FollowEnd::Silent | FollowEnd::Gone => false,
     }
 }

@@ -2,11 +2,15 @@
 //! belongs to one connection with one hand.
 
 mod grant;
+pub(crate) mod mirror;
 mod work;
 
+use crate::app::hand::slot::SlotId;
+use crate::app::inputs::mirror::HandMirror;
 use crate::app::running::Running;
 use crate::inputs::dds::source::{DdsSource, DdsView};
 use crate::inputs::follow::FollowLimits;
+use crate::inputs::mirror::MirrorScale;
 use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
@@ -34,12 +38,16 @@ pub enum InputAction {
     Show(Option<SocketAddr>),
     /// Tell the hand on DDS and listen to programs there, at this interface, or no more.
     JoinDds(Option<String>),
+    /// Watch the hand of this slot, of which this share would be followed, or none any more. Only reads it.
+    Mirror(Option<(SlotId, MirrorScale)>),
     /// Let whoever sends lines move the hand.
     GrantStream,
     /// Let the program that sends over DDS move the hand.
     GrantDds,
     /// Let the gamepad move the hand.
     GrantPad,
+    /// Let the hand that is watched lead this one.
+    GrantMirror,
     /// Let a client of the gateway move the hand.
     GrantClient(ClientId),
     /// Whoever moves the hand from outside may no more; it is stopped.
@@ -90,6 +98,8 @@ pub struct HandInputs {
     pub(crate) gateway: Option<Gateway>,
     pub(crate) foxglove: Option<FoxgloveServer>,
     pub(crate) dds: Option<JoinedDds>,
+    /// The other hand that is watched.
+    pub mirror: Option<HandMirror>,
     /// Where lines are listened for.
     pub stream_at: Option<SocketAddr>,
     /// What came in.
@@ -153,11 +163,23 @@ impl HandInputs {
         self.clients = clients.unwrap_or_default();
         let viewed = |server: &FoxgloveServer| (server.address(), server.viewers().len());
         self.foxglove_at = self.foxglove.as_ref().map(viewed);
+        self.mirror.take_if(|mirror| mirror.is_over());
+        if let Some(mirror) = &mut self.mirror {
+            mirror.look();
+        }
         self.dds_view = self.dds.as_ref().map(|joined| DdsState {
             at: joined.node.address(),
             told: joined.publisher.told(),
             view: joined.source.view(),
         });
+    }
+
+    /// The slot of the hand that leads this one now.
+    #[must_use]
+    pub fn leader(&self) -> Option<SlotId> {
+        let run = self.follow.as_ref()?;
+        let mirror = self.mirror.as_ref()?;
+        (run.owner == Owner::Mirror).then_some(mirror.leader)
     }
 
     /// True while something from outside is listened to or served: a badge says so.

@@ -5,12 +5,14 @@ use crate::app::hand::HandState;
 use crate::app::inputs::{InputAction, InputKind, JoinedDds, OpenRefusal};
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::settings::Settings;
+use crate::app::state::State;
 use crate::inputs::dds::ctrl;
 use crate::inputs::dds::source::{DdsSource, DdsSourceConfig};
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
+use crate::record::Disarmed;
 use crate::record::file::Opening;
 use crate::share::dds::DdsPublisher;
 use crate::share::fleet::{self, FleetCard, FleetTeller};
@@ -23,35 +25,43 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-impl HandState {
-    /// Does what a person asked for.
-    pub(crate) fn input_action(&mut self, action: InputAction, settings: &mut Settings, env: &Env) {
+impl State {
+    /// Does what a person asked for at the shown hand.
+    pub(crate) fn input_action(&mut self, action: InputAction, env: &Env) {
+        let Self {
+            hands, settings, ..
+        } = self;
+        let hand = hands.shown_mut();
         match action {
-            InputAction::Listen(place) => self.listen(place, env),
-            InputAction::ReadPad(on) => self.read_pad(on, settings, env),
-            InputAction::Share(place) => self.share(place, settings, env),
-            InputAction::Show(place) => self.show_viewers(place, env),
-            InputAction::JoinDds(interface) => self.join_dds(interface, settings, env),
-            InputAction::GrantStream => self.grant_stream(settings, env),
-            InputAction::GrantDds => self.grant_dds(settings, env),
-            InputAction::GrantPad => self.grant_pad(settings, env),
+            InputAction::Listen(place) => hand.listen(place, env),
+            InputAction::ReadPad(on) => hand.read_pad(on, settings, env),
+            InputAction::Share(place) => hand.share(place, settings, env),
+            InputAction::Show(place) => hand.show_viewers(place, env),
+            InputAction::JoinDds(interface) => hand.join_dds(interface, settings, env),
+            InputAction::Mirror(wanted) => self.watch_hand(wanted, env),
+            InputAction::GrantMirror => self.let_lead(env),
+            InputAction::GrantStream => hand.grant_stream(settings, env),
+            InputAction::GrantDds => hand.grant_dds(settings, env),
+            InputAction::GrantPad => hand.grant_pad(settings, env),
             InputAction::GrantClient(client) => {
-                if let Some(gateway) = self.inputs.gateway.as_ref().filter(|_| self.may_grant()) {
+                if let Some(gateway) = hand.inputs.gateway.as_ref().filter(|_| hand.may_grant()) {
                     gateway.grant(client);
                 }
             }
-            InputAction::TakeBack => self.take_back(),
+            InputAction::TakeBack => hand.end_outside(Disarmed::Person),
             InputAction::Limit(limits) => settings.follow = limits.within(),
             InputAction::Map(map) => {
                 settings.pad_map = Some(file::write(&map));
                 // What is held has to be pressed anew.
-                if self.inputs.pad.is_some() {
-                    self.read_pad(true, settings, env);
+                if hand.inputs.pad.is_some() {
+                    hand.read_pad(true, settings, env);
                 }
             }
         }
     }
+}
 
+impl HandState {
     fn listen(&mut self, place: Option<StreamPlace>, env: &Env) {
         self.inputs.refused = None;
         self.inputs.stream = None;

@@ -78,7 +78,7 @@ pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
     Dds(DdsSource, DdsOut),
     Pad(PadSource),
-    Mirror(Endpoint, MirrorSource),
+    Mirror(Endpoint, LinkHandle, MirrorSource),
 }
 
 impl FollowSource {
@@ -93,8 +93,8 @@ impl FollowSource {
             let leader = session::open(other, PollRates::default(), clock);
             session::answered(&leader, other).await?;
             let scale = args.scale.unwrap_or(MirrorScale::WHOLE);
-            let source = MirrorSource::open(leader, scale);
-            return Ok(Self::Mirror(other.clone(), source));
+            let source = MirrorSource::open(leader.records(), scale);
+            return Ok(Self::Mirror(other.clone(), leader, source));
         }
         let card = FleetCard {
             side: args.side,
@@ -144,7 +144,7 @@ impl FollowSource {
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
             Self::Dds(_, out) => out.ready(),
             Self::Pad(_) => "ready gamepad".into(),
-            Self::Mirror(other, _) => format!("ready mirror {other}"),
+            Self::Mirror(other, ..) => format!("ready mirror {other}"),
         }
     }
 
@@ -153,7 +153,7 @@ impl FollowSource {
             Self::Stream(_, source) => source.follow(),
             Self::Dds(source, _) => source.follow(),
             Self::Pad(source) => source.follow(),
-            Self::Mirror(_, source) => source.follow(),
+            Self::Mirror(_, _, source) => source.follow(),
         }
     }
 
@@ -171,7 +171,7 @@ impl FollowSource {
                 is_fresh.then(|| (Owner::Dds, format!("the program on DDS ({sender})")))
             }
             Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
-            Self::Mirror(other, source) => {
+            Self::Mirror(other, _, source) => {
                 let is_fresh = source.view().is_fresh(now);
                 is_fresh.then(|| (Owner::Mirror, other.to_string()))
             }
@@ -221,9 +221,9 @@ impl FollowSource {
                     json!({"gamepad": view.name, "trouble": trouble, "held": view.is_held});
                 (words, object)
             }
-            Self::Mirror(other, source) => {
+            Self::Mirror(other, leader, source) => {
                 let view = source.view();
-                let trouble = source.trouble().map(|trouble| trouble.to_string());
+                let trouble = leader.status().trouble.map(|trouble| trouble.to_string());
                 // The rate of a hand that is not heard any more is none.
                 let rate_hz = view.is_fresh(now).then_some(view.rate_hz);
                 let words = match (&trouble, rate_hz) {

@@ -7,6 +7,7 @@ use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::stream::StreamPlace;
 use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
+use crate::ui::inputs::mirror_card::mirror_ui;
 use crate::ui::inputs::owner::figures_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, inputs, words};
@@ -45,10 +46,18 @@ type Place = (Option<(IpAddr, String)>, Option<Text>);
 impl SourceCards {
     /// Draws all.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
         card_ui(ui, pane, inputs::STREAM, |ui, pane| {
             self.stream_ui(ui, pane)
         });
         card_ui(ui, pane, inputs::DDS, |ui, pane| self.dds_ui(ui, pane));
+        if pane.state.hands.is_several() {
+            card_ui(ui, pane, inputs::MIRROR, |ui, pane| {
+                let missing = mirror_ui(ui, pane);
+                let source = (look.say(inputs::MIRROR), InputAction::GrantMirror);
+                grant_ui(ui, pane, source, missing);
+            });
+        }
         card_ui(ui, pane, inputs::GATEWAY, |ui, pane| {
             self.gateway_ui(ui, pane)
         });

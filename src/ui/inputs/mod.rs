@@ -1,6 +1,7 @@
 //! What besides the window moves the hand, and who reads it.
 
 mod cards;
+mod mirror_card;
 mod owner;
 mod pad_card;
 mod pad_picture;

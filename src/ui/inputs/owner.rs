@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::inputs::InputAction;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
+use crate::ui::inputs::mirror_card::leader_name;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight, format};
 use crate::ui::text::{Text, inputs, words};
 use egui::{Grid, Ui};
@@ -98,8 +99,13 @@ const fn phase(phase: FollowPhase) -> Text {
 pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let look = pane.look;
     let hand = pane.state.hand();
+    let mirror = hand.inputs.mirror.as_ref();
+    let mirror = mirror.filter(|_| owner == Owner::Mirror);
+    let leader = mirror.and_then(|mirror| leader_name(pane.state, mirror.leader));
     let name = words::owner(look, owner);
+    let name = leader.map_or(name.clone(), |leader| look.pair(&name, &leader));
     let rate = match owner {
+        Owner::Mirror => mirror.map(|mirror| mirror.view.rate_hz),
         Owner::Stream(_) => Some(hand.inputs.stream_view.intake.rate_hz),
         Owner::Dds => hand.inputs.dds_view.as_ref().map(|dds| dds.view.rate_hz),
         Owner::Gateway(address) => {

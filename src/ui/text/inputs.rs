@@ -27,6 +27,15 @@ texts! {
     RATE: "Rate", "频率";
     TAKEN_LINES: "Lines taken", "已接收";
     NOT_GRANTED: "Not followed", "未跟随";
+    MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which goes where the joints of that one are; left and right may lead each other. That one is only read. Once either is stopped or lost, both stop.", "由本窗口中的另一只手带动此手：此手跟随其关节位置，左右手均可。对那只手只读取。任一只手停下或断开，两只都会停下。";
+    LEADER: "Leading hand", "主导手";
+    NO_LEADER: "None", "无";
+    MIRROR_SCALE: "Share, %", "比例（%）", "How much of each bend of the leading hand is followed, percent:", "按此百分比跟随主导手的弯曲：";
+    CHOOSE_LEADER: "Choose the hand that leads first.", "请先选择主导手。";
+    LEADER_SILENT: "The leading hand does not answer.", "主导手没有应答。";
+    CIRCLE: "This hand leads that one already, directly or over others: hands cannot lead one another in a circle.", "此手已直接或经由其他手带动那只手：不能循环带动。";
+    ANSWERS: "answers", "有应答";
+    ANSWERS_NOT: "does not answer", "没有应答";
     GATEWAY: "Gateway", "网关", "Several Modbus TCP programs at this hand ('handscope help share'). They read; who may move the hand you say here.", "多个 Modbus TCP 程序共用此灵巧手（'handscope help share'）。它们可以读取；由谁控制在此决定。";
     GATEWAY_AT: "Address of the gateway", "网关地址";
     SHARE: "Share", "共享", "Serves Modbus TCP at this address.", "在此地址提供 Modbus TCP 服务。";

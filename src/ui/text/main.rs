@@ -26,6 +26,7 @@ texts! {
     ARM: "Arm", "使能", "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力阈值和速度发送到灵巧手。使能本身不会产生动作。";
     DISARM: "Armed", "已使能", "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     ARM_NAME: "Arm the hand", "使能灵巧手";
+    HOLD_KEY: "Hold H", "按住 H", "Hold to run is on: holding the H key arms this hand, and letting go stops every hand.", "已开启“按住运行”：按住 H 键即使能此手，松开则所有手停下。";
     DISARM_NAME: "Disarm the hand", "取消使能";
     STOP: "STOP", "停止", "Holds the pose: every joint is told to stay where it is. Space or Esc does the same; while the hand rests Esc first closes what is open.\nIt is not an emergency stop: in danger cut the 24 V supply.", "保持当前姿态：令所有自由度停在原位。空格键或 Esc 键作用相同；灵巧手静止时，Esc 先关闭已打开的内容。\n这不是急停：遇到危险请切断 24 V 电源。";
     STOP_KEYS: "Space or Esc", "空格键或 Esc";

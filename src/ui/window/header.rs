@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::sessions::SessionAction;
 use crate::app::settings::{Language, Theme};
+use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
@@ -56,10 +57,20 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let armed = pane.state.hand().is_armed();
     let refusal = pane.state.hand().arm_refusal();
-    let refusal = refusal.map(|reason| words::refusal(look, reason));
     let (text, name, weight) = match armed {
         true => (main::DISARM, main::DISARM_NAME, Weight::Armed),
         false => (main::ARM, main::ARM_NAME, Weight::Strong),
+    };
+    let (text, name, refusal) = match refusal {
+        // Only the key arms: a press here would be refused.
+        Some(ArmRefusal::LetGo) => {
+            let why = look.tip(main::HOLD_KEY).to_owned();
+            (main::HOLD_KEY, main::HOLD_KEY, Some(why))
+        }
+        refusal => {
+            let why = refusal.map(|reason| words::refusal(look, reason));
+            (text, name, why)
+        }
     };
     let button = Button::said(look, text)
         .named(look.say(name))

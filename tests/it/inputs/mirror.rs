@@ -127,7 +127,7 @@ impl Stage {
         let clock = Clock::start();
         let (leader, follower) = (Side::open(clock), Side::open(clock));
         let scale = MirrorScale::new(share).unwrap();
-        let source = MirrorSource::open(leader.link.clone(), scale);
+        let source = MirrorSource::open(leader.link.records(), scale);
         let mut stage = Self {
             clock,
             leader,

@@ -162,6 +162,37 @@ fn stop_holds_every_hand_and_that_of_a_strip_only_its_own() {
 }
 
 #[test]
+fn hold_to_run_arms_the_shown_hand_alone_and_letting_go_stops_every_hand() {
+    let mut bench = two();
+    bench.act(Action::HoldToRun(true));
+    bench.run(100);
+    let armed = |bench: &Bench| -> Vec<bool> {
+        let hands = hands(bench);
+        hands.iter().map(|hand| hand.is_armed()).collect()
+    };
+    bench.key_down(Key::H);
+    bench.run(400);
+    assert_eq!(armed(&bench), [false, true], "the shown one");
+    // While it is held, the other one is armed by its button, and both may move.
+    show(&mut bench, 0);
+    arm(&mut bench);
+    bench.run(1000);
+    assert_eq!(armed(&bench), [true, true]);
+    let before = [bench.addresses().len(), bench.addresses_at(SECOND).len()];
+    bench.key_up(Key::H);
+    bench.run(200);
+    assert_eq!(armed(&bench), [false, false]);
+    let written = [bench.addresses(), bench.addresses_at(SECOND)];
+    for (written, before) in written.iter().zip(before) {
+        assert!(written[before..].contains(&ANGLE_SET), "{written:?}");
+    }
+    bench.run(1000);
+    bench.key_down(Key::H);
+    bench.run(400);
+    assert_eq!(armed(&bench), [true, false], "the one that is shown now");
+}
+
+#[test]
 fn an_empty_slot_has_nothing_to_stop() {
     let mut bench = Bench::armed();
     bench.act(Action::Hands(HandsAction::Add));

@@ -5,6 +5,7 @@ use crate::setup::window::{ANGLE_SET, Bench, Role};
 use egui::Key;
 use handscope::app::action::Action;
 use handscope::app::inputs::InputAction;
+use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
 use handscope::record::LinkState;
@@ -152,7 +153,8 @@ fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
     let mut bench = Bench::live();
     bench.act(Action::HoldToRun(true));
     bench.run(100);
-    assert!(bench.is_disabled(Role::Button, "Arm the hand"));
+    assert!(bench.is_disabled(Role::Button, "Hold H"));
+    assert!(!bench.shows("Arm the hand"));
     for ends in ["let go", "lost focus", "hung"] {
         bench.key_down(Key::H);
         bench.run(1500);
@@ -177,6 +179,31 @@ fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
         let away = (bench.angle(Dof::Index) - to.get()).abs();
         assert!(away > 100, "{ends}: it went on to {away}");
     }
+}
+
+#[test]
+fn while_hold_to_run_is_on_the_button_says_which_key_arms() {
+    let mut bench = Bench::live();
+    assert!(!bench.is_disabled(Role::Button, "Arm the hand"));
+    bench.act(Action::HoldToRun(true));
+    bench.run(100);
+    assert!(bench.is_disabled(Role::Button, "Hold H"));
+    let button = bench.rect(Role::Button, "Hold H");
+    bench.point(button.center());
+    bench.run(1000);
+    assert!(!bench.texts_with("holding the H key arms").is_empty());
+    bench.point_away();
+    bench.key_down(Key::H);
+    bench.run(300);
+    assert!(!bench.is_disabled(Role::Button, "Disarm the hand"));
+    bench.key_up(Key::H);
+    bench.run(1000);
+    bench.act(Action::Language(Language::Zh));
+    bench.run(100);
+    assert!(bench.is_disabled(Role::Button, "按住 H"));
+    bench.act(Action::HoldToRun(false));
+    bench.run(100);
+    assert!(!bench.is_disabled(Role::Button, "使能灵巧手"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod inputs;
 mod joints;
 mod keys;
 mod layout;
+mod mirror;
 mod motion;
 mod plots;
 mod poses;

@@ -1,0 +1,43 @@
+//! The window closes: a hand that may move is stopped first, and what would be lost is asked about.
+
+use crate::app::hand::HandState;
+use crate::app::hands::list::HandList;
+use crate::app::state::{LeaveQuestion, State};
+use crate::hand::Moment;
+
+/// The window is closing.
+#[derive(Clone, Copy)]
+pub(super) struct Closing {
+    pub(super) since: Moment,
+    /// A hand was told to hold, and that is waited for.
+    held: bool,
+}
+
+impl Closing {
+    /// Stops each hand that is armed, or that this program set in motion.
+    pub(super) fn begin(state: &mut State, now: Moment) -> Self {
+        let State { hands, notices, .. } = state;
+        let mut held = false;
+        let is_several = hands.is_several();
+        for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
+            hand.now = now;
+            notices.about(is_several.then_some(&hand.label));
+            hand.stop(notices);
+            held = true;
+        }
+        Self { since: now, held }
+    }
+
+    /// True once each hand that was told to hold rests, or is gone.
+    pub(super) fn is_at_rest(&self, hands: &HandList) -> bool {
+        !self.held || hands.iter().all(|hand| hand.is_held(self.since))
+    }
+}
+
+/// What would be lost if the window closed now, if something would.
+pub(super) fn question(hands: &HandList) -> Option<LeaveQuestion> {
+    let series = hands.iter().any(HandState::runs_series);
+    let staged = |hand: &HandState| hand.params.all_staged().iter().count();
+    let edits = hands.iter().map(staged).sum();
+    (series || edits > 0).then_some(LeaveQuestion { series, edits })
+}

@@ -1,0 +1,100 @@
+//! Another hand of this window that can lead the shown one: which one, how much of it is followed, and whether it may.
+
+use crate::app::action::Action;
+use crate::app::hand::slot::SlotId;
+use crate::app::inputs::InputAction;
+use crate::app::inputs::mirror::HandMirror;
+use crate::app::state::State;
+use crate::inputs::mirror::MirrorScale;
+use crate::ui::inputs::owner::figures_ui;
+use crate::ui::kit::{self, Label, NumberField, Pane};
+use crate::ui::text::{Text, inputs};
+use egui::Ui;
+
+/// Width of the choice of the hand that leads.
+const LEADER: f32 = 220.0;
+
+/// Draws the choice, how the other hand answers, and gives why it may not lead now, if it may not.
+pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str> {
+    let (look, state) = (pane.look, pane.state);
+    let mirror = state.hand().inputs.mirror.as_ref();
+    let is_led = state.hand().inputs.leader().is_some();
+    let choice = ui.add_enabled_ui(!is_led, |ui| {
+        ui.horizontal_wrapped(|ui| choice_ui(ui, pane, mirror));
+    });
+    let taken = look.say(inputs::TAKEN);
+    choice.response.on_disabled_hover_text(taken);
+    if let Some(mirror) = mirror {
+        let is_fresh = mirror.view.is_fresh(state.hand().now);
+        let (answers, rate) = match is_fresh {
+            true => (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz)),
+            false => (inputs::ANSWERS_NOT, "-".to_owned()),
+        };
+        let name = leader_name(state, mirror.leader);
+        let rows = [
+            (look.say(inputs::LEADER), name.unwrap_or_default()),
+            (look.say(inputs::PHASE), look.say(answers).to_owned()),
+            (look.say(inputs::RATE), rate),
+        ];
+        figures_ui(ui, look, "mirror figures", &rows);
+    }
+    missing(state, mirror).map(|text| look.say(text))
+}
+
+/// Which hand leads, and which share of its bends is followed.
+fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
+    let (look, state) = (pane.look, pane.state);
+    let own = state.hand().label.slot;
+    let slots = state.hands.iter().map(|hand| hand.label.slot);
+    let slots = slots.filter(|slot| *slot != own);
+    let named: Vec<(Option<SlotId>, String)> = slots
+        .filter_map(|slot| Some((Some(slot), leader_name(state, slot)?)))
+        .collect();
+    let mut all = vec![(None, look.say(inputs::NO_LEADER))];
+    all.extend(named.iter().map(|(slot, name)| (*slot, name.as_str())));
+    let mut leader = mirror.map(|mirror| mirror.leader);
+    let mut scale = mirror.map_or(MirrorScale::WHOLE, |mirror| mirror.scale);
+    Label::muted(look, inputs::LEADER).ui(ui);
+    ui.spacing_mut().combo_width = LEADER;
+    let mut is_new = kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all);
+    Label::muted(look, inputs::MIRROR_SCALE).ui(ui);
+    let (name, tip) = (
+        look.say(inputs::MIRROR_SCALE),
+        look.tip(inputs::MIRROR_SCALE),
+    );
+    let [least, most] = MirrorScale::PERCENT.map(f64::from);
+    let reason = mirror.is_none().then(|| look.say(inputs::CHOOSE_LEADER));
+    let field = NumberField::new(name, tip, least..=most).disabled(reason);
+    let typed = field.whole_ui(ui, pane, Some(scale.percent()));
+    let typed = typed.and_then(|percent| u8::try_from(percent).ok());
+    if let Some(typed) = typed.and_then(MirrorScale::of_percent) {
+        is_new |= typed != scale;
+        scale = typed;
+    }
+    if is_new {
+        let wanted = leader.map(|leader| (leader, scale));
+        let action = Action::Input(InputAction::Mirror(wanted));
+        pane.actions.push(action);
+    }
+}
+
+/// What the hand in this slot is called, with its number; `None` without a hand.
+pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
+    let mut all = state.hands.iter().enumerate();
+    let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;
+    hand.endpoint.as_ref()?;
+    Some(format!("{} · {}", at + 1, hand.label.name))
+}
+
+/// Why the other hand may not lead the shown one now.
+fn missing(state: &State, mirror: Option<&HandMirror>) -> Option<Text> {
+    let hand = state.hand();
+    match mirror {
+        None => Some(inputs::CHOOSE_LEADER),
+        Some(mirror) if state.hands.is_circle(mirror.leader, hand.label.slot) => {
+            Some(inputs::CIRCLE)
+        }
+        Some(mirror) if !mirror.view.is_fresh(hand.now) => Some(inputs::LEADER_SILENT),
+        Some(_) => None,
+    }
+}

@@ -1,0 +1,43 @@
+//! The card over the body of the window: one at a time.
+
+use crate::app::action::Action;
+use crate::app::state::State;
+use crate::ui::kit::{Card, Choice, Look, Manner};
+use crate::ui::params::card as device_card;
+use crate::ui::params::procedures;
+use crate::ui::sessions;
+use crate::ui::text::window;
+use crate::ui::trials::compare;
+
+/// True while a card covers the body of the window.
+pub(super) fn is_covered(state: &State) -> bool {
+    state.hand().procedure.is_some()
+        || state.hand().params.question.is_some()
+        || state.trials.to_confirm.is_some()
+        || state.sessions.to_delete.is_some()
+        || state.leave.is_some()
+}
+
+/// The card, if there is one. What would be lost is asked before all else.
+pub(super) fn card_of(state: &State, look: Look) -> Option<Card> {
+    leave_card(state, look)
+        .or_else(|| procedures::card_of(state, look))
+        .or_else(|| device_card::card_of(state, look))
+        .or_else(|| compare::card_of(state, look))
+        .or_else(|| sessions::card_of(state, look))
+}
+
+/// The question before the window closes and something is lost.
+fn leave_card(state: &State, look: Look) -> Option<Card> {
+    let question = state.leave?;
+    let mut card = Card::new(look, window::LEAVE_TITLE);
+    if question.series {
+        card = card.warning(window::LEAVE_SERIES);
+    }
+    if question.edits > 0 {
+        card = card.warning(look.fill(window::LEAVE_EDITS, &[&question.edits]));
+    }
+    let stay = Choice::new(window::STAY, Manner::Safe).does(Action::Stay);
+    let leave = Choice::new(window::LEAVE, Manner::Danger).does(Action::Leave);
+    Some(card.choice(stay).choice(leave))
+}
