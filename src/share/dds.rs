@@ -8,7 +8,8 @@ use crate::record::file::encode::EntryEncoder;
 use crate::record::file::topic::Topic;
 use crate::record::file::{Opening, cdr};
 use crate::record::{Entry, Record};
-use crate::transport::dds::{DdsError, DdsNode, DdsTopic, DdsWriter};
+use crate::share::fleet::{FleetCard, FleetTeller};
+use crate::transport::dds::{DdsError, DdsNode, DdsPlace, DdsTopic, DdsWriter};
 use serde::Serialize;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::watch;
@@ -132,6 +133,41 @@ impl DdsPublisher {
     #[must_use]
     pub fn told(&self) -> DdsTold {
         *self.told.borrow()
+    }
+}
+
+/// A hand that is on DDS: told there, and to the lists of other Handscopes. Dropped, it is not any more.
+#[derive(Debug)]
+pub struct SharedOnDds {
+    /// For what else is read or told there.
+    pub node: DdsNode,
+    publisher: DdsPublisher,
+    teller: FleetTeller,
+}
+
+impl SharedOnDds {
+    /// Joins there, and tells of this hand from now on. Must be called within a tokio runtime.
+    ///
+    /// # Errors
+    /// [`DdsError`]: it cannot be joined there.
+    pub fn open(place: &DdsPlace, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
+        let node = DdsNode::open(place)?;
+        Ok(Self {
+            publisher: DdsPublisher::open(&node, link, card.side)?,
+            teller: FleetTeller::open(&node, link, card)?,
+            node,
+        })
+    }
+
+    /// What was told so far.
+    #[must_use]
+    pub fn told(&self) -> DdsTold {
+        self.publisher.told()
+    }
+
+    /// Says this of the hand to lists from now on.
+    pub fn say(&self, card: FleetCard) {
+        self.teller.say(card);
     }
 }
 

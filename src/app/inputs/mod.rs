@@ -15,12 +15,11 @@ use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
-use crate::share::dds::{DdsPublisher, DdsTold};
-use crate::share::fleet::FleetTeller;
+use crate::share::dds::{DdsTold, SharedOnDds};
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
-use crate::transport::dds::{DdsError, DdsNode};
+use crate::transport::dds::DdsError;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
@@ -123,10 +122,8 @@ pub struct HandInputs {
 /// DDS, joined.
 #[derive(Debug)]
 pub(crate) struct JoinedDds {
-    pub(crate) node: DdsNode,
-    pub(crate) publisher: DdsPublisher,
+    pub(crate) shared: SharedOnDds,
     pub(crate) source: DdsSource,
-    pub(crate) teller: FleetTeller,
 }
 
 /// What is known of DDS.
@@ -168,8 +165,8 @@ impl HandInputs {
             mirror.look();
         }
         self.dds_view = self.dds.as_ref().map(|joined| DdsState {
-            at: joined.node.address(),
-            told: joined.publisher.told(),
+            at: joined.shared.node.address(),
+            told: joined.shared.told(),
             view: joined.source.view(),
         });
     }

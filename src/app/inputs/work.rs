@@ -14,13 +14,13 @@ use crate::inputs::pad::{PadInput, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::record::Disarmed;
 use crate::record::file::Opening;
-use crate::share::dds::DdsPublisher;
-use crate::share::fleet::{self, FleetCard, FleetTeller};
+use crate::share::dds::SharedOnDds;
+use crate::share::fleet::{self, FleetCard};
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
 use crate::tasks::follow::FollowEnd;
-use crate::transport::dds::{DdsNode, DdsPlace};
+use crate::transport::dds::DdsPlace;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -165,15 +165,11 @@ impl HandState {
             clock: env.clock,
             wake: Arc::clone(&env.wake),
         };
-        let joined = DdsNode::open(&place).and_then(|node| {
-            let publisher = DdsPublisher::open(&node, &open.link, self.side)?;
-            let messages = node.reader(&ctrl::topic(self.side))?;
-            Ok(JoinedDds {
-                source: DdsSource::open(config, messages),
-                teller: FleetTeller::open(&node, &open.link, self.fleet_card(settings))?,
-                publisher,
-                node,
-            })
+        let card = self.fleet_card(settings);
+        let joined = SharedOnDds::open(&place, &open.link, card).and_then(|shared| {
+            let messages = shared.node.reader(&ctrl::topic(self.side))?;
+            let source = DdsSource::open(config, messages);
+            Ok(JoinedDds { shared, source })
         });
         match joined {
             Ok(joined) => self.inputs.dds = Some(joined),
@@ -197,7 +193,7 @@ impl HandState {
         let terms = self.follow_terms(settings);
         self.inputs.look();
         if let Some(joined) = &self.inputs.dds {
-            joined.teller.say(self.fleet_card(settings));
+            joined.shared.say(self.fleet_card(settings));
         }
         let Some(run) = &mut self.inputs.follow else {
             return;

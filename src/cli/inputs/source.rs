@@ -2,7 +2,7 @@
 //! hand.
 
 use crate::cli::parse::number;
-use crate::cli::share::dds::{DdsArgs, DdsOut};
+use crate::cli::share::dds::{self, DdsArgs};
 use crate::cli::{listen, parse, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -16,6 +16,7 @@ use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
+use crate::share::dds::SharedOnDds;
 use crate::share::fleet::FleetCard;
 use crate::store::toml_file;
 use crate::transport::Endpoint;
@@ -76,7 +77,7 @@ impl SourceArgs {
 /// What the hand follows.
 pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
-    Dds(DdsSource, DdsOut),
+    Dds(DdsSource, SharedOnDds),
     Pad(PadSource),
     Mirror(Endpoint, LinkHandle, MirrorSource),
 }
@@ -142,7 +143,7 @@ impl FollowSource {
         match self {
             Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
-            Self::Dds(_, out) => out.ready(),
+            Self::Dds(_, shared) => dds::ready(shared),
             Self::Pad(_) => "ready gamepad".into(),
             Self::Mirror(other, ..) => format!("ready mirror {other}"),
         }
@@ -239,7 +240,7 @@ impl FollowSource {
     }
 }
 
-fn told_of_dds(view: &DdsView, out: &DdsOut) -> (String, Value) {
+fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
     let refused: BTreeMap<&str, u64> = view
         .refused
         .iter()

@@ -4,10 +4,10 @@ use crate::cli::out::say;
 use crate::cli::parse::number;
 use crate::hand::kinematics::Side;
 use crate::link::LinkHandle;
-use crate::share::dds::{DdsPublisher, DdsTold};
-use crate::share::fleet::{self, FleetCard, FleetTeller};
+use crate::share::dds::SharedOnDds;
+use crate::share::fleet::{self, FleetCard};
 use crate::transport::Endpoint;
-use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
+use crate::transport::dds::{DOMAIN_MAX, DdsPlace};
 
 /// Nobody outside of this computer, unless a person says so.
 pub(crate) const LOOPBACK: &str = "127.0.0.1";
@@ -30,13 +30,6 @@ pub(crate) fn domain(text: &str) -> Result<u16, String> {
     number(text, 0..=DOMAIN_MAX, "a domain of 0 to 232")
 }
 
-/// A hand that is told on DDS.
-pub(crate) struct DdsOut {
-    pub(crate) node: DdsNode,
-    publisher: DdsPublisher,
-    _teller: FleetTeller,
-}
-
 impl DdsArgs {
     /// What is said of this hand, a right one without a gateway.
     pub(crate) fn card(&self, hand: &Endpoint) -> FleetCard {
@@ -54,37 +47,26 @@ impl DdsArgs {
         &self,
         link: &LinkHandle,
         card: FleetCard,
-    ) -> anyhow::Result<Option<DdsOut>> {
+    ) -> anyhow::Result<Option<SharedOnDds>> {
         let Some(interface) = &self.dds else {
             return Ok(None);
         };
-        let node = DdsNode::open(&DdsPlace {
+        let place = DdsPlace {
             interface: interface.clone(),
             domain: self.domain,
-        })?;
-        if !node.address().is_loopback() {
+        };
+        let shared = SharedOnDds::open(&place, link, card)?;
+        let address = shared.node.address();
+        if !address.is_loopback() {
             say(&format!(
-                "warning: anyone in the network of {} can read this hand and send to it; --dds alone keeps to this computer",
-                node.address()
+                "warning: anyone in the network of {address} can read this hand and send to it; --dds alone keeps to this computer"
             ));
         }
-        let publisher = DdsPublisher::open(&node, link, card.side)?;
-        Ok(Some(DdsOut {
-            _teller: FleetTeller::open(&node, link, card)?,
-            publisher,
-            node,
-        }))
+        Ok(Some(shared))
     }
 }
 
-impl DdsOut {
-    /// The line that says that it can be used.
-    pub(crate) fn ready(&self) -> String {
-        format!("ready dds {}", self.node.address())
-    }
-
-    /// What was told so far.
-    pub(crate) fn told(&self) -> DdsTold {
-        self.publisher.told()
-    }
+/// The line that says that it can be used.
+pub(crate) fn ready(shared: &SharedOnDds) -> String {
+    format!("ready dds {}", shared.node.address())
 }

@@ -86,7 +86,7 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     };
     let dds = args.dds.open(&link, card)?;
     if let Some(dds) = &dds {
-        out.line(&dds.ready())?;
+        out.line(&dds::ready(dds))?;
     }
     out.flush()?;
     tokio::select! {
