@@ -65,11 +65,11 @@ async fn stage() -> Stage {
 }
 
 /// A viewer of good manners.
-struct Client(WebSocketStream<TcpStream>);
+pub(crate) struct Client(WebSocketStream<TcpStream>);
 
 impl Client {
     /// Connects, and takes the greeting.
-    async fn of(server: &FoxgloveServer) -> (Self, [Value; 2]) {
+    pub(crate) async fn of(server: &FoxgloveServer) -> (Self, [Value; 2]) {
         let stream = TcpStream::connect(server.address()).await.unwrap();
         let mut client = Self::over(stream, SUBPROTOCOLS[0]).await.unwrap();
         let greeting = [client.told().await, client.told().await];
@@ -92,7 +92,7 @@ impl Client {
     }
 
     /// Subscribes to these, each under the number of its channel and a hundred.
-    async fn subscribe(&mut self, topics: impl IntoIterator<Item = Topic>) {
+    pub(crate) async fn subscribe(&mut self, topics: impl IntoIterator<Item = Topic>) {
         let wanted =
             |topic: Topic| json!({ "id": 100 + topic.channel(), "channelId": topic.channel() });
         let all: Vec<Value> = topics.into_iter().map(wanted).collect();
@@ -110,7 +110,7 @@ impl Client {
     }
 
     /// The next message: its topic, its time and its bytes.
-    async fn message(&mut self) -> (Topic, u64, Vec<u8>) {
+    pub(crate) async fn message(&mut self) -> (Topic, u64, Vec<u8>) {
         loop {
             if let Frame::Binary(data) = self.0.next().await.unwrap().unwrap() {
                 assert_eq!(data[0], 1);

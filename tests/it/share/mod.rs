@@ -8,6 +8,7 @@ mod dds;
 #[cfg(target_os = "linux")]
 mod fleet;
 mod foxglove;
+mod lab;
 mod place;
 mod reads;
 mod writes;
