@@ -201,8 +201,11 @@ fn cell_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A rate, with a digit more where it is slow.
+/// A rate, with a digit more where it is slow, and as wide as its column where a built-in hand answers at once.
 fn rate(hz: f64) -> String {
+    if hz >= 9_999.5 {
+        return format!("{:.0} kHz", hz / 1e3);
+    }
     if hz > 0.0 && hz < 9.95 {
         return format!("{hz:.1} Hz");
     }
@@ -216,4 +219,18 @@ fn percent(share: f64) -> String {
         return format!("{percent:.1} %");
     }
     format!("{percent:.0} %")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_of_any_size_fits_its_column() {
+        let rates = [0.0, 1.64, 9.96, 9999.0, 9999.6, 22_183.0, 990_000.0];
+        let words = rates.map(rate);
+        assert_eq!(words[1], "1.6 Hz");
+        assert_eq!(words[3..6], ["9999 Hz", "10 kHz", "22 kHz"]);
+        assert!(words.iter().all(|rate| rate.len() <= 7), "{words:?}");
+    }
 }

@@ -9,7 +9,7 @@ use handscope::record::LinkState;
 use handscope::record::file::Opening;
 use handscope::record::file::topic::Topic;
 use handscope::share::foxglove::{FoxgloveConfig, FoxgloveServer};
-use handscope::share::gateway::{ClientLease, Gateway};
+use handscope::share::gateway::{ClientLease, Gateway, GatewayConfig};
 use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::runtime::Handle;
@@ -83,7 +83,11 @@ async fn three_programs_and_two_viewers_at_one_hand_do_not_notice_each_other() {
     let moments = (opened.clock.now(), Duration::from_secs(1));
     let (link, _records) = handscope::link::open(opened, &Handle::current());
     until(|| link.status().state == LinkState::Monitoring).await;
-    let gateway = Gateway::open(link.clone(), config(), &Handle::current()).unwrap();
+    let config = GatewayConfig {
+        silence: 60 * LENGTH,
+        ..config()
+    };
+    let gateway = Gateway::open(link.clone(), config, &Handle::current()).unwrap();
     let shown = FoxgloveConfig {
         address: ([127, 0, 0, 1], 0).into(),
         opening: Opening::begin("sim:".into(), moments, Side::Right),

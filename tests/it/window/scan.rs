@@ -12,7 +12,7 @@ use handscope::link::Owner;
 use handscope::record::LinkState;
 use handscope::share::fleet::{self, FleetCard, FleetHand};
 use handscope::sim::{SimConfig, SimHand};
-use handscope::transport::dds::{DdsNode, DdsPlace};
+use handscope::transport::dds::{DdsNode, DdsPlace, DdsWriter};
 use handscope::ui::View;
 use std::time::{Duration, Instant};
 
@@ -201,10 +201,11 @@ fn the_serial_port_that_was_typed_is_scanned_alone() {
 
 /// Tells on DDS of a hand of another Handscope until the window is as wanted.
 #[cfg(target_os = "linux")]
-fn told_until(bench: &mut Bench, hand: &FleetHand, wanted: impl Fn(&Bench) -> bool) {
-    let (interface, domain) = ("127.0.0.1".into(), 0);
-    let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
-    let writer = node.writer(&fleet::topic()).unwrap();
+fn told_until(
+    bench: &mut Bench,
+    (writer, hand): (&DdsWriter, &FleetHand),
+    wanted: impl Fn(&Bench) -> bool,
+) {
     let patience = Instant::now() + Duration::from_secs(20);
     while !wanted(bench) {
         assert!(Instant::now() < patience, "{:?}", bench.state().fleet);
@@ -231,6 +232,9 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
         state: LinkState::Fault,
         owner: Some(Owner::Gamepad),
     };
+    let (interface, domain) = ("127.0.0.1".into(), 0);
+    let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
+    let other = node.writer(&fleet::topic()).unwrap();
     bench.type_into("Interface of DDS", "nowhere0");
     bench.click_button("Look for them");
     bench.run(100);
@@ -238,13 +242,15 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
     bench.type_into("Interface of DDS", "127.0.0.1");
     bench.click_button("Look for them");
     bench.run(100);
-    told_until(&mut bench, &hand, |bench| bench.shows("their hand · lab"));
+    told_until(&mut bench, (&other, &hand), |bench| {
+        bench.shows("their hand · lab")
+    });
     assert!(bench.is_disabled(Role::Button, "Connect: their hand"));
     assert!(bench.shows("Left hand · moved by: Gamepad"));
     hand.card.at = "127.0.0.1:6111".parse().ok();
     hand.state = LinkState::Monitoring;
     let is_open = |bench: &Bench| !bench.is_disabled(Role::Button, "Connect: their hand");
-    told_until(&mut bench, &hand, is_open);
+    told_until(&mut bench, (&other, &hand), is_open);
     bench.click("Connect: their hand");
     bench.run(100);
     let endpoint = bench.state().hand().endpoint.clone();
