@@ -6,6 +6,7 @@ use crate::link::config::LinkConfig;
 use crate::link::image::RegisterImage;
 use crate::link::lease::{HoldToRun, Lease, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
+use crate::link::records::{LinkObserver, Records};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
@@ -14,7 +15,6 @@ use crate::link::tap::WireTap;
 use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Calibrated, Disarmed, Record, Reset, Saved, Written};
 use std::sync::{Arc, Weak};
-use tokio::sync::broadcast::error::{RecvError, TryRecvError};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
 /// Requests that may wait: a person cannot ask faster than this drains.
@@ -351,19 +351,6 @@ impl LinkHandle {
     }
 }
 
-/// What may be watched of a link. The wire closes with the last handle, whoever still watches.
-#[derive(Debug)]
-pub struct LinkObserver {
-    /// Everything that happens from the moment on at which it was made.
-    pub records: Records,
-    /// The recorded traffic.
-    pub tap: WireTap,
-    /// Where the link stands.
-    pub status: watch::Receiver<LinkStatus>,
-    /// Its statistics.
-    pub stats: watch::Receiver<LinkStats>,
-}
-
 /// Stops a hand from elsewhere. The wire closes with the last handle, whoever still has this.
 #[derive(Debug, Clone)]
 pub struct LinkStopper(Weak<LinkShared>);
@@ -377,46 +364,5 @@ impl LinkStopper {
         if link.status().holder.is_some() {
             link.stop();
         }
-    }
-}
-
-/// What happens at a hand, one record after the other. A reader that is too slow loses the oldest, and they are counted.
-#[derive(Debug)]
-pub struct Records {
-    records: broadcast::Receiver<Record>,
-    lost: u64,
-}
-
-impl Records {
-    pub(crate) const fn of(records: broadcast::Receiver<Record>) -> Self {
-        Self { records, lost: 0 }
-    }
-
-    /// The next record, if one waits.
-    pub fn try_next(&mut self) -> Option<Record> {
-        loop {
-            match self.records.try_recv() {
-                Ok(record) => return Some(record),
-                Err(TryRecvError::Lagged(lost)) => self.lost += lost,
-                Err(TryRecvError::Empty | TryRecvError::Closed) => return None,
-            }
-        }
-    }
-
-    /// Waits for the next record. `None` once the session has ended.
-    pub async fn next(&mut self) -> Option<Record> {
-        loop {
-            match self.records.recv().await {
-                Ok(record) => return Some(record),
-                Err(RecvError::Lagged(lost)) => self.lost += lost,
-                Err(RecvError::Closed) => return None,
-            }
-        }
-    }
-
-    /// Records that this reader was too slow for.
-    #[must_use]
-    pub const fn lost(&self) -> u64 {
-        self.lost
     }
 }

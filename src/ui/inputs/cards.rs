@@ -47,10 +47,6 @@ impl SourceCards {
     /// Draws all.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        card_ui(ui, pane, inputs::STREAM, |ui, pane| {
-            self.stream_ui(ui, pane)
-        });
-        card_ui(ui, pane, inputs::DDS, |ui, pane| self.dds_ui(ui, pane));
         if pane.state.hands.is_several() {
             card_ui(ui, pane, inputs::MIRROR, |ui, pane| {
                 let missing = mirror_ui(ui, pane);
@@ -58,6 +54,10 @@ impl SourceCards {
                 grant_ui(ui, pane, source, missing);
             });
         }
+        card_ui(ui, pane, inputs::STREAM, |ui, pane| {
+            self.stream_ui(ui, pane)
+        });
+        card_ui(ui, pane, inputs::DDS, |ui, pane| self.dds_ui(ui, pane));
         card_ui(ui, pane, inputs::GATEWAY, |ui, pane| {
             self.gateway_ui(ui, pane)
         });

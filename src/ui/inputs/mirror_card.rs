@@ -6,11 +6,14 @@ use crate::app::inputs::InputAction;
 use crate::app::inputs::mirror::HandMirror;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
-use crate::ui::inputs::owner::figures_ui;
+use crate::ui::inputs::owner::{figures_ui, leader_name};
 use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
-use egui::Ui;
+use crate::ui::theme;
+use egui::{Ui, vec2};
 
+/// Width of the names.
+const NAME: f32 = 100.0;
 /// Width of the choice of the hand that leads.
 const LEADER: f32 = 220.0;
 
@@ -20,7 +23,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str
     let mirror = state.hand().inputs.mirror.as_ref();
     let is_led = state.hand().inputs.leader().is_some();
     let choice = ui.add_enabled_ui(!is_led, |ui| {
-        ui.horizontal_wrapped(|ui| choice_ui(ui, pane, mirror));
+        choice_ui(ui, pane, mirror);
     });
     let taken = look.say(inputs::TAKEN);
     choice.response.on_disabled_hover_text(taken);
@@ -30,9 +33,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str
             true => (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz)),
             false => (inputs::ANSWERS_NOT, "-".to_owned()),
         };
-        let name = leader_name(state, mirror.leader);
         let rows = [
-            (look.say(inputs::LEADER), name.unwrap_or_default()),
             (look.say(inputs::PHASE), look.say(answers).to_owned()),
             (look.say(inputs::RATE), rate),
         ];
@@ -54,18 +55,20 @@ fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     all.extend(named.iter().map(|(slot, name)| (*slot, name.as_str())));
     let mut leader = mirror.map(|mirror| mirror.leader);
     let mut scale = mirror.map_or(MirrorScale::WHOLE, |mirror| mirror.scale);
-    Label::muted(look, inputs::LEADER).ui(ui);
-    ui.spacing_mut().combo_width = LEADER;
-    let mut is_new = kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all);
-    Label::muted(look, inputs::MIRROR_SCALE).ui(ui);
-    let (name, tip) = (
-        look.say(inputs::MIRROR_SCALE),
-        look.tip(inputs::MIRROR_SCALE),
-    );
-    let [least, most] = MirrorScale::PERCENT.map(f64::from);
-    let reason = mirror.is_none().then(|| look.say(inputs::CHOOSE_LEADER));
-    let field = NumberField::new(name, tip, least..=most).disabled(reason);
-    let typed = field.whole_ui(ui, pane, Some(scale.percent()));
+    let mut is_new = row_ui(ui, pane, inputs::LEADER, |ui, _| {
+        ui.spacing_mut().combo_width = LEADER;
+        kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all)
+    });
+    let typed = row_ui(ui, pane, inputs::MIRROR_SCALE, |ui, pane| {
+        let (name, tip) = (
+            look.say(inputs::MIRROR_SCALE),
+            look.tip(inputs::MIRROR_SCALE),
+        );
+        let [least, most] = MirrorScale::PERCENT.map(f64::from);
+        let reason = mirror.is_none().then(|| look.say(inputs::CHOOSE_LEADER));
+        let field = NumberField::new(name, tip, least..=most).disabled(reason);
+        field.whole_ui(ui, pane, Some(scale.percent()))
+    });
     let typed = typed.and_then(|percent| u8::try_from(percent).ok());
     if let Some(typed) = typed.and_then(MirrorScale::of_percent) {
         is_new |= typed != scale;
@@ -78,12 +81,22 @@ fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     }
 }
 
-/// What the hand in this slot is called, with its number; `None` without a hand.
-pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
-    let mut all = state.hands.iter().enumerate();
-    let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;
-    hand.endpoint.as_ref()?;
-    Some(format!("{} · {}", at + 1, hand.label.name))
+/// A name, and a control behind it.
+fn row_ui<T>(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    name: Text,
+    add: impl FnOnce(&mut Ui, &mut Pane<'_>) -> T,
+) -> T {
+    let row = ui.horizontal(|ui| {
+        let name = Label::muted(pane.look, name);
+        ui.allocate_ui(vec2(NAME, theme::CONTROL), |ui| {
+            ui.set_min_width(NAME);
+            name.ui(ui);
+        });
+        add(ui, pane)
+    });
+    row.inner
 }
 
 /// Why the other hand may not lead the shown one now.

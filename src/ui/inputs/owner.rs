@@ -1,12 +1,14 @@
 //! Who may move the hand now, how that goes, its end, and within which limits.
 
 use crate::app::action::Action;
+use crate::app::hand::slot::SlotId;
 use crate::app::inputs::InputAction;
+use crate::app::state::State;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
-use crate::ui::inputs::mirror_card::leader_name;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight, format};
 use crate::ui::text::{Text, inputs, words};
+use crate::ui::theme;
 use egui::{Grid, Ui};
 
 /// Who may move the hand now, how it goes, and its end.
@@ -127,9 +129,23 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     }
 }
 
+/// What the hand in this slot is called, with its number; `None` without a hand.
+pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
+    let mut all = state.hands.iter().enumerate();
+    let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;
+    hand.endpoint.as_ref()?;
+    Some(format!("{} · {}", at + 1, hand.label.name))
+}
+
 /// Figures with their names, a row each.
 pub(crate) fn figures_ui(ui: &mut Ui, look: Look, salt: &str, rows: &[(&str, String)]) {
-    Grid::new(salt).num_columns(2).show(ui, |ui| {
+    // A grid learns its widths from the frame before, and would cut names off for good.
+    let widths = rows
+        .iter()
+        .map(|(name, _)| kit::text_width(ui, name, theme::body()));
+    let names = widths.fold(0.0, f32::max).ceil() + 1.0;
+    let grid = Grid::new(salt).num_columns(2).min_col_width(names);
+    grid.show(ui, |ui| {
         for (name, value) in rows {
             Label::new(name, look.palette.muted).ui(ui);
             Label::new(value, look.palette.text)

@@ -27,7 +27,7 @@ texts! {
     RATE: "Rate", "频率";
     TAKEN_LINES: "Lines taken", "已接收";
     NOT_GRANTED: "Not followed", "未跟随";
-    MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which goes where the joints of that one are; left and right may lead each other. That one is only read. Once either is stopped or lost, both stop.", "由本窗口中的另一只手带动此手：此手跟随其关节位置，左右手均可。对那只手只读取。任一只手停下或断开，两只都会停下。";
+    MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which goes where the joints of that one are; left and right may lead each other. That one is only read. Once either is stopped or lost, this window moves neither on.", "由本窗口中的另一只手带动此手：此手跟随其关节位置，左右手均可。对那只手只读取。任一只手停下或断开后，本窗口不再移动这两只手。";
     LEADER: "Leading hand", "主导手";
     NO_LEADER: "None", "无";
     MIRROR_SCALE: "Share, %", "比例（%）", "How much of each bend of the leading hand is followed, percent:", "按此百分比跟随主导手的弯曲：";

@@ -111,11 +111,10 @@ fn a_hand_is_led_only_once_a_person_lets_it_and_stays_within_the_limits() {
     bench.choose("Leading hand", "1 · sim:?seed=1");
     bench.run(300);
     assert!(bench.has_reading("State", "answers"));
-    assert!(bench.has_reading("Leading hand", "1 · sim:?seed=1"));
     let open = index(&bench, 1);
-    send(&mut bench, 0, 200);
-    bench.run(2000);
-    assert!(index(&bench, 0).abs_diff(200) <= 25);
+    send(&mut bench, 0, 600);
+    bench.run(3000);
+    assert!(index(&bench, 0).abs_diff(600) <= 25);
     assert_eq!(
         (bench.addresses_at(SECOND).len(), index(&bench, 1)),
         (0, open)
@@ -135,7 +134,7 @@ fn a_hand_is_led_only_once_a_person_lets_it_and_stays_within_the_limits() {
         assert!(to.abs_diff(before) <= most * 3, "{before} to {to} at once");
         before = to;
     }
-    assert!(index(&bench, 1).abs_diff(200) <= 25, "{}", index(&bench, 1));
+    assert!(index(&bench, 1).abs_diff(600) <= 25, "{}", index(&bench, 1));
     assert!(!bench.texts_with("Another hand: 1 · sim:").is_empty());
     let leader = hand(&bench, 0);
     assert_eq!(leader.link.holder.unwrap().owner, Owner::Person);
@@ -157,9 +156,9 @@ fn half_a_bend_is_followed_where_that_is_wanted() {
     let mirror = hand(&bench, 1).inputs.mirror.as_ref().unwrap();
     assert_eq!(mirror.scale, MirrorScale::new(0.5).unwrap());
     bench.click_button(GRANT);
-    send_there(&bench, 200);
+    send_there(&bench, 500);
     bench.run(4000);
-    assert!(index(&bench, 1).abs_diff(600) <= 25, "{}", index(&bench, 1));
+    assert!(index(&bench, 1).abs_diff(750) <= 25, "{}", index(&bench, 1));
     assert!(bench.is_disabled(Role::ComboBox, "Leading hand"));
     assert_eq!(bench.writes().len(), 1, "what the test wrote itself");
 }

@@ -4,11 +4,13 @@ use crate::setup::window::{Bench, LARGE};
 use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
+use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
 use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
 use handscope::app::settings::Theme;
 use handscope::hand::Moment;
+use handscope::inputs::mirror::MirrorScale;
 use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
@@ -93,6 +95,27 @@ fn a_real_hand_is_recorded_by_itself_and_a_simulated_one_only_if_asked() {
     built_in.run(100);
     let path = ended(&mut built_in);
     assert!(SessionItem::read(&path).unwrap().opening.simulated);
+}
+
+#[test]
+fn the_hand_of_a_replay_leads_none() {
+    let mut bench = bench(Scenario::Grasp);
+    let path = ended(&mut bench);
+    bench.open_another("tcp:10.0.0.2:6000");
+    let leader = bench.state().hands.iter().next().unwrap().label.slot;
+    replay(&mut bench, path);
+    bench.show(View::Inputs);
+    bench.run(100);
+    assert!(!bench.shows("Leading hand"));
+    let watch = InputAction::Mirror(Some((leader, MirrorScale::WHOLE)));
+    for action in [watch, InputAction::GrantMirror] {
+        bench.act(Action::Input(action));
+        bench.run(300);
+    }
+    let live = bench.live_state();
+    for hand in live.hands.iter() {
+        assert!(hand.inputs.mirror.is_none() && hand.outside_owner().is_none());
+    }
 }
 
 #[test]
