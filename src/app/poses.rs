@@ -1,6 +1,8 @@
 //! The library with what goes on around it: undo, the dry run, what was added last. Sends nothing.
 
 use crate::app::notices::NoticeKind;
+use crate::inputs::pad::PadMap;
+use crate::inputs::pad::input::PadPoses;
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use crate::poses::library::{
     EntryId, EntryKey, EntryNames, LibraryPose, PoseId, PoseLibrary, Reaction, ReactionId,
@@ -90,6 +92,26 @@ impl PoseState {
         };
         let all = starter().entries();
         all.filter(move |entry| !hidden.contains(name(*entry)) && !is_overridden(*entry))
+    }
+
+    /// All poses: a person's own, then those that are shipped and shown.
+    pub fn poses(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = &LibraryPose> {
+        let shipped = self.shipped(hidden).filter_map(|entry| match entry {
+            EntryId::Pose(id) => starter().pose(id),
+            EntryId::Sequence(_) | EntryId::Reaction(_) => None,
+        });
+        self.library.poses.iter().chain(shipped)
+    }
+
+    /// Those that the buttons of a gamepad name.
+    #[must_use]
+    pub fn on_pad(&self, map: &PadMap, hidden: &BTreeSet<String>) -> PadPoses {
+        let all: Vec<&LibraryPose> = self.poses(hidden).collect();
+        let named = map.poses().filter_map(|name| {
+            let pose = all.iter().find(|pose| pose.name == name)?;
+            Some((name.to_owned(), pose.targets()))
+        });
+        named.collect()
     }
 
     /// What can be started with one press: poses but those that only demos need, then sequences and reactions; a person's own

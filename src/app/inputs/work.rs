@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::hand::HandState;
 use crate::app::inputs::{InputAction, InputKind, JoinedDds, OpenRefusal};
 use crate::app::notices::{NoticeKind, Notices};
+use crate::app::poses::PoseState;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::inputs::dds::ctrl;
@@ -96,7 +97,8 @@ impl HandState {
                 let link = open.link.clone();
                 let source = PadSource::open(PadSourceConfig {
                     reader,
-                    input: PadInput::starting(settings.pad_map()),
+                    // Its poses are told with each frame.
+                    input: PadInput::new(settings.pad_map()),
                     records: open.link.records(),
                     clock,
                     stop: Arc::new(move || link.stop()),
@@ -189,8 +191,16 @@ impl HandState {
     }
 
     /// Takes in what inputs and clients did.
-    pub(crate) fn tick_inputs(&mut self, notices: &mut Notices, settings: &Settings) {
+    pub(crate) fn tick_inputs(
+        &mut self,
+        notices: &mut Notices,
+        settings: &Settings,
+        poses: &PoseState,
+    ) {
         let terms = self.follow_terms(settings);
+        if let Some(pad) = &self.inputs.pad {
+            pad.set_poses(poses.on_pad(&settings.pad_map(), &settings.hidden_poses));
+        }
         self.inputs.look();
         if let Some(joined) = &self.inputs.dds {
             joined.shared.say(self.fleet_card(settings));

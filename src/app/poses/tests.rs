@@ -2,8 +2,11 @@
 
 use crate::app::poses::PoseState;
 use crate::hand::{Angle, PerDof};
+use crate::inputs::pad::{PadAction, PadControl, PadMap};
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use crate::poses::library::{LibraryPose, NAME_CHARS_MAX, PoseId, PoseLibrary, SequenceId};
+use crate::poses::starter::starter;
+use std::collections::BTreeSet;
 
 fn two() -> (PoseState, PoseId, PoseId, SequenceId) {
     let mut library = PoseLibrary::default();
@@ -87,4 +90,28 @@ fn a_pose_and_a_step_go_to_a_place_and_those_between_make_room() {
     assert_eq!(steps(&book), moved);
     book.edit(LibraryEdit::Sequence(own, SequenceEdit::Move(5, 0)));
     assert_eq!(steps(&book), moved);
+}
+
+#[test]
+fn a_gamepad_goes_to_a_persons_own_poses_before_those_that_are_shipped_and_shown() {
+    let (mut book, a, ..) = two();
+    let map = PadMap::usual();
+    let map = map.with(PadControl::Start, PadAction::Pose("A".into()));
+    let map = map.unwrap();
+    let shown = BTreeSet::new();
+    let open = PerDof::splat(Some(Angle::MAX));
+    let on_pad = |book: &PoseState, hidden| book.on_pad(&map, hidden);
+    let names: Vec<String> = on_pad(&book, &shown).into_keys().collect();
+    assert_eq!(names, ["A", "Open", "Pinch", "Point"], "B is on no button");
+    assert_eq!(on_pad(&book, &shown)["A"], open);
+    let shipped = starter().poses.iter().find(|pose| pose.name == "Pinch");
+    assert_eq!(on_pad(&book, &shown)["Pinch"], shipped.unwrap().targets());
+    // Another name for it: the button's is gone, and that of a shipped one is a person's own now.
+    book.edit(LibraryEdit::Pose(a, PoseEdit::Rename("Pinch".into())));
+    let poses = on_pad(&book, &shown);
+    assert_eq!((poses.get("A"), poses["Pinch"]), (None, open));
+    book.edit(LibraryEdit::Pose(a, PoseEdit::Delete));
+    assert_ne!(on_pad(&book, &shown)["Pinch"], open);
+    let hidden = BTreeSet::from(["Pinch".to_owned()]);
+    assert_eq!(on_pad(&book, &hidden).get("Pinch"), None);
 }

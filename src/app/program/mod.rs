@@ -112,6 +112,7 @@ impl App {
             notices,
             trials,
             settings,
+            poses,
             scan,
             fleet,
             ..
@@ -123,7 +124,7 @@ impl App {
             notices.about(is_several.then_some(&hand.label));
             hand.take_news(notices, now);
             hand.tick_sequence();
-            hand.tick_inputs(notices, settings);
+            hand.tick_inputs(notices, settings, poses);
             hand.tick_hold(settings.hold_to_run);
             hand.tick_requests(notices);
             hand.tick_params(env, notices);

@@ -22,6 +22,9 @@ const PUSH_STEP_MAX_US: i64 = 100_000;
 /// Parts of a count of the thumb's angle.
 const PARTS: i64 = 1_000_000;
 
+/// The poses that buttons go to, by name; `None` leaves a joint alone.
+pub type PadPoses = BTreeMap<String, PerDof<Option<Angle>>>;
+
 /// What a person did that is no aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PadEvent {
@@ -49,7 +52,7 @@ pub enum FingerChoice {
 #[derive(Debug)]
 pub struct PadInput {
     map: PadMap,
-    poses: BTreeMap<String, PerDof<Option<Angle>>>,
+    poses: PadPoses,
     actual: PerDof<Option<Angle>>,
     pad: Option<PadId>,
     state: PadState,
@@ -75,7 +78,7 @@ impl PadInput {
     pub fn new(map: PadMap) -> Self {
         Self {
             map,
-            poses: BTreeMap::new(),
+            poses: PadPoses::new(),
             actual: PerDof::splat(None),
             pad: None,
             state: PadState::default(),
@@ -97,9 +100,15 @@ impl PadInput {
         input
     }
 
-    /// Names the poses that buttons go to. A button whose pose is not among them does nothing.
-    pub fn set_poses(&mut self, poses: BTreeMap<String, PerDof<Option<Angle>>>) {
+    /// Names the poses that buttons go to. A button whose pose is not among them does nothing. Where the pose of a button that is
+    /// held is another now, or gone, whatever is held must be pressed anew.
+    pub fn set_poses(&mut self, poses: PadPoses) {
+        let before = self.held_pose();
         self.poses = poses;
+        if self.held_pose() != before {
+            self.let_go();
+            self.look();
+        }
     }
 
     /// Tells where the joints are. A stick rotates the thumb from there; a thumb that is nowhere is left alone.

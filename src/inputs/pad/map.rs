@@ -115,6 +115,14 @@ impl PadMap {
         self.actions.get(&control).unwrap_or(&PadAction::Nothing)
     }
 
+    /// The names of the poses that its buttons go to.
+    pub fn poses(&self) -> impl Iterator<Item = &str> {
+        self.actions.values().filter_map(|action| match action {
+            PadAction::Pose(name) => Some(name.as_str()),
+            _ => None,
+        })
+    }
+
     /// The controls that do this.
     pub fn doing(&self, action: &PadAction) -> impl Iterator<Item = PadControl> {
         let all = self.actions.iter();

@@ -3,7 +3,7 @@
 use crate::hand::{Angle, AngleReading, PerDof};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::inputs::pad::device::PadReader;
-use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput};
+use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput, PadPoses};
 use crate::inputs::pad::report::{PadNews, PadTrouble};
 use crate::inputs::pad::state::PadState;
 use crate::link::{Clock, Records, Wake};
@@ -54,6 +54,8 @@ pub struct PadView {
 #[derive(Debug)]
 pub struct PadSource {
     view: watch::Receiver<PadView>,
+    /// The poses of its buttons from now on, once they are others than it was opened with.
+    poses: watch::Sender<PadPoses>,
     outlet: OfferOutlet,
     abort: AbortHandle,
 }
@@ -70,9 +72,11 @@ impl PadSource {
     pub fn open(config: PadSourceConfig) -> Self {
         let (told, view) = watch::channel(PadView::default());
         let outlet = OfferOutlet::default();
-        let task = tokio::spawn(run(config, told, outlet.clone()));
+        let (poses, changed) = watch::channel(PadPoses::new());
+        let task = tokio::spawn(run(config, told, (outlet.clone(), changed)));
         Self {
             view,
+            poses,
             outlet,
             abort: task.abort_handle(),
         }
@@ -84,6 +88,15 @@ impl PadSource {
         self.view.borrow().clone()
     }
 
+    /// Other poses for its buttons from now on.
+    pub fn set_poses(&self, poses: PadPoses) {
+        self.poses.send_if_modified(|told| {
+            let is_news = *told != poses;
+            *told = poses;
+            is_news
+        });
+    }
+
     /// Its targets from now on, for whoever follows; whoever did before does no more.
     #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
@@ -91,7 +104,11 @@ impl PadSource {
     }
 }
 
-async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: OfferOutlet) {
+async fn run(
+    mut config: PadSourceConfig,
+    told: watch::Sender<PadView>,
+    (outlet, mut poses): (OfferOutlet, watch::Receiver<PadPoses>),
+) {
     let mut tick = interval(OFFER_EACH);
     tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let mut view = PadView::default();
@@ -125,6 +142,9 @@ async fn run(mut config: PadSourceConfig, told: watch::Sender<PadView>, outlet: 
                 continue;
             }
             _ = tick.tick() => {}
+        }
+        if let Ok(true) = poses.has_changed() {
+            config.input.set_poses(poses.borrow_and_update().clone());
         }
         let now = config.clock.now();
         view.is_held = config.input.is_held(now);

@@ -3,10 +3,10 @@
 use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind};
 use crate::app::settings::Language;
+use crate::app::state::State;
 use crate::hand::{Angle, PerDof};
 use crate::inputs::pad::PadControl;
 use crate::inputs::pad::source::PadView;
-use crate::poses::starter::starter;
 use crate::ui::hand::panel::pose_ui;
 use crate::ui::inputs::cards::{grant_ui, no_hand};
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
@@ -35,7 +35,7 @@ impl PadCard {
             kit::head_ui(ui, look, look.say(inputs::PAD), |_| ());
             kit::say_ui(ui, look.tip(inputs::PAD), look.palette.muted);
             pad_switch_ui(ui, pane, view.as_ref());
-            let (map, poses) = (pane.state.settings.pad_map(), pose_names(look));
+            let (map, poses) = (pane.state.settings.pad_map(), pose_names(pane.state, look));
             let there = view.as_ref().filter(|view| view.name.is_some());
             let shown = PadShown {
                 state: there.map(|view| &view.state),
@@ -59,8 +59,8 @@ impl PadCard {
 }
 
 /// The poses that a button can have.
-fn pose_names(look: Look) -> Vec<PoseName> {
-    let poses = starter().poses.iter();
+fn pose_names(state: &State, look: Look) -> Vec<PoseName> {
+    let poses = state.poses.poses(&state.settings.hidden_poses);
     let named = poses.map(|pose| PoseName {
         name: pose.name.clone(),
         shown: match look.language {

@@ -76,8 +76,10 @@ impl PadShown<'_> {
         let PadAction::Pose(name) = action else {
             return look.say(inputs::action(action)).to_owned();
         };
-        let known = self.poses.iter().find(|pose| pose.name == *name);
-        look.fill(inputs::POSE, &[&known.map_or(name, |pose| &pose.shown)])
+        match self.poses.iter().find(|pose| pose.name == *name) {
+            Some(pose) => look.fill(inputs::POSE, &[&pose.shown]),
+            None => look.fill(inputs::NO_POSE, &[name]),
+        }
     }
 
     fn is_held(&self, control: PadControl) -> bool {

@@ -86,6 +86,13 @@ fn poses() -> Vec<PoseName> {
     ]
 }
 
+fn in_english(name: &str) -> PoseName {
+    PoseName {
+        name: name.into(),
+        shown: name.into(),
+    }
+}
+
 fn look(theme: Theme, language: Language) -> Look {
     Look {
         palette: Palette::of(theme),
@@ -109,7 +116,7 @@ impl Shown {
             map: PadMap::usual(),
             chosen: None,
             fingers: FingerChoice::One(Dof::Index),
-            poses: Vec::new(),
+            poses: ["Pinch", "Open", "Point"].map(in_english).into(),
         }
     }
 
@@ -178,6 +185,19 @@ fn a_control_is_chosen_by_its_picture_and_by_its_row() {
     harness.get_by_label("Home: Nothing").click();
     harness.run_steps(2);
     assert_eq!(harness.state().chosen, Some(PadControl::Home));
+}
+
+#[test]
+fn a_pose_that_is_not_in_the_library_is_told_and_stays_the_choice() {
+    let mut shown = Shown::with(None);
+    shown.poses.retain(|pose| pose.name != "Pinch");
+    let harness = harness(shown);
+    let gone = "A (bottom): Pose Pinch (not in the library)";
+    assert_eq!(harness.get_all_by_label(gone).count(), 2);
+    assert_eq!(harness.get_all_by_label("X (left): Pose Point").count(), 2);
+    let map = &harness.state().map;
+    let pinch = PadAction::Pose("Pinch".into());
+    assert_eq!(*map.action(PadControl::South), pinch);
 }
 
 #[test]

@@ -71,6 +71,7 @@ texts! {
     PHASE_RELEASED: "not held to run", "未按住运行键";
     NONE: "No gamepad", "没有手柄";
     POSE: "Pose {}", "姿态：{}";
+    NO_POSE: "Pose {} (not in the library)", "姿态：{}（库中没有）";
     SINGLE: "One control must do this. Choose it at another control: the two change places.", "必须有一个控件执行此动作。请在另一个控件上选择它，两者会互换。";
     CHANGE: "Click to change what it does.", "点击可更改其动作。";
 

@@ -6,6 +6,7 @@ use handscope::inputs::pad::input::HEARD_WITHIN;
 use handscope::inputs::pad::{
     FaceOrder, PadAction, PadControl, PadEvent, PadId, PadInput, PadMap, PadNews,
 };
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// No joint is told anything.
@@ -146,6 +147,29 @@ fn a_pose_is_aimed_at_while_its_button_is_held_and_the_triggers_go_on_after() {
         [0, 0, 0, 0, 1000, -1],
         "a pose that is not there"
     );
+}
+
+#[test]
+fn a_pose_that_is_changed_while_its_button_is_held_must_be_held_anew() {
+    let library = |open: [i64; 6]| {
+        let poses = [("Pinch", [400; 6]), ("Open", open)];
+        let named = poses.map(|(name, raw)| (name.to_owned(), angles(raw)));
+        BTreeMap::from(named)
+    };
+    let mut pad = Played::xbox();
+    pad.hold();
+    pad.input.set_poses(library([1000; 6]));
+    pad.says("BTN_SOUTH", 1);
+    assert_eq!(pad.aims(), [400; 6]);
+    pad.input.set_poses(library([900; 6]));
+    assert_eq!(pad.aims(), [400; 6], "another one was changed");
+    pad.input.set_poses(BTreeMap::new());
+    assert_eq!((pad.aims(), pad.offer().held), (ALONE, Some(false)));
+    pad.input.set_poses(library([900; 6]));
+    assert_eq!(pad.offer().held, Some(false));
+    pad.says("BTN_TL", 0);
+    pad.hold();
+    assert_eq!(pad.aims(), [400; 6]);
 }
 
 #[test]

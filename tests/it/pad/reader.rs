@@ -1,10 +1,15 @@
 //! The thread that reads gamepads, against a folder whose files are devices because the test says so, and against real files.
 
-use crate::pad::setup::{XBOX, event, facts};
+use crate::pad::setup::{XBOX, angles, event, facts};
+use crate::setup::link;
 use handscope::hand::Moment;
 use handscope::inputs::pad::device::{PadReader, find};
 use handscope::inputs::pad::reader::{DeviceSays, OpenPad, PadDevice};
-use handscope::inputs::pad::{KernelEvent, PadFacts, PadId, PadNews, PadReport, PadTrouble};
+use handscope::inputs::pad::source::{PadSource, PadSourceConfig, PadView};
+use handscope::inputs::pad::{
+    KernelEvent, PadFacts, PadId, PadInput, PadMap, PadNews, PadReport, PadTrouble,
+};
+use handscope::link::Clock;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, ErrorKind, Read as _, Write as _};
@@ -184,6 +189,53 @@ async fn a_pad_appears_says_what_moves_and_disappears_at_once() {
     );
     fs::write(folder.path("event1"), "pad").unwrap();
     assert_ne!(folder.found().await, pad, "it is a new one");
+}
+
+#[tokio::test]
+async fn the_poses_of_a_pad_that_is_followed_can_be_changed() {
+    let folder = Folder::of(&[("event0", "pad")]);
+    let Folder {
+        folder: _kept,
+        pads,
+        reader,
+    } = folder;
+    let (link, records) = handscope::link::open(
+        link::config("rs485:x", link::dial(|to| link::missing(to.place()))),
+        &tokio::runtime::Handle::current(),
+    );
+    let source = PadSource::open(PadSourceConfig {
+        reader,
+        input: PadInput::new(PadMap::usual()),
+        records,
+        clock: Clock::start(),
+        stop: Arc::new(|| ()),
+        wake: Arc::new(|| ()),
+    });
+    let until = async |so: &dyn Fn(&PadView) -> bool| {
+        let waits = async {
+            while !so(&source.view()) {
+                tokio::time::sleep(Duration::from_millis(5)).await;
+            }
+        };
+        timeout(PATIENCE, waits).await.unwrap();
+    };
+    until(&|view| view.name.is_some()).await;
+    for at in [400, 700] {
+        let pose = [("Pinch".to_owned(), angles([at; 6]))];
+        source.set_poses(pose.into());
+        for (name, value) in [
+            ("BTN_TL", 0),
+            ("BTN_SOUTH", 0),
+            ("BTN_TL", 1),
+            ("BTN_SOUTH", 1),
+        ] {
+            let says = [DeviceSays::Event(event(name, value)), DeviceSays::Whole];
+            let mut plugs = pads.0.lock().unwrap();
+            plugs.values_mut().for_each(|plug| plug.say(&says, &[]));
+        }
+        until(&|view| view.aims == angles([at; 6])).await;
+    }
+    drop(link);
 }
 
 #[tokio::test]

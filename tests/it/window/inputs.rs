@@ -8,6 +8,7 @@ use handscope::app::inputs::InputAction;
 use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
+use handscope::poses::edit::{LibraryEdit, PoseEdit};
 use handscope::record::LinkState;
 use handscope::ui::View;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -139,6 +140,26 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(TcpStream::connect(at).is_err());
     assert!(TcpStream::connect(viewed).is_err());
     assert!(bench.state().hand().inputs.dds_view.is_none());
+}
+
+#[test]
+fn the_list_of_a_gamepad_has_a_persons_own_poses_and_says_which_is_missing() {
+    let mut bench = Bench::live();
+    bench.show(View::Inputs);
+    bench.run(100);
+    assert!(bench.shows("A (bottom): Pose Pinch"));
+    bench.act(Action::Capture("Mine".into()));
+    bench.run(100);
+    bench.choose("A (bottom)", "Pose Mine");
+    assert!(bench.shows("A (bottom): Pose Mine"));
+    let mine = bench.state().poses.newest.unwrap();
+    let delete = LibraryEdit::Pose(mine, PoseEdit::Delete);
+    bench.act(Action::Library(delete));
+    bench.run(100);
+    assert!(bench.shows("A (bottom): Pose Mine (not in the library)"));
+    bench.act(Action::HideShipped("Open".into(), true));
+    bench.run(100);
+    assert!(bench.shows("Y (top): Pose Open (not in the library)"));
 }
 
 /// When the first angle was written that holds the joints, after this moment.
