@@ -74,6 +74,8 @@ pub enum NoticeKind {
     Disarmed(Disarmed),
     /// What the hand followed fell silent; the hand was stopped.
     SourceSilent(Owner),
+    /// This hand was stopped or lost while another led it, and that one was stopped, too.
+    LeaderStopped,
     /// The hand cannot be armed.
     ArmRefused(ArmRefusal),
     /// A joint is not well.

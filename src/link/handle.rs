@@ -356,13 +356,12 @@ impl LinkHandle {
 pub struct LinkStopper(Weak<LinkShared>);
 
 impl LinkStopper {
-    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise.
-    pub fn stop_if_moved(&self) {
-        let Some(link) = self.0.upgrade().map(LinkHandle) else {
-            return;
-        };
-        if link.status().holder.is_some() {
-            link.stop();
-        }
+    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise. True if it
+    /// was told to stop.
+    #[must_use]
+    pub fn stop_if_moved(&self) -> bool {
+        let link = self.0.upgrade().map(LinkHandle);
+        let moved = link.filter(|link| link.status().holder.is_some());
+        moved.inspect(LinkHandle::stop).is_some()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
-use crate::app::inputs::FollowRun;
+use crate::app::inputs::{FollowOutcome, FollowRun};
 use crate::app::running::Running;
 use crate::app::settings::Settings;
 use crate::hand::{Angle, Dof, PerDof};
@@ -113,10 +113,11 @@ impl HandState {
         let link = open.link.clone();
         let task = Running::start(env, |views| async move {
             let end = follow(&link, start, offers, |view| views.tell(view)).await;
-            if let Some(leader) = leader.filter(|_| stops_leader(end)) {
-                leader.stop_if_moved();
+            let leader = leader.filter(|_| stops_leader(end));
+            FollowOutcome {
+                end,
+                leader_stopped: leader.is_some_and(|leader| leader.stop_if_moved()),
             }
-            end
         });
         self.inputs.follow = Some(FollowRun {
             owner,

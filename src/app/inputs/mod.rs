@@ -145,7 +145,15 @@ pub struct FollowRun {
     /// How it goes.
     pub view: Option<FollowView>,
     pub(crate) terms: watch::Sender<FollowTerms>,
-    pub(crate) task: Running<FollowView, FollowEnd>,
+    pub(crate) task: Running<FollowView, FollowOutcome>,
+}
+
+/// How following ended.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FollowOutcome {
+    pub(crate) end: FollowEnd,
+    /// The hand that led was told to stop, too.
+    pub(crate) leader_stopped: bool,
 }
 
 impl HandInputs {

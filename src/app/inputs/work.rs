@@ -216,9 +216,12 @@ impl HandState {
             run.view = Some(view);
             self.show_sent(view.sent);
         }
-        if let Some(end) = end {
+        if let Some(outcome) = end {
             self.inputs.follow = None;
-            if matches!(end, FollowEnd::Silent | FollowEnd::Gone) {
+            if outcome.leader_stopped {
+                notices.push(self.now, NoticeKind::LeaderStopped);
+            }
+            if matches!(outcome.end, FollowEnd::Silent | FollowEnd::Gone) {
                 notices.push(self.now, NoticeKind::SourceSilent(owner));
             }
             self.follow();

@@ -9,6 +9,7 @@ use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::poses::library::EntryId;
+use crate::record::ArmRefusal;
 use crate::ui::text::{Text, inputs, main};
 use crate::ui::theme::Palette;
 use crate::ui::view::View;
@@ -148,7 +149,11 @@ impl Pane<'_> {
         if self.state.hand().outside_owner().is_some() {
             return Some(self.look.say(inputs::TAKEN));
         }
-        (!self.state.hand().is_armed()).then(|| self.look.say(main::NOT_ARMED))
+        let advice = match self.state.hand().arm_refusal() {
+            Some(ArmRefusal::LetGo) => main::REFUSED_LET_GO,
+            _ => main::NOT_ARMED,
+        };
+        (!self.state.hand().is_armed()).then(|| self.look.say(advice))
     }
 
     /// How fresh something asked for at `asked` is.

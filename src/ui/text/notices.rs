@@ -95,6 +95,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             }
         }
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
+        NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
         }

@@ -97,6 +97,7 @@ texts! {
     DISARMED_OTHER_CONTROLLER: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
     DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
     DISARMED_RELEASED: "Not armed: nobody holds what has to be held.", "未使能：没有按住需要按住的键。";
+    LEADER_STOPPED: "The hand that led this one was stopped, too.", "带动此手的那只手也已停下。";
     SOURCE_SILENT: "{} fell silent: the hand was stopped.", "{} 已无数据：灵巧手已停下。";
     DISARMED_SILENT: "Not armed any more: who moved the hand fell silent.", "已取消使能：控制来源已无数据。";
 

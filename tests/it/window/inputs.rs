@@ -214,6 +214,10 @@ fn while_hold_to_run_is_on_the_button_says_which_key_arms() {
     bench.run(1000);
     assert!(!bench.texts_with("holding the H key arms").is_empty());
     bench.point_away();
+    bench.click("Go to Thumbs up");
+    bench.run(100);
+    assert!(bench.shows("Hold the H key: hold to run is on."));
+    assert!(!bench.shows("Not armed: press Arm first."));
     bench.key_down(Key::H);
     bench.run(300);
     assert!(!bench.is_disabled(Role::Button, "Disarm the hand"));

@@ -7,6 +7,7 @@ use handscope::app::hand::HandState;
 use handscope::app::hand::slot::SlotId;
 use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::InputAction;
+use handscope::app::notices::NoticeKind;
 use handscope::hand::{Angle, Dof, Fault, register};
 use handscope::inputs::follow::FollowPhase;
 use handscope::inputs::mirror::MirrorScale;
@@ -216,6 +217,8 @@ fn a_lost_follower_stops_a_leader_that_is_moved_here() {
     let at = bench.angle(Dof::Index);
     bench.run(2000);
     assert!((bench.angle(Dof::Index) - at).abs() <= 60, "it went on");
+    let mut told = bench.state().notices.iter();
+    assert!(told.any(|told| told.what == NoticeKind::LeaderStopped));
     assert!(bench.angle(Dof::Index) > 100);
     assert_eq!(hand(&bench, 0).link.holder, None);
 }
@@ -234,6 +237,8 @@ fn a_leader_that_nobody_here_moves_is_never_written_to() {
     bench.until(1500, |bench| !hand(bench, 1).is_armed());
     bench.run(500);
     assert_eq!(bench.writes().len(), 1, "what the test wrote itself");
+    let mut told = bench.state().notices.iter();
+    assert!(told.all(|told| told.what != NoticeKind::LeaderStopped));
     assert_eq!(hand(&bench, 0).link.state, LinkState::Monitoring);
 }
 
