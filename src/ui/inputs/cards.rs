@@ -147,6 +147,10 @@ impl SourceCards {
             let switch = (InputKind::Gateway, inputs::SHARE, action);
             switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
         });
+        if pane.state.settings.first_client_moves {
+            let label = Label::new(look.say(inputs::FIRST_CLIENT), look.palette.warn);
+            label.wrap().ui(ui);
+        }
         let clients = pane.state.hand().inputs.clients.clone();
         if at.is_some() && clients.is_empty() {
             Label::muted(look, inputs::NO_CLIENTS).ui(ui);

@@ -37,6 +37,7 @@ texts! {
     ANSWERS: "answers", "有应答";
     ANSWERS_NOT: "does not answer", "没有应答";
     GATEWAY: "Gateway", "网关", "Several Modbus TCP programs at this hand ('handscope help share'). They read; who may move the hand you say here.", "多个 Modbus TCP 程序共用此灵巧手（'handscope help share'）。它们可以读取；由谁控制在此决定。";
+    FIRST_CLIENT: "The first client that writes may move the hand: the settings file says so (first_client_moves).", "先写入的程序可直接控制：设置文件如此规定（first_client_moves）。";
     GATEWAY_AT: "Address of the gateway", "网关地址";
     SHARE: "Share", "共享", "Serves Modbus TCP at this address.", "在此地址提供 Modbus TCP 服务。";
     NO_CLIENTS: "Nobody is connected.", "没有连接。";

@@ -6,13 +6,15 @@ use egui::Key;
 use handscope::app::action::Action;
 use handscope::app::inputs::InputAction;
 use handscope::app::settings::Language;
+use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
 use handscope::poses::edit::{LibraryEdit, PoseEdit};
 use handscope::record::LinkState;
 use handscope::ui::View;
+use std::io::Write as _;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Listens for datagrams on a free port, as a person does it; where that is.
 fn listening(bench: &mut Bench) -> SocketAddr {
@@ -271,5 +273,42 @@ fn a_program_too_moves_the_hand_only_while_the_key_is_held() {
         let before = bench.writes().len();
         send(&mut bench, &sender, to, 500);
         assert_eq!(bench.writes().len(), before);
+    }
+}
+
+#[test]
+fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
+    for allows in [false, true] {
+        let mut bench = Bench::with(Settings {
+            first_client_moves: allows,
+            ..Settings::default()
+        });
+        bench.wait(1000);
+        bench.show(View::Inputs);
+        bench.act(Action::Input(InputAction::Share(
+            "127.0.0.1:0".parse().ok(),
+        )));
+        bench.run(200);
+        let told = bench.texts_with("The first client that writes may move the hand");
+        assert_eq!(told.is_empty(), !allows);
+        let at = bench.state().hand().inputs.gateway_at.unwrap();
+        let mut client = TcpStream::connect(at).unwrap();
+        // One register of Modbus TCP: the index finger, to 700.
+        let write = [0, 1, 0, 0, 0, 6, 255, 6, 0x05, 0xD4, 0x02, 0xBC];
+        client.write_all(&write).unwrap();
+        let patience = Instant::now() + Duration::from_secs(20);
+        let is_answered = |bench: &Bench| {
+            let clients = &bench.state().hand().inputs.clients;
+            clients.iter().any(|client| client.refusal.is_some())
+                || bench.state().hand().outside_owner().is_some()
+        };
+        while !is_answered(&bench) {
+            assert!(Instant::now() < patience);
+            bench.run(100);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        bench.run(500);
+        assert_eq!(bench.state().hand().outside_owner().is_some(), allows);
+        assert_eq!(bench.writes().is_empty(), !allows);
     }
 }
