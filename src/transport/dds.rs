@@ -20,8 +20,6 @@ use tokio::sync::mpsc;
 pub const DOMAIN_MAX: u16 = 232;
 /// Messages that may wait to be looked at; a reader keeps the newest of those beyond.
 const MESSAGES_MAX: usize = 64;
-/// Messages that a reader keeps until they are taken, of each topic: two thirds of a second of commands.
-const KEPT: i32 = 64;
 /// The head of a message in little-endian CDR, which DDS keeps apart from its body.
 const HEAD: usize = 4;
 
@@ -149,14 +147,19 @@ impl DdsNode {
         })
     }
 
-    /// The messages of a topic from now on, of every writer, reliable or not. Must be called within a tokio runtime.
+    /// The messages of a topic from now on, of every writer, reliable or not; the newest so many are kept until they are taken. Must
+    /// be called within a tokio runtime.
     ///
     /// # Errors
     /// [`DdsError::Library`].
-    pub fn reader(&self, topic: &DdsTopic) -> Result<mpsc::Receiver<DdsMessage>, DdsError> {
+    pub fn reader(
+        &self,
+        topic: &DdsTopic,
+        kept: u16,
+    ) -> Result<mpsc::Receiver<DdsMessage>, DdsError> {
         let anyhow = QosPolicyBuilder::new()
             .durability(Durability::Volatile)
-            .history(History::KeepLast { depth: KEPT })
+            .history(History::KeepLast { depth: kept.into() })
             .reliability(Reliability::BestEffort)
             .build();
         let topic = self.topic(topic, &anyhow)?;

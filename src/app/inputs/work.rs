@@ -169,7 +169,7 @@ impl HandState {
         };
         let card = self.fleet_card(settings);
         let joined = SharedOnDds::open(&place, &open.link, card).and_then(|shared| {
-            let messages = shared.node.reader(&ctrl::topic(self.side))?;
+            let messages = shared.node.reader(&ctrl::topic(self.side), ctrl::KEPT)?;
             let source = DdsSource::open(config, messages);
             Ok(JoinedDds { shared, source })
         });

@@ -102,7 +102,7 @@ impl FollowSource {
             ..args.dds.card(hand)
         };
         if let Some(out) = args.dds.open(link, card)? {
-            let messages = out.node.reader(&ctrl::topic(args.side))?;
+            let messages = out.node.reader(&ctrl::topic(args.side), ctrl::KEPT)?;
             let config = DdsSourceConfig {
                 allowed,
                 clock,

@@ -11,6 +11,8 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 /// Four lists of six numbers, the mode and the head are shorter.
 const BYTES_MAX: usize = 80;
+/// Messages that wait to be taken: two thirds of a second of them, so that none is followed that is much older.
+pub const KEPT: u16 = 64;
 /// The bits of the mode, and what each lets pass.
 const ANGLE: u8 = 1;
 const POSITION: u8 = 2;

@@ -12,6 +12,9 @@ use tokio::time::interval;
 /// How often the list is looked through, and may change for those who look at it.
 const SHOWN_EACH: Duration = Duration::from_millis(100);
 
+/// As many hands may change at once.
+const KEPT: u16 = 512;
+
 /// The list of hands, kept. Dropped, nobody listens any more.
 #[derive(Debug)]
 pub struct FleetList {
@@ -32,7 +35,7 @@ impl FleetList {
     /// # Errors
     /// [`DdsError`], if the library does not make the reader.
     pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Result<Self, DdsError> {
-        let messages = node.reader(&topic())?;
+        let messages = node.reader(&topic(), KEPT)?;
         let (told, shown) = watch::channel(Vec::new());
         let interface = node.address();
         let listening = listen(messages, interface, clock, move |list| {

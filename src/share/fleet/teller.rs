@@ -66,10 +66,12 @@ impl Telling {
             let (state, owner) = told;
             // One that is lost is told again soon.
             let _is_sent = self.writer.send(FleetHand { card, state, owner }.message());
+            // Of many that began together not all speak at once for ever.
+            let pause = TOLD_EACH.mul_f64(0.75 + 0.25 * fastrand::f64());
             let is_open = tokio::select! {
                 changed = self.status.wait_for(|status| of(status) != told) => changed.is_ok(),
                 changed = cards.changed() => changed.is_ok(),
-                () = sleep(TOLD_EACH) => true,
+                () = sleep(pause) => true,
             };
             if !is_open {
                 return;

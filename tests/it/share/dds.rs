@@ -40,7 +40,7 @@ fn states(node: &DdsNode) -> mpsc::Receiver<DdsMessage> {
         name: "rt/inspire_hand/state/l".into(),
         type_name: "inspire::inspire_hand_state".into(),
     };
-    node.reader(&topic).unwrap()
+    node.reader(&topic, 64).unwrap()
 }
 
 type Lists = (
