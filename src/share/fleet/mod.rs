@@ -16,6 +16,6 @@ pub use teller::{FleetTeller, host};
 use std::time::Duration;
 
 /// A hand is told again after so long at the most, also if nothing changed.
-pub const TOLD_EACH: Duration = Duration::from_millis(400);
-/// A hand of which nothing was heard for so long is no longer listed: three notices were lost, or nobody tells.
+pub const TOLD_EACH: Duration = Duration::from_millis(600);
+/// A hand of which nothing was heard for so long is no longer listed: two notices in a row were lost, or nobody tells.
 pub const GONE_AFTER: Duration = Duration::from_millis(1500);
