@@ -294,6 +294,26 @@ fn what_is_open_in_one_slot_is_refused_in_another() {
 }
 
 #[test]
+fn several_hands_are_open_at_one_can_interface_and_each_id_once() {
+    let mut bench = two();
+    let connect = |bench: &mut Bench, url: &str| {
+        bench.act(Action::Connect(url.parse().unwrap()));
+        bench.run(100);
+        let open = &bench.state().hand().endpoint;
+        open.as_ref() == Some(&url.parse::<Endpoint>().unwrap())
+    };
+    for url in ["can:can7?id=1", "can:can7?id=2"] {
+        bench.act(Action::Hands(HandsAction::Add));
+        assert!(connect(&mut bench, url), "{url}");
+    }
+    bench.act(Action::Hands(HandsAction::Add));
+    for url in ["can:can7?id=1", "can:can7?id=2"] {
+        assert!(!connect(&mut bench, url), "{url}");
+    }
+    assert!(connect(&mut bench, "can:can7?id=3"));
+}
+
+#[test]
 fn a_hand_that_is_taken_away_is_held_first_and_the_last_one_stays() {
     let mut bench = two_armed();
     let before = bench.addresses_at(SECOND).len();

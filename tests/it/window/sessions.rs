@@ -1,9 +1,10 @@
 //! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
 
-use crate::setup::window::{Bench, LARGE};
+use crate::setup::window::{ANGLE_SET, Bench, LARGE};
 use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
+use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
@@ -115,6 +116,41 @@ fn the_hand_of_a_replay_leads_none() {
     let live = bench.live_state();
     for hand in live.hands.iter() {
         assert!(hand.inputs.mirror.is_none() && hand.outside_owner().is_none());
+    }
+}
+
+#[test]
+fn a_stop_while_a_session_is_shown_holds_every_live_hand() {
+    const OTHER: &str = "tcp:10.0.0.2:6000";
+    for key in [egui::Key::Space, egui::Key::Escape] {
+        let mut bench = bench(Scenario::Free);
+        let path = ended(&mut bench);
+        bench.open_another(OTHER);
+        for slot in bench
+            .state()
+            .hands
+            .iter()
+            .map(|hand| hand.label.slot)
+            .collect::<Vec<_>>()
+        {
+            bench.act(Action::Hands(HandsAction::Show(slot)));
+            bench.run(40);
+            bench.click("Arm the hand");
+            bench.run(200);
+        }
+        assert!(bench.state().hands.iter().all(|hand| hand.is_armed()));
+        replay(&mut bench, path);
+        let before = [bench.addresses().len(), bench.addresses_at(OTHER).len()];
+        bench.key(key);
+        bench.run(400);
+        assert!(bench.live_state().hands.iter().all(|hand| !hand.is_armed()));
+        let written = [bench.addresses(), bench.addresses_at(OTHER)];
+        for (written, before) in written.iter().zip(before) {
+            assert!(
+                written[before..].contains(&ANGLE_SET),
+                "{key:?} {written:?}"
+            );
+        }
     }
 }
 
