@@ -172,26 +172,42 @@ pub(crate) fn hand_ui(
     (title, place): (&str, &str),
 ) {
     let look = pane.look;
+    let name = endpoint.to_string();
+    connect_ui(ui, pane, (Some(endpoint), &name, None), |ui| {
+        Label::new(title, look.palette.text).wrap().ui(ui);
+        if !place.is_empty() {
+            Label::new(place, look.palette.muted).small().wrap().ui(ui);
+        }
+    });
+}
+
+/// The button that connects to this endpoint, unless it is refused, with the button's name; beside it what there is to say.
+pub(crate) fn connect_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (endpoint, name, refusal): (Option<&Endpoint>, &str, Option<Text>),
+    about: impl FnOnce(&mut Ui),
+) {
+    let look = pane.look;
     let hand = pane.state.hand();
-    let is_now = hand.link.state.is_live() && hand.endpoint.as_ref() == Some(endpoint);
+    let is_now =
+        hand.link.state.is_live() && endpoint.is_some() && hand.endpoint.as_ref() == endpoint;
     let (text, weight) = if is_now {
         (scan::CONNECTED, Weight::Chosen)
     } else {
         (panels::CONNECT, Weight::Normal)
     };
     ui.horizontal(|ui| {
-        let name = format!("{}: {endpoint}", look.say(text));
+        let name = format!("{}: {name}", look.say(text));
         let button = Button::said(look, text).named(&name);
+        let button = button.disabled(refusal.map(|reason| look.say(reason)));
         let button = button.weight(weight).large().ui(ui, look);
-        if button.clicked() && !is_now {
+        if let Some(endpoint) = endpoint.filter(|_| button.clicked() && !is_now) {
             pane.actions.push(Action::Connect(endpoint.clone()));
         }
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            Label::new(title, look.palette.text).wrap().ui(ui);
-            if !place.is_empty() {
-                Label::new(place, look.palette.muted).small().wrap().ui(ui);
-            }
+            about(ui);
         });
     });
 }

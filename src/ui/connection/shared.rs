@@ -4,7 +4,8 @@ use crate::app::action::Action;
 use crate::hand::kinematics::Side;
 use crate::share::fleet::{FleetHand, reachable};
 use crate::ui::connection::link_words::state_color;
-use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::connection::scan::connect_ui;
+use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::text::{Text, errors, inputs, main, panels, scan};
 use crate::ui::theme;
 use egui::{Ui, vec2};
@@ -77,50 +78,42 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>, hand: &FleetHand) {
     let look = pane.look;
     let card = &hand.card;
     let endpoint = hand.endpoint();
-    let is_now = endpoint.is_some() && pane.state.hand().endpoint == endpoint;
-    let (text, weight) = match is_now && pane.state.hand().link.state.is_live() {
-        true => (scan::CONNECTED, Weight::Chosen),
-        false => (panels::CONNECT, Weight::Normal),
-    };
-    ui.horizontal(|ui| {
-        let name = format!("{}: {}", look.say(text), card.name);
-        let refusal = refusal(pane, hand).map(|reason| look.say(reason));
-        let button = Button::said(look, text).named(&name).disabled(refusal);
-        let clicked = button.weight(weight).large().ui(ui, look).clicked();
-        if let Some(endpoint) = endpoint.filter(|_| clicked && !is_now) {
-            pane.actions.push(Action::Connect(endpoint));
-        }
-        ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let title = format!("{} · {}", card.name, card.host);
-            Label::new(&title, look.palette.text).wrap().ui(ui);
-            ui.horizontal_wrapped(|ui| {
-                let state = look.say(main::link_state(hand.state));
-                Label::new(state, state_color(look, hand.state))
-                    .small()
-                    .ui(ui);
-                let side = look.say(match card.side {
-                    Side::Left => panels::LEFT_HAND,
-                    Side::Right => panels::RIGHT_HAND,
-                });
-                let owner = match hand.owner {
-                    Some(owner) => scan::mover(look, owner),
-                    None => look.say(scan::NOBODY_MOVES).to_owned(),
-                };
-                let first = card.first_may_move.then(|| look.say(scan::FIRST_MOVES));
-                let at = card.at.map(|at| at.to_string());
-                let rest = [
-                    Some(side.to_owned()),
-                    Some(owner),
-                    first.map(str::to_owned),
-                    at,
-                ];
-                let rest: Vec<String> = rest.into_iter().flatten().collect();
-                let rest = rest.join(" · ");
-                Label::new(&rest, look.palette.muted).small().wrap().ui(ui);
-            });
+    let connect = (endpoint.as_ref(), card.name.as_str(), refusal(pane, hand));
+    connect_ui(ui, pane, connect, |ui| {
+        let title = format!("{} · {}", card.name, card.host);
+        Label::new(&title, look.palette.text).wrap().ui(ui);
+        ui.horizontal_wrapped(|ui| {
+            let state = Label::new(
+                look.say(main::link_state(hand.state)),
+                state_color(look, hand.state),
+            );
+            state.small().ui(ui);
+            let about = about(look, hand).join(" · ");
+            Label::new(&about, look.palette.muted).small().wrap().ui(ui);
         });
     });
+}
+
+/// Which hand it is, who moves it or may, and where.
+fn about(look: Look, hand: &FleetHand) -> Vec<String> {
+    let card = &hand.card;
+    let side = match card.side {
+        Side::Left => panels::LEFT_HAND,
+        Side::Right => panels::RIGHT_HAND,
+    };
+    let owner = match hand.owner {
+        Some(owner) => scan::mover(look, owner),
+        None => look.say(scan::NOBODY_MOVES).to_owned(),
+    };
+    let first = card.first_may_move.then(|| look.say(scan::FIRST_MOVES));
+    let at = card.at.map(|at| at.to_string());
+    let all = [
+        Some(look.say(side).to_owned()),
+        Some(owner),
+        first.map(str::to_owned),
+        at,
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Why this hand cannot be connected to.
