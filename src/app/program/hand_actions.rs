@@ -26,9 +26,7 @@ impl State {
             settings,
             ..
         } = self;
-        if hands.is_several() {
-            notices.about(Some(&hands.shown().label));
-        }
+        notices.about(hands.is_several().then(|| &hands.shown().label));
         let hand = hands.shown_mut();
         hand.is_removed = false;
         hand.close_procedure();
@@ -44,9 +42,7 @@ impl State {
             settings,
             ..
         } = self;
-        if hands.is_several() {
-            notices.about(Some(&hands.shown().label));
-        }
+        notices.about(hands.is_several().then(|| &hands.shown().label));
         let hand = hands.shown_mut();
         match action {
             Action::Arm => hand.arm(notices),
