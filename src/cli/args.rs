@@ -131,7 +131,7 @@ pub(crate) enum Command {
     Share(ShareArgs),
     /// List the hands that other Handscopes share, as they come and go
     #[command(
-        after_help = "Examples:\n  handscope fleet\n  handscope fleet eth0 --for 3 --json\n\nIt listens on DDS for who shares a hand with 'share --dds' or *Join* in its window ('handscope help dds'), and connects to none. A line says the computer, the hand, how it is, who moves it, and the URL to watch it at.\n\nExit status: 0 ended by Ctrl-C or by --for; 1 there is no such interface; 2 wrong usage."
+        after_help = "Examples:\n  handscope fleet\n  handscope fleet eth0 --for 3 --json\n\nIt listens on DDS for who shares a hand with 'share --dds' or with 'Join' in its window ('handscope help dds'), and connects to none. A line says the computer, the hand, how it is, who moves it, and the URL to watch it at.\n\nExit status: 0 ended by Ctrl-C or by --for; 1 there is no such interface; 2 wrong usage."
     )]
     Fleet(FleetArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN

@@ -63,7 +63,7 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
         }
         let interface = node.address();
         say(&format!(
-            "no hand is told of at {interface}: on its computer it is shared with 'share --dds', at an interface of this network"
+            "no hand is shared at {interface}: share one with 'handscope share --hand URL --tcp ADDR:PORT --dds', or name the network interface to look at"
         ));
     }
     Ok(())

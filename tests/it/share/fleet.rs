@@ -266,7 +266,7 @@ fn hands_of_other_processes_are_listed_and_a_killed_one_is_gone() {
 fn where_nobody_shares_or_nothing_is_one_sentence_says_so() {
     let ended = run(&["fleet", "--domain", "56", "--for", "0.5"]).ok();
     assert!(
-        ended.out.is_empty() && ended.err.contains("no hand is told of at 127.0.0.1"),
+        ended.out.is_empty() && ended.err.contains("no hand is shared at 127.0.0.1"),
         "{}",
         ended.err
     );
