@@ -83,8 +83,7 @@ impl FollowArgs {
 
 /// Follows until a person ends it.
 pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> {
-    if args.from.is_circle(&args.hand) {
-        let why = "a hand cannot follow itself; name another one with --mirror";
+    if let Some(why) = args.from.wrong(&args.hand) {
         return Err(WrongUsage::error(why));
     }
     let mut interrupt = Interrupt::listen()?;

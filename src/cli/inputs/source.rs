@@ -68,9 +68,14 @@ fn scale(text: &str) -> Result<MirrorScale, String> {
 }
 
 impl SourceArgs {
-    /// Whether this hand would follow itself. Each built-in hand is one of its own.
-    pub(super) fn is_circle(&self, hand: &Endpoint) -> bool {
-        !matches!(hand, Endpoint::Sim { .. }) && self.mirror.as_ref() == Some(hand)
+    /// What of it cannot be meant for this hand, if anything.
+    pub(super) fn wrong(&self, hand: &Endpoint) -> Option<&'static str> {
+        // Each built-in hand is one of its own.
+        let is_built_in = matches!(hand, Endpoint::Sim { .. });
+        match self.mirror.as_ref() == Some(hand) && !is_built_in {
+            true => Some("a hand cannot follow itself; name another one with --mirror"),
+            false => self.dds.wrong(),
+        }
     }
 }
 

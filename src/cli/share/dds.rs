@@ -18,9 +18,9 @@ pub(crate) struct DdsArgs {
     /// without one at 127.0.0.1, which keeps it to this computer
     #[arg(long, value_name = "INTERFACE", num_args = 0..=1, require_equals = true, default_missing_value = LOOPBACK)]
     dds: Option<String>,
-    /// With --dds: the domain, 0 to 232; Unitree's simulation uses 1
-    #[arg(long, value_name = "NUMBER", requires = "dds", default_value = "0", value_parser = domain)]
-    domain: u16,
+    /// With --dds: the domain, 0 to 232; Unitree's simulation uses 1 [default: 0]
+    #[arg(long, value_name = "NUMBER", requires = "dds", value_parser = domain)]
+    domain: Option<u16>,
     /// With --dds: what other Handscopes' lists call the hand [default: its URL]
     #[arg(long, value_name = "NAME", requires = "dds")]
     name: Option<String>,
@@ -31,6 +31,12 @@ pub(crate) fn domain(text: &str) -> Result<u16, String> {
 }
 
 impl DdsArgs {
+    /// What is given and counts for nothing: clap does not ask for --dds beside what excludes it.
+    pub(crate) fn wrong(&self) -> Option<&'static str> {
+        let is_named = self.domain.is_some() || self.name.is_some();
+        (is_named && self.dds.is_none()).then_some("--domain and --name belong to --dds")
+    }
+
     /// What is said of this hand, a right one without a gateway.
     pub(crate) fn card(&self, hand: &Endpoint) -> FleetCard {
         FleetCard {
@@ -53,7 +59,7 @@ impl DdsArgs {
         };
         let place = DdsPlace {
             interface: interface.clone(),
-            domain: self.domain,
+            domain: self.domain.unwrap_or_default(),
         };
         let shared = SharedOnDds::open(&place, link, card)?;
         let address = shared.node.address();

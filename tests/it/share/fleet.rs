@@ -280,4 +280,10 @@ fn where_nobody_shares_or_nothing_is_one_sentence_says_so() {
         ended.err
     );
     assert_eq!(run(&["fleet", "--domain", "233"]).code, Some(2));
+    for unused in [["--name", "egg"], ["--domain", "3"]] {
+        let follow = ["follow", "--hand", "sim:", "--udp", "127.0.0.1:0"];
+        let ended = run(&[&follow[..], &unused].concat());
+        assert_eq!(ended.code, Some(2), "{}", ended.err);
+        assert!(ended.err.contains("belong to --dds"), "{}", ended.err);
+    }
 }
