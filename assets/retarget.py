@@ -2,7 +2,9 @@
 """Lets a hand follow recorded hand tracking: retarget.py RECORDING.csv HOST:PORT [right|left]
 
 RECORDING has a row a frame: seconds, then x, y, z of 21 landmarks in the usual order (wrist, thumb, index, middle, ring, little, each from
-the palm to the tip), in any unit. What a live tracker gives goes the same way: bends() of its landmarks. Python 3 alone is needed.
+the palm to the tip), in any unit that is the same on all three axes: pixels across and down with a depth in metres are none. What a live
+tracker gives goes the same way: bends() of its landmarks. A value that cannot be reckoned is null, which leaves that joint alone. Python 3
+alone is needed.
 """
 import csv, json, math, socket, sys, time
 
@@ -28,6 +30,8 @@ def bend(points):
 
 
 def share(value, least_most):
+    if not math.isfinite(value):
+        return None  # a landmark that is not known: nobody knows where the joint should go, and 0 would be a fist
     least, most = least_most
     return min(1.0, max(0.0, (most - value) / (most - least)))  # 0 bent, 1 open
 
@@ -54,7 +58,7 @@ def main(recording, to, side="right"):
         points = [numbers[at : at + 3] for at in range(0, 63, 3)]
         # Frames in which the hand was not seen are not in the file: nothing is sent, and the hand holds.
         time.sleep(max(0.0, began + seconds - time.monotonic()))
-        values = [round(value, 4) for value in bends(points)]
+        values = [None if value is None else round(value, 4) for value in bends(points)]
         udp.sendto(json.dumps({"seq": seq, side: values}).encode(), (host, int(port)))
 
 

@@ -46,10 +46,12 @@
 //! * Parameters are written at rest and disarmed, read back, and reported as applied, refused, altered or not known. A SAVE has
 //!   the line to itself, one at a time, and no late frame counts for another write. Flash cannot be read, and the program says so.
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
+//! * Whatever ends the program stops the hands first ([`link::guard`]); where it cannot, as it is killed, a process of its own does
+//!   ([`link::holder`]).
 //! * No request outlives a lost link.
 //! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded, and in the session.
 //! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN, or a visitor
-//!   held a tile where the file allows that; a stop, a lost link or
+//!   held a tile where the file allows that; a stop, a lost link, a page that is not drawn or
 //!   a fault that needs a person ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;

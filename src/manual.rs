@@ -40,6 +40,7 @@ topics! {
     dds: "a hand on DDS: Unitree's programs and ROS 2";
     share: "one hand for several programs: reads, writes, who may move it";
     json: "what the commands print with --json";
+    licences: "what the program is linked with, by licence";
     figures: "how fast it is, and what each wire can carry";
 }
 

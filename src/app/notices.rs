@@ -4,9 +4,9 @@ use crate::app::hand::slot::HandLabel;
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
-use crate::record::file::OpenError;
+use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
-use crate::record::{ArmRefusal, Disarmed};
+use crate::record::{ArmRefusal, Disarmed, SetpointConflict};
 use crate::store::FileError;
 use crate::trials::Abort;
 use std::collections::VecDeque;
@@ -72,6 +72,8 @@ pub enum NoticeKind {
     },
     /// The hand is not armed any more, and no person asked for it.
     Disarmed(Disarmed),
+    /// The hand is not armed any more, for another controller wrote this.
+    DisarmedByOther(SetpointConflict),
     /// What the hand followed fell silent; the hand was stopped.
     SourceSilent(Owner),
     /// This hand was stopped or lost while another led it, and that one was stopped, too.
@@ -156,6 +158,8 @@ pub enum NoticeKind {
         /// Why.
         why: OpenError,
     },
+    /// Something happened to the file that a hand is recorded into.
+    Recording(RecorderNotice),
     /// A recording was to be shown while something goes on at the hand that a person must see.
     NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.
@@ -182,6 +186,11 @@ pub enum NoticeKind {
         path: PathBuf,
         /// Trials in it.
         trials: usize,
+    },
+    /// No process could be started that stops the hand if this program is killed.
+    Unguarded {
+        /// The system's words.
+        why: String,
     },
     /// OpenGL did not start, so the program draws its window by itself.
     DrawnWithoutOpenGl {

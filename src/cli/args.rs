@@ -2,6 +2,7 @@
 
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::help::{self, HelpArgs};
+use crate::cli::hold::HoldArgs;
 use crate::cli::inputs::follow::FollowArgs;
 use crate::cli::inputs::show::InputsArgs;
 use crate::cli::params::ParamsArgs;
@@ -106,7 +107,7 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter session file
     #[command(
-        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
+        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n  handscope export mon.mcap tue.mcap --lerobot --episode notes --out eggs\n  handscope export grasp.mcap --csv --from -10 --out - | gzip > end.csv.gz\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
     )]
     Export(ExportArgs),
     /// Write a whole copy of a session file that is damaged or was not closed
@@ -116,7 +117,7 @@ pub(crate) enum Command {
     Recover(RecoverArgs),
     /// Make a session file of the values that 'export --csv' wrote
     #[command(
-        after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n\nColumns are known by their names, in any order; others are skipped and named. What no column says stays unknown: the day, the hand, what it kept, the bytes on the wire."
+        after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n  handscope import monday.csv tuesday.csv\n\nColumns are known by their names, in any order; others are skipped and named. What no column says stays unknown: the day, the hand, what it kept, the bytes on the wire."
     )]
     Import(ImportArgs),
     /// Be a hand that says what was recorded, on the wires of 'handscope sim'
@@ -139,6 +140,9 @@ pub(crate) enum Command {
         after_help = sim::help()
     )]
     Sim(SimArgs),
+    /// Hold a hand if the program that started this one dies: started by whatever arms a hand, tied by its standard input
+    #[command(hide = true)]
+    Hold(HoldArgs),
     /// Print the register map
     Registers(RegistersArgs),
     /// Explain a command or a topic of the manual

@@ -1,5 +1,5 @@
-//! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, ask the program to end; SIGUSR1 cuts the power of the simulated hand. Ends
-//! nothing itself.
+//! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, ask the program to end; SIGUSR1 cuts the power of the simulated hand,
+//! SIGUSR2 freezes what it tells. Ends nothing itself.
 
 #[cfg(unix)]
 use anyhow::Context as _;
@@ -33,6 +33,12 @@ impl Interrupt {
         Self::on(&[SignalKind::user_defined1()]).context("cannot listen for SIGUSR1")
     }
 
+    /// Listens for a request to freeze what the simulated hand tells, or to undo that: SIGUSR2. Must be called within a tokio
+    /// runtime.
+    pub(crate) fn freeze() -> anyhow::Result<Self> {
+        Self::on(&[SignalKind::user_defined2()]).context("cannot listen for SIGUSR2")
+    }
+
     fn on(kinds: &[SignalKind]) -> std::io::Result<Self> {
         let signals = kinds.iter().map(|kind| signal(*kind));
         signals
@@ -55,6 +61,11 @@ impl Interrupt {
 
     /// Nothing to listen for here.
     pub(crate) fn power_cut() -> anyhow::Result<Self> {
+        Ok(Self { is_ctrl_c: false })
+    }
+
+    /// Nothing to listen for here.
+    pub(crate) fn freeze() -> anyhow::Result<Self> {
         Ok(Self { is_ctrl_c: false })
     }
 

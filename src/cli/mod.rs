@@ -3,12 +3,14 @@
 mod args;
 mod doctor;
 mod help;
+mod hold;
 mod inputs;
 mod interrupt;
 mod listen;
 mod out;
 mod params;
 mod parse;
+mod progress;
 mod quirks;
 mod read;
 mod recordings;
@@ -23,10 +25,12 @@ mod watch;
 mod window;
 mod wires;
 
+use crate::link::{guard, holder};
 use anyhow::Context as _;
 use args::{Cli, Command};
 use clap::{CommandFactory as _, Parser as _};
 use out::{AlreadyReported, Out, ReaderGone, WrongUsage};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use tokio::runtime::Builder;
 
@@ -39,9 +43,15 @@ const WRONG_USAGE: u8 = 2;
 #[must_use]
 pub fn run() -> ExitCode {
     let Cli { command, window } = Cli::parse();
-    let done = match command {
-        None => window::run(window),
+    holder::use_this_program(out::say);
+    tell_panics();
+    let done = catch_unwind(AssertUnwindSafe(|| match command {
+        None => has_room_for_files().and_then(|()| window::run(window)),
         Some(command) => obey(command),
+    }));
+    let Ok(done) = done else {
+        // Told when it happened.
+        return ExitCode::FAILURE;
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -58,8 +68,28 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// A panic on any thread stops each hand that may move, and is told in one sentence. Where a backtrace was asked for, it comes too.
+fn tell_panics() {
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        guard::hold_all();
+        if std::env::var_os("RUST_BACKTRACE").is_some() {
+            default(panic);
+        }
+        let place = panic.location().map(ToString::to_string);
+        let (place, words) = (place.unwrap_or_default(), panic.payload_as_str());
+        let words = words.unwrap_or("no words").replace('\n', " ");
+        out::say(&format!(
+            "a fault of this program, please report it ({place}: {words}); each hand that it moved is told to stop"
+        ));
+    }));
+}
+
 fn obey(command: Command) -> anyhow::Result<()> {
     let mut out = Out::stdout();
+    if matches!(command, Command::Snapshot(_) | Command::Exhibit(_)) {
+        has_room_for_files()?;
+    }
     let done = match command {
         Command::Snapshot(args) => window::snapshot::run(&mut out, &args),
         Command::Watch(args) => wait_for(watch::run(&mut out, &args)),
@@ -82,6 +112,10 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
+        Command::Hold(args) => match hold::is_needed() {
+            true => wait_for(hold::run(&args)),
+            false => Ok(()),
+        },
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),
     };
     // Output from before a failure is shown as well.
@@ -89,8 +123,33 @@ fn obey(command: Command) -> anyhow::Result<()> {
     done.and(shown)
 }
 
+/// Files, sockets and timers that a runtime and the command on it open at least. A runtime that cannot open its own does not say
+/// so in words.
+#[cfg(unix)]
+const FILES_NEEDED: usize = 16;
+
+/// Whether so many more files may be open.
+#[cfg(unix)]
+fn has_room_for_files() -> anyhow::Result<()> {
+    let opened = || std::fs::File::open("/dev/null");
+    let opened: std::io::Result<Vec<_>> = (0..FILES_NEEDED).map(|_| opened()).collect();
+    match opened {
+        Ok(_all) => Ok(()),
+        Err(error) => Err(anyhow::anyhow!(
+            "cannot begin: too few files may be open at once ({error}); raise the limit with 'ulimit -n 1024'"
+        )),
+    }
+}
+
+/// There is no such limit here.
+#[cfg(not(unix))]
+fn has_room_for_files() -> anyhow::Result<()> {
+    Ok(())
+}
+
 /// Carries out a command on a runtime of one thread: a slow reader of our output slows the polling down, and no sample is lost.
 fn wait_for(command: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
+    has_room_for_files()?;
     let runtime = Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("cannot start the runtime")?;
     let done = runtime.block_on(command);

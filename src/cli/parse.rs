@@ -22,6 +22,26 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     Ok(Duration::from_secs_f64(seconds))
 }
 
+/// A time in a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SessionTime {
+    /// So long after its start.
+    FromStart(Duration),
+    /// So long before its end.
+    BeforeEnd(Duration),
+}
+
+/// Seconds from the start of a recording, or behind a minus before its end.
+pub(crate) fn session_time(text: &str) -> Result<SessionTime, String> {
+    match text.strip_prefix('-') {
+        Some(before) if !before.starts_with(['+', '-']) => {
+            seconds(before).map(SessionTime::BeforeEnd)
+        }
+        Some(_) => Err(format!("'{text}' is not a number of seconds")),
+        None => seconds(text).map(SessionTime::FromStart),
+    }
+}
+
 /// A number within bounds; `what` says what it should be.
 pub(crate) fn number<T: FromStr + PartialOrd>(
     text: &str,

@@ -53,7 +53,7 @@ fn right<const WIDTH: usize>(cell: &str) -> String {
 pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
     let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(RegisterRow::from).as_slice())?;
     if as_json {
-        return out.line(&serde_json::to_string_pretty(&rows)?);
+        return out.object(&rows);
     }
     out.line(&COLUMNS.map(|(title, _, fill)| fill(title)).join(" "))?;
     for row in rows.as_array().into_iter().flatten() {

@@ -27,7 +27,7 @@ pub(crate) struct SimArgs {
     /// Random seed of the first hand; each further hand takes the next number
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// What the hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes
+    /// What the hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes, frozen
     #[arg(long, value_name = "NAME", default_value = "idle")]
     scenario: Scenario,
     /// What the hand does where the manual leaves a choice, from the list below; may be repeated
@@ -36,7 +36,7 @@ pub(crate) struct SimArgs {
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 lets their readings stand still while their joints go on, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
 On Modbus TCP the unit id selects the hand; 255 means the first, and a single hand answers to every id.";
 
 /// What stands under the list of switches.
@@ -48,6 +48,7 @@ pub(crate) fn help() -> String {
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;
+    let freeze = Interrupt::freeze()?;
     let hands = hands(args).context("no hand to simulate")?;
     // All wires are there before any is announced: who waits for one may use all.
     let wires = args.wires.serve(&hands).await?;
@@ -57,19 +58,36 @@ pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         biased;
         () = interrupt.wished() => Ok(()),
         error = failed(wires) => Err(error),
-        error = lose_power(out, power, &hands) => Err(error),
+        error = obey_signals(out, power, freeze, &hands) => Err(error),
         () = live(&hands) => Ok(()),
     }
 }
 
-/// Switches all hands off and on at each signal, and says so once they answer again.
-async fn lose_power(out: &mut Out, mut power: Interrupt, hands: &SimHands) -> anyhow::Error {
+/// Switches all hands off and on at each signal for that, freezes or frees what they tell at each of the other, and says what was
+/// done.
+async fn obey_signals(
+    out: &mut Out,
+    mut power: Interrupt,
+    mut freeze: Interrupt,
+    hands: &SimHands,
+) -> anyhow::Error {
+    let mut frozen = false;
     loop {
-        power.wished().await;
-        hands.with_each(SimHand::switch_off);
-        tokio::time::sleep(STARTS_UP).await;
-        hands.with_each(SimHand::power_cycle);
-        if let Err(error) = out.line("power cycled").and_then(|()| out.flush()) {
+        let done = tokio::select! {
+            () = power.wished() => {
+                hands.with_each(SimHand::switch_off);
+                tokio::time::sleep(STARTS_UP).await;
+                hands.with_each(SimHand::power_cycle);
+                frozen = false;
+                "power cycled"
+            }
+            () = freeze.wished() => {
+                frozen = !frozen;
+                hands.with_each(|hand, now| hand.freeze_feedback(frozen, now));
+                if frozen { "feedback frozen" } else { "feedback live" }
+            }
+        };
+        if let Err(error) = out.line(done).and_then(|()| out.flush()) {
             return error;
         }
     }

@@ -10,7 +10,7 @@ use crate::poses::starter::starter;
 use crate::store::{FileCause, FileError, FileText};
 use serde::Deserialize;
 use std::ops::{Range, RangeInclusive};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
@@ -104,6 +104,14 @@ impl NamedFile<'_> {
         let cause = FileCause::Unreadable(what);
         self.source.blame(self.at.clone(), self.field, cause)
     }
+
+    /// The error of the file that names it, because it does not lie below that one's folder.
+    #[must_use]
+    pub fn outside(&self) -> FileError {
+        let got = quoted(&self.path.display().to_string());
+        let cause = FileCause::Outside { got };
+        self.source.blame(self.at.clone(), self.field, cause)
+    }
 }
 
 impl<'a> ExhibitFile<'a> {
@@ -122,10 +130,12 @@ impl<'a> ExhibitFile<'a> {
     }
 
     /// The file of poses that it names.
-    #[must_use]
-    pub fn poses(&self) -> Option<NamedFile<'a>> {
+    ///
+    /// # Errors
+    /// [`FileError`] with line and field, where that leads out of the folder.
+    pub fn poses(&self) -> Result<Option<NamedFile<'a>>, FileError> {
         let poses = self.row.poses.as_ref();
-        poses.map(|named| self.named("poses", named))
+        poses.map(|named| self.named("poses", named)).transpose()
     }
 
     /// The picture that it names.
@@ -145,15 +155,25 @@ impl<'a> ExhibitFile<'a> {
             };
             return Err(self.source.blame(logo.span(), "logo", cause));
         }
-        Ok(Some(self.named("logo", logo)))
+        self.named("logo", logo).map(Some)
     }
 
-    fn named(&self, field: &'static str, file: &Spanned<PathBuf>) -> NamedFile<'a> {
-        NamedFile {
+    fn named(
+        &self,
+        field: &'static str,
+        file: &Spanned<PathBuf>,
+    ) -> Result<NamedFile<'a>, FileError> {
+        let named = NamedFile {
             path: self.folder.join(file.get_ref()),
             source: self.source,
             at: file.span(),
             field,
+        };
+        let mut parts = file.get_ref().components();
+        let is_inside = parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        match is_inside {
+            true => Ok(named),
+            false => Err(named.outside()),
         }
     }
 

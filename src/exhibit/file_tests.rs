@@ -59,7 +59,7 @@ fn every_field_is_taken_and_most_may_be_left_out() {
     let times = [attract.after, attract.play, attract.rest].map(|time| time.as_secs());
     assert_eq!((attract.pieces.len(), times), (2, [5, 3600, 30]));
     let file = ExhibitFile::parse(FILE, folder).unwrap();
-    let named = [file.poses(), file.logo().unwrap()].map(|named| named.unwrap().path);
+    let named = [file.poses(), file.logo()].map(|named| named.unwrap().unwrap().path);
     assert_eq!(
         named,
         ["poses.toml", "logo.png"].map(|name| folder.join(name))
@@ -81,7 +81,7 @@ fn every_field_is_taken_and_most_may_be_left_out() {
         (Duration::from_secs(120), false)
     );
     let file = ExhibitFile::parse(&short, folder).unwrap();
-    assert!(file.poses().is_none() && file.logo().unwrap().is_none());
+    assert!(file.poses().unwrap().is_none() && file.logo().unwrap().is_none());
 }
 
 #[test]

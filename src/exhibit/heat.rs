@@ -1,11 +1,12 @@
 //! Keeps drives cool: from measured temperature, its slope and the current, how much the hand may do.
 
+use crate::hand::heat::{FRESH_FOR, WARM};
 use crate::hand::{Dof, HandSample, Moment, PerDof};
 use std::collections::VecDeque;
 use std::time::Duration;
 
 /// No drive is to pass this, °C.
-pub const HOT: f32 = 60.0;
+pub const HOT: f32 = WARM as f32;
 /// Expected to come as near as this, the hand rests …
 const REST_AT: f32 = 56.0;
 /// … and so near, it goes slowly.
@@ -22,8 +23,6 @@ const KEEP_EACH: Duration = Duration::from_secs(1);
 const HEATING: f32 = 0.66;
 /// Over so long the current is averaged.
 const CURRENT_OVER_S: f32 = 10.0;
-/// A temperature older than this is unknown.
-const FRESH_FOR: Duration = Duration::from_secs(5);
 
 /// What the drives' heat allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

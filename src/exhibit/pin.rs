@@ -1,12 +1,14 @@
-//! The PIN of staff: five tries, then a minute of waiting.
+//! The PIN of staff: five tries, then a minute of waiting, then five more and twice the wait, also after a restart.
 
 use crate::hand::Moment;
 use std::time::Duration;
 
 /// Wrong PINs before nothing is taken for a while.
 pub const TRIES: u8 = 5;
-/// How long that is.
+/// How long that is the first time; each time twice as long.
 pub const LOCKED_FOR: Duration = Duration::from_secs(60);
+/// It grows no longer than this: staff who mistyped get in on the same day.
+pub const LOCKED_MAX: Duration = Duration::from_secs(3600);
 /// Digits of a PIN.
 pub const DIGITS: std::ops::RangeInclusive<usize> = 4..=8;
 
@@ -51,11 +53,31 @@ pub enum PinAnswer {
     },
 }
 
+/// Wrong PINs since the last right one: what of a gate outlasts the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WrongPins {
+    /// How many.
+    pub count: u32,
+    /// The wait after the last of them is over, if there was one.
+    pub waited: bool,
+}
+
+impl WrongPins {
+    /// How long nothing is taken after these: nothing but after each [`TRIES`], then a minute and twice as long each time.
+    #[must_use]
+    pub fn wait(self) -> Option<Duration> {
+        let rounds = self.count / u32::from(TRIES);
+        let is_due = rounds > 0 && self.count.is_multiple_of(u32::from(TRIES));
+        let doubled = 2_u32.saturating_pow(rounds.saturating_sub(1));
+        is_due.then(|| LOCKED_FOR.saturating_mul(doubled).min(LOCKED_MAX))
+    }
+}
+
 /// Takes PINs and counts wrong ones.
 #[derive(Debug, Clone)]
 pub struct PinGate {
     pin: Pin,
-    wrong: u8,
+    wrong: u32,
     locked: Option<Moment>,
 }
 
@@ -67,6 +89,28 @@ impl PinGate {
             pin,
             wrong: 0,
             locked: None,
+        }
+    }
+
+    /// The same after wrong PINs in an earlier run of the program. A wait that was not over then begins anew: no clock tells how
+    /// much of it passed that a person could not have set.
+    #[must_use]
+    pub fn resumed(pin: Pin, earlier: WrongPins, now: Moment) -> Self {
+        let wait = earlier.wait().filter(|_| !earlier.waited);
+        Self {
+            pin,
+            wrong: earlier.count,
+            locked: wait.map(|wait| now.plus(wait)),
+        }
+    }
+
+    /// What an exhibition that begins later has to know.
+    #[must_use]
+    pub fn wrong_pins(&self, now: Moment) -> WrongPins {
+        let count = self.wrong;
+        WrongPins {
+            count,
+            waited: count > 0 && self.locked_until(now).is_none(),
         }
     }
 
@@ -86,14 +130,14 @@ impl PinGate {
             self.wrong = 0;
             return PinAnswer::Right;
         }
-        self.wrong += 1;
-        if self.wrong < TRIES {
+        self.wrong = self.wrong.saturating_add(1);
+        let Some(wait) = self.wrong_pins(now).wait() else {
+            let in_round = u8::try_from(self.wrong % u32::from(TRIES)).unwrap_or_default();
             return PinAnswer::Wrong {
-                left: TRIES - self.wrong,
+                left: TRIES - in_round,
             };
-        }
-        self.wrong = 0;
-        let until = now.plus(LOCKED_FOR);
+        };
+        let until = now.plus(wait);
         self.locked = Some(until);
         PinAnswer::Locked { until }
     }
@@ -136,5 +180,44 @@ mod tests {
         assert_eq!(gate.enter("4711", at(64)), locked, "right, and too early");
         assert_eq!(gate.enter("4711", at(65)), PinAnswer::Right);
         assert_eq!(gate.enter("0000", at(66)), PinAnswer::Wrong { left: 4 });
+    }
+    #[test]
+    fn the_wait_doubles_up_to_an_hour_and_begins_anew_after_a_restart_and_a_right_pin_ends_it() {
+        let mut now = Moment::ZERO;
+        let mut gate = PinGate::new(pin("4711").unwrap());
+        for minutes in [1, 2, 4, 8, 16, 32, 60, 60] {
+            for _ in 0..4 {
+                assert!(matches!(gate.enter("0000", now), PinAnswer::Wrong { .. }));
+                // A restart between two tries gives no more of them.
+                gate = PinGate::resumed(pin("4711").unwrap(), gate.wrong_pins(now), now);
+            }
+            let wait = Duration::from_secs(60 * minutes);
+            let until = now.plus(wait);
+            assert_eq!(gate.enter("0000", now), PinAnswer::Locked { until });
+            // Half of it passes, and the program begins again: it is waited for in full.
+            now = now.plus(wait / 2);
+            gate = PinGate::resumed(pin("4711").unwrap(), gate.wrong_pins(now), now);
+            let until = now.plus(wait);
+            assert_eq!(gate.locked_until(now), Some(until));
+            assert_eq!(gate.enter("4711", now), PinAnswer::Locked { until });
+            now = until;
+            gate = PinGate::resumed(pin("4711").unwrap(), gate.wrong_pins(now), now);
+            assert_eq!(gate.locked_until(now), None, "it was over before");
+        }
+        assert_eq!(gate.enter("4711", now), PinAnswer::Right);
+        assert_eq!(gate.wrong_pins(now), WrongPins::default());
+        let mut last = PinGate::resumed(
+            pin("4711").unwrap(),
+            WrongPins {
+                count: u32::MAX,
+                waited: false,
+            },
+            now,
+        );
+        assert!(
+            last.locked_until(now)
+                .is_none_or(|until| until <= now.plus(LOCKED_MAX))
+        );
+        last.enter("0000", now.plus(LOCKED_MAX));
     }
 }

@@ -10,6 +10,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
+/// A page that was not drawn for this long shows no STOP: the hand is held.
+pub const DRAWN_WITHIN: Duration = Duration::from_secs(1);
 /// A tile that is held this long arms again, where visitors may.
 pub const HELD_FOR: Duration = Duration::from_secs(2);
 /// Faults that may be cleared by themselves …
@@ -46,6 +48,8 @@ pub enum HaltReason {
     OtherController,
     /// This computer slept.
     Slept,
+    /// The page was not drawn for a while: nobody could have seen or pressed STOP.
+    NotShown,
 }
 
 /// What goes on.
@@ -164,6 +168,8 @@ pub struct ExhibitInput<'a> {
     pub sample: &'a HandSample,
     /// Why the right to move the hand that was granted last ended, if it did.
     pub ended: Option<Disarmed>,
+    /// When the page was drawn last.
+    pub drawn: Moment,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -419,6 +425,9 @@ impl ExhibitRun {
         self.heat.take(seen.sample);
         self.level = self.heat.level(now);
         self.watch_link(seen);
+        if self.permitted && now.since(seen.drawn) >= DRAWN_WITHIN {
+            self.halt(HaltReason::NotShown);
+        }
         self.watch_faults(seen, now);
         self.watch_held(seen.status, now);
         if std::mem::take(&mut self.stops) && self.is_live {
@@ -478,9 +487,11 @@ impl ExhibitRun {
             Some(Disarmed::Fault) => Some(HaltReason::Fault),
             Some(Disarmed::Resume) => Some(HaltReason::Slept),
             Some(Disarmed::OtherController) => Some(HaltReason::OtherController),
-            Some(Disarmed::LinkLost | Disarmed::Stale) => Some(HaltReason::LinkLost),
+            Some(Disarmed::LinkLost | Disarmed::Stale | Disarmed::FrozenFeedback) => {
+                Some(HaltReason::LinkLost)
+            }
             Some(Disarmed::Stop) => Some(HaltReason::Stopped),
-            Some(Disarmed::Person | Disarmed::Released | Disarmed::Silent) => {
+            Some(Disarmed::Person | Disarmed::Released | Disarmed::Silent | Disarmed::Hot) => {
                 Some(HaltReason::NotArmed)
             }
         };

@@ -89,6 +89,17 @@ impl RegisterWrite {
         matches!(self.span.address, 1486..=1497 | 1008 | 2320 | 2322)
     }
 
+    /// What it says of each joint, if it lies within this row of six shorts.
+    #[must_use]
+    pub fn shorts(&self, row: &Register) -> PerDof<Option<i16>> {
+        let (pairs, _odd) = self.bytes.as_chunks::<2>();
+        let first = usize::from(self.span.address.saturating_sub(row.address) / 2);
+        PerDof::from_fn(|dof| {
+            let nth = dof.index().checked_sub(first)?;
+            pairs.get(nth).copied().map(i16::from_le_bytes)
+        })
+    }
+
     fn byte(row: &Register, value: u8) -> Self {
         Self::run(row.address, [value])
     }

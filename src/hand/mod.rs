@@ -7,6 +7,7 @@ pub mod column;
 pub mod command;
 pub mod dof;
 pub mod fault;
+pub mod heat;
 pub mod impact;
 pub mod kinematics;
 pub mod moment;
@@ -18,11 +19,13 @@ pub mod setpoints;
 pub mod setting;
 pub mod status;
 pub mod tactile;
+pub mod undocumented;
 pub mod units;
 
 pub use command::{GestureRoute, HandCommand, RegisterWrite, Writes};
 pub use dof::{Dof, Finger, PerDof, PerFinger};
 pub use fault::{Fault, Faults};
+pub use heat::DriveHeat;
 pub use moment::{Moment, Timed};
 pub use quantity::{Quantity, QuantityRow, Touch};
 pub use reading::{
@@ -34,6 +37,7 @@ pub use setpoints::{ArmEpoch, Setpoints};
 pub use setting::Setting;
 pub use status::{Status, Words};
 pub use tactile::TactileBlock;
+pub use undocumented::Undocumented;
 pub use units::{
     Angle, Force, Gesture, HandId, OutOfRange, SerialSpeed, Speed, Target, UserGesture,
 };

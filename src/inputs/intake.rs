@@ -52,21 +52,28 @@ impl Intake {
         from: SocketAddr,
         now: Moment,
     ) -> Result<StreamLine, LineFault> {
-        let taken = StreamLine::parse(line, self.side)
-            .and_then(|line| self.in_turn(&line, from, now).map(|()| line));
+        self.take_parsed(StreamLine::parse(line, self.side), from, now)
+    }
+
+    /// The same of a line that was read already.
+    ///
+    /// # Errors
+    /// [`LineFault`]: why it is refused, which is counted.
+    pub fn take_parsed(
+        &mut self,
+        line: Result<StreamLine, LineFault>,
+        from: SocketAddr,
+        now: Moment,
+    ) -> Result<StreamLine, LineFault> {
+        let taken = line.and_then(|line| self.in_turn(&line, from, now).map(|()| line));
         match &taken {
             Ok(_) => {
                 self.view.taken += 1;
                 self.rate.hit(now);
             }
-            Err(fault) => self.refuse(*fault),
+            Err(fault) => *self.view.refused.entry(*fault).or_default() += 1,
         }
         taken
-    }
-
-    /// Counts what was refused before it was a line.
-    pub fn refuse(&mut self, fault: LineFault) {
-        *self.view.refused.entry(fault).or_default() += 1;
     }
 
     fn in_turn(

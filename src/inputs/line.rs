@@ -58,6 +58,12 @@ pub enum LineFault {
 }
 
 impl LineFault {
+    /// True for what is no message at all: who sends that speaks another language, as a web page does that sends a form.
+    #[must_use]
+    pub const fn is_no_message(self) -> bool {
+        matches!(self, Self::TooLong | Self::Malformed)
+    }
+
     /// The word for it in JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -127,6 +133,13 @@ impl StreamLine {
     }
 }
 
+/// Whether a line may be a message, by its first byte.
+pub(crate) fn begins_message(line: &[u8]) -> bool {
+    line.trim_ascii_start()
+        .first()
+        .is_none_or(|byte| *byte == b'{')
+}
+
 fn angle(share: f64) -> Result<Angle, LineFault> {
     if !(0.0..=1.0).contains(&share) {
         return Err(LineFault::Range);
@@ -138,6 +151,9 @@ fn angle(share: f64) -> Result<Angle, LineFault> {
 
 /// JSON has no word for what is no finite number; many senders write one anyway, or a number that is too large to be one.
 fn malformed(line: &[u8], unread: &serde_json::Error) -> LineFault {
+    if !begins_message(line) {
+        return LineFault::Malformed;
+    }
     let words: [&[u8]; 2] = [b"NaN", b"Infinity"];
     let has = |word: &&[u8]| line.windows(word.len()).any(|part| part == *word);
     let is_too_large = unread.to_string().starts_with("number out of range");
@@ -180,6 +196,7 @@ mod tests {
             (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, LineFault::Version),
             (r#"{"right":"fist"}"#, LineFault::Malformed),
             ("[0,0,0,0,0,0]", LineFault::Malformed),
+            ("POST /NaN HTTP/1.1", LineFault::Malformed),
             ("", LineFault::Malformed),
         ] {
             assert_eq!(parse(line), Err(fault), "{line}");

@@ -3,7 +3,7 @@
 
 use crate::hand::kinematics::Side;
 use crate::inputs::intake::{Intake, IntakeView};
-use crate::inputs::line::{LINE_MAX, LineFault};
+use crate::inputs::line::{LINE_MAX, LineFault, StreamLine, begins_message};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
 use crate::link::{Clock, Wake};
 use std::net::SocketAddr;
@@ -137,6 +137,9 @@ impl StreamSource {
     }
 }
 
+/// A line, or why it is none.
+type ReadLine = Result<StreamLine, LineFault>;
+
 struct Listening {
     intake: Intake,
     view: StreamView,
@@ -156,7 +159,8 @@ impl Listening {
                 received = socket.recv_from(&mut datagram) => {
                     // An error is that of an earlier answer; nothing is answered here.
                     let Ok((len, from)) = received else { continue };
-                    self.take(datagram.get(..len).unwrap_or_default(), from);
+                    let line = datagram.get(..len).unwrap_or_default();
+                    self.take(StreamLine::parse(line, self.config.side), from);
                 }
                 _ = tell.tick() => self.tell(),
             }
@@ -171,20 +175,15 @@ impl Listening {
             tokio::select! {
                 accepted = listener.accept() => match accepted {
                     Ok((stream, from)) if readers.len() < CONNECTIONS_MAX => {
-                        readers.spawn(read_lines(stream, from, lines.clone()));
+                        let taken = LineReader { from, side: self.config.side, lines: lines.clone() };
+                        readers.spawn(taken.run(stream));
                     }
                     Ok(_too_many) => {}
                     // The system is out of something: it may have it again soon.
                     Err(_error) => tokio::time::sleep(TELL_EACH).await,
                 },
                 Some(_ended) = readers.join_next() => {}
-                Some((line, from)) = heard.recv() => match line {
-                    Ok(line) => self.take(&line, from),
-                    Err(fault) => {
-                        self.intake.refuse(fault);
-                        self.is_news = true;
-                    }
-                },
+                Some((line, from)) = heard.recv() => self.take(line, from),
                 _ = tell.tick() => {
                     self.is_news |= self.view.connections != readers.len();
                     self.view.connections = readers.len();
@@ -194,10 +193,10 @@ impl Listening {
         }
     }
 
-    fn take(&mut self, line: &[u8], from: SocketAddr) {
+    fn take(&mut self, line: ReadLine, from: SocketAddr) {
         let now = self.config.clock.now();
         self.is_news = true;
-        let Ok(line) = self.intake.take(line, from, now) else {
+        let Ok(line) = self.intake.take_parsed(line, from, now) else {
             return;
         };
         if line.stop {
@@ -228,31 +227,49 @@ impl Listening {
     }
 }
 
-/// Reads lines until the other side closes, is silent, or sends one that is too long.
-async fn read_lines(
-    mut stream: TcpStream,
+/// One connection.
+struct LineReader {
     from: SocketAddr,
-    lines: mpsc::Sender<(Result<Vec<u8>, LineFault>, SocketAddr)>,
-) {
-    let mut rest = Vec::with_capacity(LINE_MAX);
-    let mut piece = [0; LINE_MAX];
-    loop {
-        let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
-            return;
-        };
-        rest.extend_from_slice(piece.get(..len).unwrap_or_default());
-        let mut parts = rest.split(|byte| *byte == b'\n');
-        let unfinished = parts.next_back().unwrap_or_default().to_vec();
-        let whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
-        for line in whole.into_iter().filter(|line| !line.is_empty()) {
-            if lines.send((Ok(line), from)).await.is_err() {
+    side: Side,
+    lines: mpsc::Sender<(ReadLine, SocketAddr)>,
+}
+
+impl LineReader {
+    /// Reads lines until the other side closes, is silent, or sends one that is no message. What it sent behind that one is not
+    /// looked at: a page in a browser can send a form whose text has messages on further lines, but never one that begins with
+    /// a message.
+    async fn run(self, mut stream: TcpStream) {
+        let mut rest = Vec::with_capacity(LINE_MAX);
+        let mut piece = [0; LINE_MAX];
+        loop {
+            let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
+                return;
+            };
+            rest.extend_from_slice(piece.get(..len).unwrap_or_default());
+            let mut parts = rest.split(|byte| *byte == b'\n');
+            let unfinished = parts.next_back().unwrap_or_default().to_vec();
+            let whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
+            for line in whole.iter().filter(|line| !line.trim_ascii().is_empty()) {
+                if !self.takes(StreamLine::parse(line, self.side)).await {
+                    return;
+                }
+            }
+            rest = unfinished;
+            let fault = match &rest {
+                rest if rest.len() > LINE_MAX => Some(LineFault::TooLong),
+                rest if !begins_message(rest) => Some(LineFault::Malformed),
+                _ => None,
+            };
+            if let Some(fault) = fault {
+                self.takes(Err(fault)).await;
                 return;
             }
         }
-        rest = unfinished;
-        if rest.len() > LINE_MAX {
-            let _gone = lines.send((Err(LineFault::TooLong), from)).await;
-            return;
-        }
+    }
+
+    /// Hands a line on; false if none is to follow.
+    async fn takes(&self, line: ReadLine) -> bool {
+        let ends = line.is_err_and(LineFault::is_no_message);
+        self.lines.send((line, self.from)).await.is_ok() && !ends
     }
 }

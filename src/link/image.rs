@@ -177,7 +177,11 @@ impl RegisterImage {
             return Seen::Bytes(bytes);
         }
         let mut areas = self.areas.iter().rev();
-        let is_fresh = |area: &&Area| area.span.covers(run) && now.since(area.asked) <= AREA_FRESH;
+        // What was asked for while one waits is fresh for them, however long all parts of what they want take.
+        let is_fresh = |area: &&Area| {
+            let is_new = area.asked >= since || now.since(area.asked) <= AREA_FRESH;
+            area.span.covers(run) && is_new
+        };
         if let Some(area) = areas.find(is_fresh) {
             return match &area.read {
                 Ok(bytes) => {

@@ -5,6 +5,7 @@ use crate::hand::Span;
 use crate::link::clock::Clock;
 use crate::link::handle::LinkHandle;
 use crate::link::image::{RegisterImage, Seen};
+use crate::link::poll::window::ReadPart;
 use crate::link::request::RequestError;
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,6 +17,9 @@ pub const RECENT_WITHIN: Duration = Duration::from_secs(3);
 /// After a read that the session would not have made, so many times its length go by until the next: they take the link
 /// 4 of 100 parts of its time.
 const PAUSE_TIMES: u32 = 24;
+/// The shortest such pause after a stretch that the session never reads: however fast the wire is, clients that read here and there
+/// cost it a few requests a second.
+const PAUSE_MIN: Duration = Duration::from_millis(200);
 /// The longest such pause, so that one slow answer does not keep all others waiting.
 const PAUSE_MAX: Duration = Duration::from_millis(500);
 
@@ -25,9 +29,12 @@ pub struct RecentReads {
     link: LinkHandle,
     image: watch::Receiver<RegisterImage>,
     clock: Clock,
-    /// Who has the turn at asking the hand, and when the next may.
-    turn: Arc<Mutex<Option<Instant>>>,
+    /// For parts that the session reads by itself, and for other stretches.
+    turns: [Arc<Turn>; 2],
 }
+
+/// Who has the turn at asking the hand, and when the next may.
+type Turn = Mutex<Option<Instant>>;
 
 impl RecentReads {
     /// Of the hand at this link.
@@ -37,7 +44,7 @@ impl RecentReads {
             image: link.image(),
             clock: link.clock(),
             link: link.clone(),
-            turn: Arc::default(),
+            turns: Default::default(),
         }
     }
 
@@ -81,17 +88,25 @@ impl RecentReads {
 
     /// Asks the hand, one at a time and seldom, unless somebody else did meanwhile. The session puts the answer into the image.
     async fn ask(&self, span: Span) -> Result<(), RequestError> {
-        let mut turn = self.turn.lock().await;
+        let [parts, others] = &self.turns;
+        let is_part = ReadPart::ALL.into_iter().any(|part| part.span() == span);
+        let (turn, pause_min) = match is_part {
+            true => (parts, Duration::ZERO),
+            false => (others, PAUSE_MIN),
+        };
+        let since = self.clock.now();
+        let mut turn = turn.lock().await;
         if let Some(next) = *turn {
             sleep_until(next).await;
         }
         let now = self.clock.now();
-        if !matches!(self.image.borrow().look(span, now, now), Seen::Missing(_)) {
+        if !matches!(self.image.borrow().look(span, since, now), Seen::Missing(_)) {
             return Ok(());
         }
         let asked = Instant::now();
         let read = self.link.read(span).await;
-        let pause = (asked.elapsed() * PAUSE_TIMES).min(PAUSE_MAX);
+        let pause = asked.elapsed() * PAUSE_TIMES;
+        let pause = pause.clamp(pause_min, PAUSE_MAX);
         *turn = Some(Instant::now() + pause);
         read.map(drop)
     }

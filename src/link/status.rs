@@ -3,7 +3,7 @@
 use crate::hand::{ArmEpoch, Force, Moment, PerDof, Speed};
 use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
-use crate::record::{Disarmed, Hold, LinkState, Rest};
+use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 
 /// Everything the window shows of the link.
@@ -28,6 +28,14 @@ pub struct LinkStatus {
     pub echoes: bool,
     /// Another controller talks to this hand, noticed in the last seconds.
     pub other_controller: bool,
+    /// What another controller was last seen to write since the hand was armed; `None` if it was only heard.
+    pub foreign_setpoint: Option<SetpointConflict>,
+    /// A setpoint that the hand holds otherwise than it was given since it was armed, though nobody else was seen to write: it
+    /// ignores or limits it.
+    pub setpoint_not_taken: Option<SetpointConflict>,
+    /// Motion was asked for, and nothing that the hand tells changed: frames are valid, and where the joints are is only reckoned. Until
+    /// something changes.
+    pub feedback_in_doubt: bool,
     /// The port at which the adapter is now, if that is another than was asked for.
     pub moved_to: Option<String>,
     /// How long the adapter may keep what it got, milliseconds, where the system tells.
@@ -42,6 +50,8 @@ pub struct LinkStatus {
     pub hold: Hold,
     /// Why the hand is not armed, if it was.
     pub disarmed: Option<Disarmed>,
+    /// Why no process could be started that stops the hand if this program is killed, if so.
+    pub unguarded: Option<String>,
 }
 
 /// What happens while there is no wire.

@@ -29,6 +29,8 @@ pub enum RowVerdict {
     Dropped,
     /// The hand holds a third value, neither the written nor the old one.
     Altered,
+    /// It was applied, and then put back because others could not be: the hand holds its old value.
+    PutBack,
     /// The hand's value is not known.
     Unverified(Doubt),
     /// It was not written.
@@ -44,6 +46,7 @@ impl RowVerdict {
             Self::Refused { .. } => "refused",
             Self::Dropped => "dropped",
             Self::Altered => "altered",
+            Self::PutBack => "put_back",
             Self::Unverified(_) => "unverified",
             Self::NotSent(_) => "not_sent",
         }
@@ -177,6 +180,20 @@ pub fn undo_of(outcomes: &[RowOutcome]) -> Params {
         }
     }
     wanted
+}
+
+/// The outcome of a row once its old value was to be put back, and the hand then holds this.
+pub fn after_undo(row: &mut RowOutcome, holds: Option<Value>) {
+    row.holds = holds;
+    if row.verdict != RowVerdict::Applied {
+        return;
+    }
+    row.verdict = match holds {
+        None => RowVerdict::Unverified(Doubt::NotReadBack),
+        Some(holds) if Some(holds) == row.before => RowVerdict::PutBack,
+        Some(holds) if holds == row.wanted => RowVerdict::Applied,
+        Some(_) => RowVerdict::Altered,
+    };
 }
 
 #[cfg(test)]

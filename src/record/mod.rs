@@ -13,7 +13,9 @@ pub mod write;
 pub use crate::record::entry::{Entry, Event, EventKind, LinkReport};
 pub use crate::record::heard::Record;
 pub use crate::record::quirk_sheet::{Fact, QuirkSheet};
-pub use crate::record::state::{ArmRefusal, Disarmed, Hold, LinkState, Rest};
+pub use crate::record::state::{
+    ArmRefusal, Disarmed, Hold, LinkState, Rest, SetpointConflict, SetpointRegister,
+};
 pub use crate::record::wire::{Direction, Piece, PieceKind};
 pub use crate::record::write::{
     Calibrated, Doubt, NotSent, Reset, SaveDoubt, Saved, Verdict, WriteCause, WriteFate, Written,

@@ -2,6 +2,7 @@
 
 use crate::hand::{Dof, Moment};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Where one conversation with one hand stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -88,6 +89,8 @@ pub enum Disarmed {
     LinkLost,
     /// Feedback grew old.
     Stale,
+    /// Feedback stands still though motion was asked for: where the hand is cannot be known.
+    FrozenFeedback,
     /// This computer slept.
     Resume,
     /// Another controller talks to this hand.
@@ -96,6 +99,8 @@ pub enum Disarmed {
     Released,
     /// Who moved it fell silent.
     Silent,
+    /// A drive is too hot.
+    Hot,
 }
 
 impl Disarmed {
@@ -136,10 +141,73 @@ pub enum ArmRefusal {
         "the hand refused its speed and force limits; if another Handscope shares it, a person there has to let you"
     )]
     Refused,
-    /// A joint without a fresh, sensible angle.
-    #[error("the angle of a joint is unknown or old")]
+    /// Angles or faults were not read yet, or are old.
+    #[error("angles and faults are not known yet, or are old")]
+    NotRead,
+    /// A joint without a sensible angle.
+    #[error("the angle of {} makes no sense", dof.name())]
     UnknownPose {
         /// The first such joint.
         dof: Dof,
     },
+}
+
+/// A group of setpoints of six joints, as the hand holds it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SetpointRegister {
+    /// ANGLE_SET.
+    AngleSet,
+    /// FORCE_SET.
+    ForceSet,
+    /// SPEED_SET.
+    SpeedSet,
+}
+
+impl SetpointRegister {
+    /// The manual's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AngleSet => "ANGLE_SET",
+            Self::ForceSet => "FORCE_SET",
+            Self::SpeedSet => "SPEED_SET",
+        }
+    }
+
+    /// What a hand may round a value by: two hundredths of the range.
+    #[must_use]
+    pub const fn rounds_by(self) -> i16 {
+        match self {
+            Self::AngleSet | Self::SpeedSet => 20,
+            Self::ForceSet => 60,
+        }
+    }
+}
+
+/// A setpoint that the hand holds, other than we wrote it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetpointConflict {
+    /// Where it was read.
+    pub register: SetpointRegister,
+    /// The first joint with such a value.
+    pub dof: Dof,
+    /// The value as it was read; `None` if it leaves the manual's range.
+    pub holds: Option<i16>,
+    /// What was written here last; `None` if nothing was.
+    pub wrote: Option<i16>,
+}
+
+impl fmt::Display for SetpointConflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (register, dof) = (self.register.name(), self.dof.name());
+        match self.holds {
+            None => write!(f, "{register}: {dof} out of range")?,
+            Some(holds) => write!(f, "{register}: {dof} {holds}")?,
+        }
+        match self.wrote {
+            Some(wrote) => write!(f, ", we wrote {wrote}"),
+            None => Ok(()),
+        }
+    }
 }

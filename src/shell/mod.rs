@@ -78,6 +78,7 @@ impl Cockpit {
                 action => self.app.act(action, now),
             }
         }
+        self.app.drawn(now);
     }
 
     /// Draws the plots once more, by themselves, and asks where the picture should go.

@@ -101,6 +101,7 @@ pub struct Drive {
     fastest: f64,
     rested_ms: u32,
     jam: Option<f64>,
+    dead: bool,
     grip: f64,
     heating: f64,
 }
@@ -132,6 +133,7 @@ impl Drive {
             fastest: 0.0,
             rested_ms: 0,
             jam: None,
+            dead: false,
             grip: 1.0,
             heating: HEATING,
         }
@@ -206,6 +208,11 @@ impl Drive {
     /// Blocks the linkage at an angle; the fingertip's sensor feels nothing of it.
     pub const fn set_jam(&mut self, angle: Option<f64>) {
         self.jam = angle;
+    }
+
+    /// Lets it obey nothing any more, and go on saying what it says.
+    pub const fn set_dead(&mut self, dead: bool) {
+        self.dead = dead;
     }
 
     /// How much of the contact force is there, 1 = all; a slip takes some away.
@@ -328,6 +335,7 @@ impl Drive {
 
     fn begin(&mut self, goal: DriveGoal, setting: DriveSettings) {
         match goal {
+            _ if self.dead => {}
             DriveGoal::Freeze => {
                 if matches!(self.phase, DrivePhase::Moving { .. }) {
                     self.stop_moving(Status::PositionReached);

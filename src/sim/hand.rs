@@ -32,6 +32,8 @@ const RARE_TURNAROUND: Duration = Duration::from_millis(500);
 const CREEP: f64 = 5.0;
 /// Writes that the journal keeps; twice as many are held before the older half goes.
 pub const JOURNAL_KEEPS: usize = 8192;
+/// Way of a joint, counts of its stroke, after which feedback freezes in that scenario.
+const FREEZES_AFTER: f64 = 100.0;
 /// Where the time of a read stands when the personality stamps it.
 const STAMP: Span = Span::new(GAP.address, 8);
 
@@ -127,6 +129,10 @@ pub struct SimHand {
     pressed_g: PerFinger<f64>,
     /// What the hand's own script ordered last; a setpoint from outside ends it.
     pub(crate) order: Option<Order>,
+    /// What it tells stands still; the joints go on.
+    frozen: bool,
+    /// Where the joints were when it was switched on.
+    began_at: PerDof<f64>,
     /// It says what was recorded: no body, no script, and writes change nothing.
     follows_recording: bool,
 }
@@ -159,6 +165,8 @@ impl SimHand {
             journal: Vec::new(),
             pressed_g: PerFinger::splat(0.0),
             order: None,
+            frozen: false,
+            began_at: PerDof::splat(0.0),
             follows_recording: false,
         };
         hand.target_actual();
@@ -312,6 +320,8 @@ impl SimHand {
         for dof in Dof::ALL {
             self.body.drive_mut(dof).power_cycle();
         }
+        self.frozen = false;
+        self.began_at = PerDof::from_fn(|dof| self.body.drives()[dof].position());
         self.target_actual();
     }
 
@@ -363,9 +373,35 @@ impl SimHand {
         self.published_ms = None;
     }
 
+    /// Lets everything that the hand tells of its joints and fingertips stand still from now on, or live again. The joints go on,
+    /// setpoints are taken and read back, and every frame is valid. A power cycle ends it.
+    pub fn freeze_feedback(&mut self, frozen: bool, now: Moment) {
+        self.advance_to(now);
+        self.publish();
+        self.frozen = frozen;
+        self.published_ms = None;
+    }
+
+    /// True while what the hand tells stands still.
+    #[must_use]
+    pub const fn is_frozen(&self) -> bool {
+        self.frozen
+    }
+
+    /// Where the joints are, counts of ANGLE_ACT, whatever the hand tells.
+    #[must_use]
+    pub fn true_angles(&self) -> PerDof<f64> {
+        PerDof::from_fn(|dof| self.body.drives()[dof].angle())
+    }
+
     /// Blocks a joint's linkage at an angle, or frees it.
     pub fn set_jam(&mut self, dof: Dof, angle: Option<f64>) {
         self.body.drive_mut(dof).set_jam(angle);
+    }
+
+    /// Lets a drive obey nothing any more: its joint stays, and its status with it.
+    pub fn set_dead(&mut self, dof: Dof, dead: bool) {
+        self.body.drive_mut(dof).set_dead(dead);
     }
 
     /// From now on it says what it is given, as it was recorded of another hand. Writes are acknowledged and change nothing.
@@ -411,6 +447,9 @@ impl SimHand {
         }
         let settings = PerDof::from_fn(|dof| self.setting(dof));
         self.body.step(self.now_ms, &settings, &mut self.rng);
+        if self.config.scenario == Scenario::Frozen && !self.frozen {
+            self.freeze_in_motion();
+        }
         if self.now_ms.is_multiple_of(SENSOR_MS) {
             self.touch.measure(&mut self.rng);
         }
@@ -421,6 +460,17 @@ impl SimHand {
         if self.calibration_due_ms == Some(self.now_ms) {
             self.calibration_due_ms = None;
             self.body.calibrate_force();
+        }
+    }
+
+    fn freeze_in_motion(&mut self) {
+        let has_moved = |dof: &Dof| {
+            let way = self.body.drives()[*dof].position() - self.began_at[*dof];
+            way.abs() >= FREEZES_AFTER
+        };
+        if Dof::ALL.iter().any(has_moved) {
+            self.publish();
+            self.frozen = true;
         }
     }
 
@@ -509,7 +559,7 @@ impl SimHand {
 
     /// Puts the live values of this millisecond into the memory.
     fn publish(&mut self) {
-        if self.follows_recording || self.published_ms == Some(self.now_ms) {
+        if self.follows_recording || self.frozen || self.published_ms == Some(self.now_ms) {
             return;
         }
         self.published_ms = Some(self.now_ms);

@@ -34,7 +34,7 @@ impl Object {
     #[must_use]
     pub fn of(scenario: Scenario) -> Self {
         match scenario {
-            Scenario::Free | Scenario::Touched => Self::none(),
+            Scenario::Free | Scenario::Touched | Scenario::Frozen => Self::none(),
             Scenario::Rigid => Self::rigid(STANDS_AT),
             Scenario::Fragile => Self::cup(STANDS_AT),
             Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => {

@@ -24,12 +24,14 @@ pub enum Scenario {
     Faults,
     /// Values that the manual does not allow.
     Extremes,
+    /// Nothing, until a joint has moved a little: then what the hand tells stands still, while its joints go on.
+    Frozen,
 }
 
 /// A scenario's name that does not exist.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, touched, faults or extremes"
+    "'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen"
 )]
 pub struct UnknownScenario {
     /// What was given.
@@ -38,7 +40,7 @@ pub struct UnknownScenario {
 
 impl Scenario {
     /// All, with the quiet one first.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Idle,
         Self::Free,
         Self::Rigid,
@@ -47,6 +49,7 @@ impl Scenario {
         Self::Touched,
         Self::Faults,
         Self::Extremes,
+        Self::Frozen,
     ];
 
     /// Stable lower-case name, as in endpoints.
@@ -61,6 +64,7 @@ impl Scenario {
             Self::Touched => "touched",
             Self::Faults => "faults",
             Self::Extremes => "extremes",
+            Self::Frozen => "frozen",
         }
     }
 }
@@ -236,6 +240,8 @@ mod tests {
         for scenario in Scenario::ALL {
             assert_eq!(scenario.name().parse::<Scenario>(), Ok(scenario));
         }
+        let in_endpoints = crate::transport::endpoint::SCENARIOS;
+        assert_eq!(Scenario::ALL.map(Scenario::name), in_endpoints);
         let error = "grip".parse::<Scenario>().unwrap_err().to_string();
         for scenario in Scenario::ALL {
             assert!(error.contains(scenario.name()));

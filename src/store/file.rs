@@ -1,10 +1,51 @@
-//! Files replaced whole or not at all, and read within a limit.
+//! Files replaced whole or not at all, and read within a limit. What this program keeps by itself is for the person alone who runs
+//! it: files of ours can be read by nobody else, folders that we make be entered by nobody else. A folder that is there stays as
+//! it is.
 
+use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, Read as _, Write as _};
+#[cfg(unix)]
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 /// Unreadable files that are kept beside each other; then the last one is replaced.
 const UNREADABLE_MAX: u32 = 9;
+
+/// Makes a folder that only its person can enter, with those above it that are missing.
+///
+/// # Errors
+/// What the system says.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    let mut folder = DirBuilder::new();
+    folder.recursive(true);
+    #[cfg(unix)]
+    folder.mode(0o700);
+    folder.create(path)
+}
+
+/// Makes a file that only its person can read, or empties one.
+fn create_file(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    options.mode(0o600);
+    let file = options.open(path)?;
+    // One of an earlier version may be there already.
+    #[cfg(unix)]
+    file.set_permissions(std::fs::Permissions::from_mode(0o600))?;
+    Ok(file)
+}
+
+/// Writes a file that only its person can read, in a folder that only they can enter unless it is there already.
+///
+/// # Errors
+/// What the system says.
+pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    create_file(path)?.write_all(bytes)
+}
 
 /// Writes a file so that at any moment either the old or the new one is there, whole.
 ///
@@ -12,11 +53,11 @@ const UNREADABLE_MAX: u32 = 9;
 /// What the system says. Then the old file is as it was.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder)?;
+        create_folder(folder)?;
     }
     let end = path.extension().and_then(|end| end.to_str());
     let new = path.with_extension(format!("new.{}", end.unwrap_or_default()));
-    let mut file = std::fs::File::create(&new)?;
+    let mut file = create_file(&new)?;
     file.write_all(bytes)?;
     file.sync_all()?;
     drop(file);
@@ -29,7 +70,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// What the system says. Then the old file is as it was.
 pub fn replace_keeping_last(path: &Path, text: &str) -> io::Result<()> {
     if path.exists() {
-        std::fs::copy(path, last_of(path))?;
+        write_private(&last_of(path), &std::fs::read(path)?)?;
     }
     replace(path, text.as_bytes())
 }
@@ -70,4 +111,38 @@ pub fn set_aside(path: &Path) -> Option<PathBuf> {
     let free = (1..UNREADABLE_MAX).map(name).find(|aside| !aside.exists());
     let aside = free.unwrap_or_else(|| name(UNREADABLE_MAX));
     std::fs::rename(path, &aside).ok().map(|()| aside)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+
+    fn mode(path: &Path) -> u32 {
+        std::fs::metadata(path).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn what_is_kept_is_for_its_person_alone_and_a_folder_that_is_there_stays_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = folder.path().join("open");
+        std::fs::create_dir(&open).unwrap();
+        std::fs::set_permissions(&open, std::fs::Permissions::from_mode(0o755)).unwrap();
+        let path = open.join("new/deep/kept.toml");
+        // What an earlier version wrote, also where a write of it was cut off.
+        create_folder(path.parent().unwrap()).unwrap();
+        for name in ["kept.toml", "kept.new.toml"] {
+            let old = path.with_file_name(name);
+            std::fs::write(&old, "old").unwrap();
+            std::fs::set_permissions(&old, std::fs::Permissions::from_mode(0o644)).unwrap();
+        }
+        replace_keeping_last(&path, "new").unwrap();
+        for file in [&path, &last_of(&path)] {
+            assert_eq!(mode(file), 0o600, "{}", file.display());
+        }
+        for made in [open.join("new"), open.join("new/deep")] {
+            assert_eq!(mode(&made), 0o700, "{}", made.display());
+        }
+        assert_eq!(mode(&open), 0o755);
+    }
 }

@@ -7,7 +7,9 @@ pub mod job;
 pub mod saver;
 pub mod toml_file;
 
-pub use crate::store::file::{last_of, read_text, replace, replace_keeping_last, set_aside};
+pub use crate::store::file::{
+    create_folder, last_of, read_text, replace, replace_keeping_last, set_aside, write_private,
+};
 pub use crate::store::job::{BackgroundJob, on_thread};
 pub use crate::store::saver::Saver;
 pub use crate::store::toml_file::{FileCause, FileError, FileText};

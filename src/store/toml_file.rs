@@ -72,6 +72,18 @@ pub enum FileCause {
         /// How many there may be.
         limit: usize,
     },
+    /// It holds what nobody else may know, and others can read or change it.
+    #[error("others can read this file: run 'chmod 600 {path}'")]
+    NotPrivate {
+        /// The file.
+        path: String,
+    },
+    /// It names a file outside its own folder.
+    #[error("{got} does not lie in the folder of this file, or below it")]
+    Outside {
+        /// The name.
+        got: String,
+    },
     /// A file that holds nothing of its kind.
     #[error("there is nothing in it")]
     Empty,

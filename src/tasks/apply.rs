@@ -42,7 +42,8 @@ pub struct Applied {
     pub before: Params,
     /// The backup, if one was asked for and something had to be written.
     pub backup: Option<PathBuf>,
-    /// The rows that had to be written, or were as wanted already.
+    /// The rows that had to be written, or were as wanted already; with what the hand holds at the end, also after it was to get
+    /// back what it held.
     pub rows: Vec<RowOutcome>,
     /// Whether the hand holds again what it held, if it was to get it back.
     pub undone: Option<bool>,
@@ -92,6 +93,7 @@ pub async fn apply<H: Hand>(
     if let Some(backups) = &task.backups {
         applied.backup = Some(back_up(backups, &applied.before, "before apply").await?);
     }
+    tell(ParamStep::Writing);
     let (written, broken_off) = write(hand, &plan, &applied.before).await;
     for row in &written {
         tell(ParamStep::Row(row.clone()));
@@ -99,7 +101,7 @@ pub async fn apply<H: Hand>(
     applied.rows.extend(written);
     applied.broken_off = broken_off;
     if !applied.is_whole() && task.otherwise == Otherwise::Undo {
-        applied.undone = Some(undo(hand, &applied).await);
+        applied.undone = Some(undo(hand, &mut applied.rows).await);
     }
     Ok(applied)
 }
@@ -148,18 +150,28 @@ async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, Reque
     })
 }
 
-/// Puts back what changed or may have; true if the hand holds what it held before.
-async fn undo<H: Hand>(hand: &H, applied: &Applied) -> bool {
-    let wanted = changes::undo_of(&applied.rows);
+/// Puts back what changed or may have; true if the hand holds what it held before. What it holds then stands in the rows.
+async fn undo<H: Hand>(hand: &H, rows: &mut [RowOutcome]) -> bool {
+    let wanted = changes::undo_of(rows);
     if wanted.is_empty() {
         return true;
     }
     let live = read::rows(hand, |_, _| ()).await.params;
-    if live.is_empty() {
-        return false;
+    let plan = match live.is_empty() {
+        true => WritePlan::default(),
+        false => changes::plan_writes(&wanted, &live),
+    };
+    let (put_back, _broken_off) = write(hand, &plan, &live).await;
+    for row in rows.iter_mut().filter(|row| wanted.get(row.id).is_some()) {
+        let written = put_back.iter().find(|back| back.id == row.id);
+        let holds = match written.map(|back| (&back.verdict, back.holds)) {
+            Some((RowVerdict::NotSent(_), _)) => live.get(row.id),
+            Some((_, holds)) => holds,
+            None => live.get(row.id).filter(|_| plan.rows.get(row.id).is_none()),
+        };
+        changes::after_undo(row, holds);
     }
-    let plan = changes::plan_writes(&wanted, &live);
-    let (put_back, broken_off) = write(hand, &plan, &live).await;
-    let is_back = |row: &RowOutcome| row.holds.is_some() && row.holds == applied.before.get(row.id);
-    broken_off.is_none() && put_back.iter().all(is_back)
+    let is_back = |row: &RowOutcome| row.holds.is_some() && row.holds == row.before;
+    let mut meant = rows.iter().filter(|row| wanted.get(row.id).is_some());
+    meant.all(is_back)
 }

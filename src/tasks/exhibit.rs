@@ -4,13 +4,14 @@ use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::run::{
     ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitView, ExhibitWish,
 };
-use crate::hand::{HandCommand, HandSample, PerDof, Setpoints};
+use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, Owner};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Disarmed, Record};
 use crate::tasks::hand::Hand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
@@ -30,6 +31,23 @@ pub struct ExhibitStart {
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
+    /// When visitors and staff saw the page last.
+    pub drawn: Arc<PageDrawn>,
+}
+
+/// When the page of an exhibition was drawn last: the sign of life of its window.
+#[derive(Debug, Default)]
+pub struct PageDrawn(AtomicU64);
+
+impl PageDrawn {
+    /// It was drawn.
+    pub fn mark(&self, now: Moment) {
+        self.0.store(now.micros(), Ordering::Relaxed);
+    }
+
+    fn last(&self) -> Moment {
+        Moment::from_micros(self.0.load(Ordering::Relaxed))
+    }
 }
 
 /// What is told on the way.
@@ -62,6 +80,7 @@ pub async fn exhibit<H: Hand>(
         lease: None,
         told,
         clock,
+        drawn: start.drawn,
     };
     let mut shown = None;
     loop {
@@ -123,6 +142,7 @@ struct AtHand<'a, H> {
     lease: Option<Lease>,
     told: mpsc::UnboundedSender<Setpoints>,
     clock: Clock,
+    drawn: Arc<PageDrawn>,
 }
 
 impl<H: Hand> AtHand<'_, H> {
@@ -137,6 +157,7 @@ impl<H: Hand> AtHand<'_, H> {
                     LeaseRefusal::Ended(why) => why,
                     LeaseRefusal::Taken(_) => Disarmed::Person,
                 }),
+                drawn: self.drawn.last(),
             };
             match self.run.tick(seen, self.clock.now()) {
                 Some(order) => self.obey(order),

@@ -2,7 +2,7 @@
 //! in `inputs`; here it is done.
 
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, HandSample, Moment, PerDof, Setpoints, Target,
+    Angle, AngleReading, ArmEpoch, Dof, DriveHeat, HandSample, Moment, PerDof, Setpoints, Target,
 };
 use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
@@ -62,15 +62,19 @@ pub struct FollowView {
     pub lead: u16,
     /// From a target's arrival to its first byte on the wire, 99 of 100.
     pub delay_p99: Option<Duration>,
+    /// The warmest drive, if one is warm.
+    pub heat: Option<DriveHeat>,
 }
 
-/// Why it ended. The hand was stopped, by this or by what ended it.
+/// Why it ended. The hand was stopped, by this or by what ended it, unless another moves it now or its link was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowEnd {
     /// The source fell silent.
     Silent,
     /// The source is gone.
     Gone,
+    /// A drive is too hot.
+    Hot(DriveHeat),
     /// The lease ended, or another has it.
     Lease(LeaseRefusal),
 }
@@ -101,7 +105,7 @@ pub async fn follow<H: Hand>(
             offer = offers.recv() => match offer {
                 Some(offer) => at.take(offer),
                 None => {
-                    at.give_back();
+                    at.give_back(Disarmed::Silent);
                     return FollowEnd::Gone;
                 }
             },
@@ -116,6 +120,7 @@ pub async fn follow<H: Hand>(
             at.take(offer);
         }
         if let Err(refused) = hand.check(at.start.lease) {
+            at.lease_ended(refused);
             return FollowEnd::Lease(refused);
         }
         if let Some(end) = at.go_on() {
@@ -184,6 +189,10 @@ impl<H: Hand> AtHand<'_, H> {
 
     /// Does what is to be done now; why it ended, if it did.
     fn go_on(&mut self) -> Option<FollowEnd> {
+        if let Some(hot) = self.heat().filter(|heat| heat.is_hot()) {
+            self.give_back(Disarmed::Hot);
+            return Some(FollowEnd::Hot(hot));
+        }
         let terms = *self.start.terms.borrow();
         self.follow.limit(terms.limits);
         let status = self.hand.status();
@@ -197,7 +206,7 @@ impl<H: Hand> AtHand<'_, H> {
             Some(FollowOrder::Arm) => self.hand.arm(lease, self.start.arm),
             Some(FollowOrder::Halt) => self.hand.halt(lease),
             Some(FollowOrder::End) => {
-                self.give_back();
+                self.give_back(Disarmed::Silent);
                 return Some(FollowEnd::Silent);
             }
             Some(FollowOrder::Aim(aims)) => self.set(status.armed?, &aims),
@@ -206,7 +215,9 @@ impl<H: Hand> AtHand<'_, H> {
             }
             None => return None,
         };
-        done.err().map(FollowEnd::Lease)
+        let refused = done.err()?;
+        self.lease_ended(refused);
+        Some(FollowEnd::Lease(refused))
     }
 
     /// Sends targets, and limits that the hand was not told under this arming yet.
@@ -228,8 +239,30 @@ impl<H: Hand> AtHand<'_, H> {
     }
 
     /// The hand is stopped and the source may move it no more; if it may not any more already, it was.
-    fn give_back(&self) {
-        let _done = self.hand.give_back(self.start.lease, Disarmed::Silent);
+    fn give_back(&self, why: Disarmed) {
+        let _done = self.hand.give_back(self.start.lease, why);
+    }
+
+    /// What ended the lease has disarmed the hand, which goes on to its last target. It is stopped, unless that was done, somebody
+    /// else moves it, or nothing reaches it.
+    fn lease_ended(&self, refused: LeaseRefusal) {
+        let is_over = match refused {
+            LeaseRefusal::Taken(_) => true,
+            LeaseRefusal::Ended(why) => {
+                why.is_asked_for()
+                    || matches!(
+                        why,
+                        Disarmed::LinkLost | Disarmed::Resume | Disarmed::OtherController
+                    )
+            }
+        };
+        if !is_over {
+            self.hand.stop();
+        }
+    }
+
+    fn heat(&self) -> Option<DriveHeat> {
+        DriveHeat::warmest(&self.sample, self.start.clock.now())
     }
 
     fn view(&self) -> FollowView {
@@ -243,6 +276,7 @@ impl<H: Hand> AtHand<'_, H> {
             sent: *self.follow.sent(),
             lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
             delay_p99: self.delays.p99(),
+            heat: self.heat(),
         }
     }
 }

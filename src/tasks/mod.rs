@@ -61,6 +61,8 @@ pub enum ParamStep {
     Read(Span, Vec<u8>),
     /// What a person agreed to.
     Meant(Risks),
+    /// Rows are written from now on.
+    Writing,
     /// A row was written, or was not.
     Row(RowOutcome),
     /// The backup is written, and a SAVE of another program waited for.

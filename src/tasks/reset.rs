@@ -8,6 +8,7 @@ use crate::params::values::Params;
 use crate::record::{NotSent, Reset};
 use crate::store::on_thread;
 use crate::tasks::hand::{Hand, Reach, once_at_rest};
+use crate::tasks::read::ReadRows;
 use crate::tasks::save::back_up;
 use crate::tasks::{TaskError, read};
 use crate::transport::Endpoint;
@@ -41,13 +42,42 @@ pub enum ResetEnd {
     Found {
         /// Where.
         at: WhichPlace,
-        /// What it holds.
+        /// What it holds, as far as it could be read.
         params: Params,
-        /// Rows that are not as at delivery.
+        /// Rows that were read and are not as at delivery.
         left: Vec<ParamId>,
+        /// What that shows of the reset.
+        proof: ResetProof,
     },
     /// No hand answers at either place.
     Nowhere,
+}
+
+/// What the parameters of a hand show of a reset. The manual prints no factory value for speeds and forces, so of those only
+/// a change shows it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ResetProof {
+    /// Read back: the rows whose factory value is known hold it, and the hand does not hold what it held before.
+    Done,
+    /// The hand holds other values than the factory's in some rows: it ignored the reset, as a whole or in part.
+    Ignored,
+    /// The hand holds what it held before, and that may have been the factory's parameters: it may have ignored the reset.
+    Unchanged,
+    /// Not every row could be read, so it is not known.
+    NotRead(RequestError),
+}
+
+impl ResetProof {
+    /// The stable name for JSON.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Ignored => "ignored",
+            Self::Unchanged => "unchanged",
+            Self::NotRead(_) => "not_known",
+        }
+    }
 }
 
 /// The result.
@@ -108,7 +138,7 @@ pub async fn reset<R: Reach>(
             // Whatever the answer was: what is in flash now is not what was saved.
             let noting = backups.clone();
             let forgotten = on_thread(move || noting.forget_saved()).await;
-            report.end = find(reach, places, &mut tell).await;
+            report.end = find(reach, places, &before, &mut tell).await;
             let adopted = adopt(backups, places, &report.end).await;
             report.not_noted = forgotten.and(adopted).err().map(|error| error.to_string());
         }
@@ -121,8 +151,10 @@ pub async fn reset<R: Reach>(
 async fn find<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
+    before: &Params,
     tell: &mut impl FnMut(ResetStep),
 ) -> ResetEnd {
+    let mut answered = None;
     for _round in 0..ROUNDS {
         for at in [WhichPlace::New, WhichPlace::Old] {
             if at == WhichPlace::Old && places.old == places.new {
@@ -133,18 +165,40 @@ async fn find<R: Reach>(
                 continue;
             };
             let rows = read::rows(&hand, |_, _| ()).await;
-            if rows.params.is_empty() {
-                continue;
+            let is_read = !rows.params.is_empty();
+            let end = found(rows, before, places, at);
+            if is_read {
+                return end;
             }
-            let left = rows.params.differences(&Params::factory());
-            return ResetEnd::Found {
-                at,
-                left: left.into_iter().map(|row| row.id).collect(),
-                params: rows.params,
-            };
+            answered = Some(end);
         }
     }
-    ResetEnd::Nowhere
+    answered.unwrap_or(ResetEnd::Nowhere)
+}
+
+/// What the rows show that a hand holds at this place.
+fn found(rows: ReadRows, before: &Params, places: &PlacePair, at: WhichPlace) -> ResetEnd {
+    let ReadRows { params, troubles } = rows;
+    let differing = params.differences(&Params::factory()).into_iter();
+    let left: Vec<ParamId> = differing
+        .filter(|row| row.ours.is_some())
+        .map(|row| row.id)
+        .collect();
+    // Some of these act, and are shown, only after the next power-up.
+    let is_there = *places.endpoint(at) != places.old;
+    let may_stay = |id: &ParamId| *id == ParamId::IpAddress || id.is_place() && is_there;
+    let proof = match troubles.into_iter().next_back() {
+        Some(why) => ResetProof::NotRead(why),
+        None if params == *before && left.is_empty() => ResetProof::Unchanged,
+        None if params == *before || !left.iter().all(may_stay) => ResetProof::Ignored,
+        None => ResetProof::Done,
+    };
+    ResetEnd::Found {
+        at,
+        params,
+        left,
+        proof,
+    }
 }
 
 /// What is known of the hand is found at its new place too.

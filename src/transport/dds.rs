@@ -2,6 +2,7 @@
 //! all that it made are dropped. Knows no hand.
 
 use futures::StreamExt as _;
+use rustdds::RTPSEntity as _;
 use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataReader, DataWriter, Decode, DefaultDecoder};
 use rustdds::no_key::{DeserializerAdapter, SerializerAdapter};
@@ -22,6 +23,8 @@ pub const DOMAIN_MAX: u16 = 232;
 const MESSAGES_MAX: usize = 64;
 /// The head of a message in little-endian CDR, which DDS keeps apart from its body.
 const HEAD: usize = 4;
+/// Bytes of an id that name the participant.
+const PREFIX: usize = 12;
 
 /// Why there is no DDS.
 #[derive(Debug, thiserror::Error)]
@@ -124,6 +127,17 @@ impl DdsNode {
     #[must_use]
     pub const fn address(&self) -> Ipv4Addr {
         self.address
+    }
+
+    /// Whether a message came from this participant itself.
+    #[must_use]
+    pub fn wrote(&self, message: &DdsMessage) -> bool {
+        // A writer's id begins with its participant's (RTPS 8.2.4).
+        let own = self.participant.guid().to_bytes();
+        own.iter()
+            .zip(message.from.0)
+            .take(PREFIX)
+            .all(|(own, from)| *own == from)
     }
 
     /// Writes to a topic, as CycloneDDS and ROS 2 do unless they are told otherwise: reliably, to whoever is there now.

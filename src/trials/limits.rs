@@ -66,8 +66,14 @@ pub enum Abort {
         /// The joint.
         dof: Dof,
     },
-    /// A reading that the limits depend on is missing, old or invalid.
-    #[error("the {what} of {} cannot be watched: it is unknown or old", dof.name())]
+    /// Readings of all joints that the limits depend on are missing or old.
+    #[error("the {what} readings cannot be watched: they are not known yet, or old")]
+    NotRead {
+        /// Which.
+        what: &'static str,
+    },
+    /// A reading that the limits depend on makes no sense.
+    #[error("the {what} of {} cannot be watched: it makes no sense", dof.name())]
     Blind {
         /// Which.
         what: &'static str,
@@ -145,7 +151,6 @@ fn blind(seen: &Feedback<'_>) -> Option<Abort> {
         group.as_ref().is_none_or(|group| group.age(now) > most)
     }
     let Feedback { sample, now, .. } = *seen;
-    let dof = Dof::Little;
     let groups = [
         ("angle", old(&sample.angle, now, BLIND_AFTER)),
         ("force", old(&sample.force, now, BLIND_AFTER)),
@@ -156,7 +161,7 @@ fn blind(seen: &Feedback<'_>) -> Option<Abort> {
         ),
     ];
     if let Some((what, _)) = groups.into_iter().find(|(_, is_old)| *is_old) {
-        return Some(Abort::Blind { what, dof });
+        return Some(Abort::NotRead { what });
     }
     let forces = sample.force?.value;
     let senseless = forces

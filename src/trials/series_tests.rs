@@ -233,7 +233,7 @@ fn closing(hand: &Hand) -> bool {
 fn what_cannot_be_watched_ends_it() {
     let dof = Dof::Little;
     let what = "force";
-    check(Abort::Blind { what, dof }, plan(250, 2), |hand| {
+    check(Abort::NotRead { what }, plan(250, 2), |hand| {
         if closing(hand) && hand.force_at.is_none() {
             hand.force_at = Some(hand.now);
         }

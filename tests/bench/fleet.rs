@@ -132,6 +132,7 @@ fn card(name: &str) -> FleetCard {
         side: Side::Right,
         at: None,
         first_may_move: false,
+        follows: false,
     }
 }
 

@@ -31,7 +31,7 @@ tasks = pd.read_parquet(root / "meta/tasks.parquet")
 assert tasks.iloc[0].name == "grasp" and tasks.loc["grasp"].task_index == 0, tasks
 episodes = [str(path) for path in sorted(root.glob("meta/episodes/*/*.parquet"))]
 episodes = datasets.Dataset.from_parquet(episodes, cache_dir=str(folder / "cache"))
-assert len(episodes) == info["total_episodes"]
+assert len(episodes) == info["total_episodes"] >= 2
 assert info["splits"]["train"] == f"0:{len(episodes)}"
 
 table = data.to_pandas()
@@ -51,7 +51,11 @@ angles = csv[[f"angle_{joint}" for joint in joints]].dropna().to_numpy() / 1000
 state = np.stack(table["observation.state"].to_list())
 assert all((np.abs(angles - row).max(axis=1) < 1e-6).any() for row in state), "every frame is a reading"
 assert 0 <= state.min() and state.max() <= 1 and state.shape[1] == len(info["features"]["observation.state"]["names"])
-for name in ["observation.state", "action", "observation.force", "observation.touch"]:
+parts = ["observation.force", "observation.touch"]
+both = np.concatenate([np.stack(table[name].to_list()) for name in parts], axis=1)
+assert (np.stack(table["observation.environment_state"].to_list()) == both).all(), "the same, where policies look"
+assert len(info["features"]["observation.environment_state"]["names"]) == both.shape[1] == 16
+for name in ["observation.state", "action", "observation.environment_state", *parts]:
     values = np.stack(table[name].to_list()).astype(float)
     theirs = stats[name]
     for key, ours in [("min", values.min(0)), ("max", values.max(0)), ("mean", values.mean(0)), ("std", values.std(0))]:

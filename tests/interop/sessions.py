@@ -6,6 +6,7 @@ import pathlib
 import sys
 
 import pandas as pd
+import polars as pl
 import pyarrow.parquet as pq
 from mcap_ros2.reader import read_ros2_messages
 from rosbags.highlevel import AnyReader
@@ -14,7 +15,7 @@ JOINTS = ["little", "ring", "middle", "index", "thumb_bend", "thumb_rotate"]
 FINGERS = ["little", "ring", "middle", "index", "thumb"]
 folder = pathlib.Path(sys.argv[1])
 csv = pd.read_csv(folder / "session.csv")
-assert csv["time_s"].is_monotonic_increasing and csv.columns[-1] == "event"
+assert csv["time_s"].is_monotonic_increasing and list(csv.columns[-2:]) == ["undocumented", "event"]
 
 
 def column(table, name):
@@ -68,6 +69,11 @@ print("rosbags reads", len(bagged), "messages")
 file = pq.ParquetFile(folder / "session.parquet")
 units = json.loads(file.schema_arrow.metadata[b"units"])
 assert units["force_index_g"] == "g" and units["normal_thumb_N"] == "N" and "angle_index" not in units, units
+for field in file.schema_arrow:
+    unit = (field.metadata or {}).get(b"unit", b"").decode()
+    assert unit == units.get(field.name, ""), field
+assert file.schema_arrow.field("force_index_g").metadata[b"unit"] == b"g"
+assert str(file.schema_arrow.field("received").type) == "timestamp[ns, tz=UTC]", file.schema_arrow
 table = file.read().to_pandas()
 for joint in JOINTS:
     for name in [f"angle_{joint}", f"force_{joint}_g", f"temperature_{joint}_C", f"target_angle_{joint}"]:
@@ -81,3 +87,18 @@ start = table["received"].iloc[0] - pd.to_timedelta(table["time_s"].iloc[0], uni
 apart = (table["received"] - start).dt.total_seconds() - table["time_s"]
 assert apart.abs().max() < 1e-5, apart.abs().max()
 print("pyarrow and pandas", pd.__version__, "read", len(table), "rows of", len(table.columns), "columns")
+
+# polars, as it reads without being told anything: no column of numbers is text, and nothing is refused.
+frame = pl.read_csv(folder / "session.csv")
+assert len(frame) == len(csv) and frame.columns == list(csv.columns)
+for name in frame.columns[:-2]:
+    theirs, ours = frame[name].drop_nulls().to_list(), column(csv, name)
+    assert not theirs or frame[name].dtype.is_numeric(), (name, frame[name].dtype)
+    assert theirs == ours, name
+parquet = pl.read_parquet(folder / "session.parquet")
+assert parquet["force_index_g"].drop_nulls().to_list() == column(csv, "force_index_g")
+print("polars", pl.__version__, "reads", len(frame), "lines and", len(parquet), "rows")
+
+# What both write is imported again: see .ci/run, which compares what comes back.
+csv.to_csv(folder / "pandas.csv")
+frame.write_csv(folder / "polars.csv")

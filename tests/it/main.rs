@@ -15,6 +15,7 @@ mod inputs;
 #[cfg(unix)]
 mod journal;
 mod layers;
+mod licences;
 mod link;
 mod looks;
 mod manual;
@@ -22,6 +23,8 @@ mod pad;
 mod place_changes;
 mod program;
 mod record;
+#[cfg(unix)]
+mod seams;
 #[cfg(unix)]
 mod session;
 mod setup;

@@ -3,14 +3,16 @@
 use crate::app::env::Env;
 use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, StaffPanel};
+use crate::app::files::wrong_pins_file;
 use crate::app::hand::HandState;
 use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::run::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
-use crate::store::calendar;
+use crate::store::{Saver, calendar};
 use crate::tasks::exhibit::{self, ExhibitStep};
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
@@ -34,12 +36,19 @@ impl ExhibitState {
             locked: hand.joints.map(|joint| joint.locked),
             seen: hand.sample,
             clock: env.clock,
+            drawn: Arc::default(),
         };
+        let drawn = Arc::clone(&task_start.drawn);
         let (wishes, wanted) = mpsc::channel(WISHES_MAX);
         let task = Running::start(env, |steps| async move {
             exhibit::exhibit(&link, task_start, wanted, |step| steps.tell(step)).await;
         });
-        let gate = start.plan.pin.clone().map(PinGate::new);
+        let wrong_path = env.settings_path.as_deref().map(wrong_pins_file::beside);
+        // One line, read before anybody can type.
+        let earlier = wrong_path.as_deref().map(wrong_pins_file::load);
+        let earlier = earlier.unwrap_or_default();
+        let resumed = |pin| PinGate::resumed(pin, earlier, env.clock.now());
+        let gate = start.plan.pin.clone().map(resumed);
         Some(Self {
             staff: match gate {
                 Some(_) => StaffPanel::Closed,
@@ -53,10 +62,17 @@ impl ExhibitState {
             view: ExhibitView::default(),
             report: KeptReport::new(env.documents.clone(), env.runtime.clone()),
             gate,
+            wrong_pins: Saver::new(
+                wrong_path,
+                env.runtime.clone(),
+                earlier,
+                wrong_pins_file::text,
+            ),
             ends_program: start.ends_program,
             language,
             wishes,
             task,
+            drawn,
         })
     }
 
@@ -64,6 +80,7 @@ impl ExhibitState {
     /// first did.
     pub(crate) fn tick(&mut self, hand: &mut HandState, now: Moment) -> bool {
         self.report.tick(hand, calendar::since_1970());
+        self.keep_wrong_pins(now);
         let before = self.view.stage;
         let (steps, _end) = self.task.news();
         for (_, step) in steps {
@@ -88,6 +105,14 @@ impl ExhibitState {
         // Somebody who only looked, and changed the language, is gone as well.
         let is_alone = before != after && after == ExhibitStage::Attract;
         plays(before) && !plays(after) || is_alone
+    }
+
+    /// Keeps wrong PINs over a restart.
+    fn keep_wrong_pins(&mut self, now: Moment) {
+        let Some(gate) = &self.gate else { return };
+        let since_start = now.since(Moment::ZERO);
+        // What cannot be written now is tried at the next wrong PIN; the gate itself goes on counting.
+        let _kept = self.wrong_pins.tick(&gate.wrong_pins(now), since_start);
     }
 
     /// Does what a person asked for. True if the exhibition is to end.
@@ -162,6 +187,7 @@ impl ExhibitState {
                         until,
                     },
                 };
+                self.keep_wrong_pins(now);
             }
             _ => {}
         }

@@ -3,11 +3,12 @@
 use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::running::Running;
 use crate::app::settings::Language;
-use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
+use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::run::{ExhibitView, ExhibitWish};
 use crate::hand::Moment;
-use crate::tasks::exhibit::ExhibitStep;
+use crate::store::Saver;
+use crate::tasks::exhibit::{ExhibitStep, PageDrawn};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
@@ -90,9 +91,13 @@ pub struct ExhibitState {
     /// What was counted today, and its file.
     pub report: KeptReport,
     pub(crate) gate: Option<PinGate>,
+    /// The file that keeps wrong PINs over a restart.
+    pub(crate) wrong_pins: Saver<WrongPins>,
     pub(crate) ends_program: bool,
     /// The language that it begins with for each visitor.
     pub(crate) language: Language,
     pub(crate) wishes: mpsc::Sender<ExhibitWish>,
     pub(crate) task: Running<ExhibitStep, ()>,
+    /// When it was drawn last.
+    pub(crate) drawn: Arc<PageDrawn>,
 }

@@ -44,14 +44,19 @@ pub fn read(path: &Path) -> Result<Exhibition, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     toml_file::load(path, FILE_LEN_MAX, |text| {
         let file = ExhibitFile::parse(text, folder)?;
-        let own = match file.poses() {
+        let own = match file.poses()? {
             Some(poses) => {
+                stays_inside(folder, &poses)?;
                 pose_file::read(&poses.path).map_err(|error| poses.refused(&said(&error)))?
             }
             None => PoseLibrary::default(),
         };
         let plan = file.plan(&own)?;
+        if plan.pin.is_some() {
+            is_private(path)?;
+        }
         let picture = |named: NamedFile<'_>| {
+            stays_inside(folder, &named)?;
             let picture = pixels(&named.path);
             picture.map_err(|why| named.refused(&why))
         };
@@ -61,6 +66,51 @@ pub fn read(path: &Path) -> Result<Exhibition, FileError> {
             ends_program: false,
         })
     })
+}
+
+/// A file with a PIN is for its person alone.
+#[cfg(unix)]
+fn is_private(path: &Path) -> Result<(), FileError> {
+    use std::os::unix::fs::PermissionsExt as _;
+    // Others, or a group, that may read or write.
+    const OTHERS: u32 = 0o066;
+    let mode = std::fs::metadata(path)?.permissions().mode();
+    if mode & OTHERS == 0 {
+        return Ok(());
+    }
+    let path = std::path::absolute(path)?.display().to_string();
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/._-+".contains(letter);
+    let path = match path.chars().all(is_plain) {
+        true => path,
+        // As a shell wants it.
+        false => format!("'{}'", path.replace('\'', "'\\''")),
+    };
+    Err(FileError {
+        field: Some("pin".into()),
+        ..FileCause::NotPrivate { path }.into()
+    })
+}
+
+/// Who may read a file is not asked here.
+#[cfg(not(unix))]
+fn is_private(_path: &Path) -> Result<(), FileError> {
+    Ok(())
+}
+
+/// A file that is named lies below the folder of the one that names it, also where links lead.
+fn stays_inside(folder: &Path, named: &NamedFile<'_>) -> Result<(), FileError> {
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    // What is not there is told when it is read.
+    let (Ok(folder), Ok(file)) = (folder.canonicalize(), named.path.canonicalize()) else {
+        return Ok(());
+    };
+    match file.starts_with(&folder) {
+        true => Ok(()),
+        false => Err(named.outside()),
+    }
 }
 
 /// What is wrong with a file, where it is said already that it cannot be read.
@@ -211,5 +261,72 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
         let told = read(&path).unwrap_err().to_string();
         assert!(told.contains("70000 bytes"), "{told}");
         drop(folder);
+    }
+    #[cfg(unix)]
+    #[test]
+    fn what_is_named_stays_in_the_folder_of_the_file() {
+        let (folder, path) = booth();
+        let beside = tempfile::tempdir().unwrap();
+        for name in ["poses.toml", "logo.png"] {
+            std::fs::copy(folder.path().join(name), beside.path().join(name)).unwrap();
+            let link = folder.path().join(format!("link-{name}"));
+            std::os::unix::fs::symlink(beside.path().join(name), link).unwrap();
+        }
+        std::os::unix::fs::symlink(beside.path(), folder.path().join("elsewhere")).unwrap();
+        std::fs::create_dir(folder.path().join("below")).unwrap();
+        std::fs::copy(
+            folder.path().join("poses.toml"),
+            folder.path().join("below/poses.toml"),
+        )
+        .unwrap();
+        let out = beside.path().display().to_string();
+        for (line, field, name) in [(4, "poses", "poses.toml"), (5, "logo", "logo.png")] {
+            for (named, is_inside) in [
+                (name.to_owned(), true),
+                (format!("./{name}"), true),
+                (format!("{out}/{name}"), false),
+                (format!("../{name}"), false),
+                (format!("below/../{name}"), false),
+                (format!("link-{name}"), false),
+                (format!("elsewhere/{name}"), false),
+            ] {
+                let text = FILE.replace(&format!("\"{name}\""), &format!("\"{named}\""));
+                std::fs::write(&path, text).unwrap();
+                let told = read(&path).map(|_| ()).map_err(|error| {
+                    let told = error.to_string();
+                    assert!(told.contains("does not lie in the folder"), "{told}");
+                    (error.line, error.field)
+                });
+                let refused = Err((Some(line), Some(field.to_owned())));
+                assert_eq!(told, if is_inside { Ok(()) } else { refused }, "{named}");
+            }
+        }
+        std::fs::write(&path, FILE.replace("poses.toml", "below/poses.toml")).unwrap();
+        assert!(read(&path).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_with_a_pin_that_others_can_read_or_change_is_refused_with_what_mends_it() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let (_folder, path) = booth();
+        for (pin, mode, is_taken) in [
+            ("", 0o644, true),
+            ("pin = \"4711\"\n", 0o600, true),
+            ("pin = \"4711\"\n", 0o400, true),
+            ("pin = \"4711\"\n", 0o640, false),
+            ("pin = \"4711\"\n", 0o604, false),
+            ("pin = \"4711\"\n", 0o602, false),
+        ] {
+            std::fs::write(&path, format!("{FILE}{pin}")).unwrap();
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            let told = read(&path).map(|_| ()).map_err(|error| error.to_string());
+            let mended = format!("run 'chmod 600 {}'", path.display());
+            match told {
+                Ok(()) => assert!(is_taken, "{mode:o}"),
+                Err(told) => assert!(!is_taken && told.contains(&mended), "{mode:o} {told}"),
+            }
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600)).unwrap();
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::params;
 use crate::params::file::ParamsFile;
 use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{BackgroundJob, on_thread, write_private};
 use std::sync::Arc;
 
 /// The form of an exported list of frames.
@@ -93,6 +93,7 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
 /// Writes into the folder of the day in the person's documents, under a name that is free; where there are none, asks for
 /// a place. What to tell a person of it.
 pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
+    let is_chosen = env.documents.is_none();
     let chosen = match &env.documents {
         Some(documents) => {
             let folder = day_folder::of_day(documents, &calendar::day(calendar::since_1970()));
@@ -107,10 +108,13 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
         };
         let place = path.clone();
         let work = move || {
-            if let Some(folder) = place.parent() {
-                std::fs::create_dir_all(folder)?;
-            }
-            std::fs::write(&place, content.bytes()?).map(|()| content.entries())
+            let bytes = content.bytes()?;
+            // Where a person chose the place, who can read it is as the system has it for new files.
+            let written = match is_chosen {
+                true => std::fs::write(&place, bytes),
+                false => write_private(&place, &bytes),
+            };
+            written.map(|()| content.entries())
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },

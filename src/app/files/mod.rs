@@ -9,3 +9,4 @@ pub mod pose_file;
 pub(crate) mod quirk_notes;
 pub mod reveal;
 pub mod settings_file;
+pub(crate) mod wrong_pins_file;

@@ -171,6 +171,9 @@ impl HandState {
         let armed = self.link.armed;
         if armed.is_some() && armed != before.armed {
             self.history.mark(self.now, MarkKind::Armed);
+            if let Some(why) = self.link.unguarded.clone() {
+                notices.push(self.now, NoticeKind::Unguarded { why });
+            }
             self.steered = self
                 .joints
                 .map(|joint| !joint.locked && joint.target.is_some());
@@ -178,7 +181,10 @@ impl HandState {
         if before.armed.is_some() && armed.is_none() {
             let is_known = |why: &Disarmed| why.is_asked_for() && *why != Disarmed::Silent;
             if let Some(why) = self.link.disarmed.filter(|why| !is_known(why)) {
-                notices.push(self.now, NoticeKind::Disarmed(why));
+                let foreign = self.link.foreign_setpoint;
+                let foreign = foreign.filter(|_| why == Disarmed::OtherController);
+                let what = foreign.map_or(NoticeKind::Disarmed(why), NoticeKind::DisarmedByOther);
+                notices.push(self.now, what);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::hand::HandState;
+use crate::app::notices::{NoticeKind, Notices};
 use crate::app::sessions::recording::{HandRecording, RecordingTarget};
 use crate::app::settings::Settings;
 use crate::hand::Moment;
@@ -9,11 +10,13 @@ use crate::record::EventKind;
 
 impl HandState {
     /// Begins or ends the recording of this hand as the settings say.
-    pub(crate) fn tick_recording(&mut self, settings: &Settings, env: &Env) {
+    pub(crate) fn tick_recording(&mut self, settings: &Settings, env: &Env, notices: &mut Notices) {
         let wanted = settings.records(self.is_simulated());
         match (&mut self.recording, &self.open) {
             (Some(recording), Some(_)) if wanted => {
-                recording.tick(self.now);
+                for notice in recording.tick(self.now) {
+                    notices.push(self.now, NoticeKind::Recording(notice));
+                }
                 recording.settings(settings, self.now);
                 // Half of a reading is no news.
                 if !self.params.is_busy() {

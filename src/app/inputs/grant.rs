@@ -65,6 +65,7 @@ impl HandState {
             return;
         };
         let last = joined.source.view().sender.map(|(_, last)| last);
+        let last = last.filter(|_| joined.others.now().is_none());
         if last.is_some_and(|last| self.now.since(last) < HOLDS_AFTER) {
             let granted = Granted::source(Owner::Dds, joined.source.follow());
             self.follow_source(granted, settings, env);
@@ -170,6 +171,7 @@ impl HandState {
 const fn stops_leader(end: FollowEnd) -> bool {
     match end {
         FollowEnd::Lease(LeaseRefusal::Ended(why)) => !matches!(why, Disarmed::Person),
+        FollowEnd::Hot(_) => true,
         FollowEnd::Lease(LeaseRefusal::Taken(_)) | FollowEnd::Silent | FollowEnd::Gone => false,
     }
 }

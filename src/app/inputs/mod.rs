@@ -16,6 +16,7 @@ use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::Owner;
 use crate::share::dds::{DdsTold, SharedOnDds};
+use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
@@ -123,6 +124,7 @@ pub struct HandInputs {
 #[derive(Debug)]
 pub(crate) struct JoinedDds {
     pub(crate) shared: SharedOnDds,
+    pub(crate) others: OtherFollowers,
     pub(crate) source: DdsSource,
 }
 
@@ -135,6 +137,8 @@ pub struct DdsState {
     pub told: DdsTold,
     /// What came in.
     pub view: DdsView,
+    /// Another hand that follows the same sender.
+    pub other: Option<FleetCard>,
 }
 
 /// A hand that follows a source.
@@ -176,7 +180,20 @@ impl HandInputs {
             at: joined.shared.node.address(),
             told: joined.shared.told(),
             view: joined.source.view(),
+            other: joined.others.now(),
         });
+    }
+
+    /// Whether the hand follows what is sent on DDS.
+    fn follows_dds(&self) -> bool {
+        let mut run = self.follow.iter();
+        run.any(|run| run.owner == Owner::Dds)
+    }
+
+    /// Whether another hand obeys the same sender on DDS.
+    fn other_follows_dds(&self) -> bool {
+        let mut joined = self.dds.iter();
+        joined.any(|joined| joined.others.now().is_some())
     }
 
     /// The slot of the hand that leads this one now.

@@ -16,7 +16,7 @@ use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::record::Disarmed;
 use crate::record::file::Opening;
 use crate::share::dds::SharedOnDds;
-use crate::share::fleet::{self, FleetCard};
+use crate::share::fleet::{self, FleetCard, OtherFollowers};
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
@@ -170,8 +170,11 @@ impl HandState {
         let card = self.fleet_card(settings);
         let joined = SharedOnDds::open(&place, &open.link, card).and_then(|shared| {
             let messages = shared.node.reader(&ctrl::topic(self.side), ctrl::KEPT)?;
-            let source = DdsSource::open(config, messages);
-            Ok(JoinedDds { shared, source })
+            Ok(JoinedDds {
+                others: OtherFollowers::open(&shared.node, self.side, env.clock)?,
+                source: DdsSource::open(config, messages),
+                shared,
+            })
         });
         match joined {
             Ok(joined) => self.inputs.dds = Some(joined),
@@ -187,6 +190,7 @@ impl HandState {
             side: self.side,
             at: self.inputs.gateway.as_ref().map(Gateway::address),
             first_may_move: settings.first_client_moves,
+            follows: self.inputs.follows_dds(),
         }
     }
 
@@ -204,6 +208,10 @@ impl HandState {
         self.inputs.look();
         if let Some(joined) = &self.inputs.dds {
             joined.shared.say(self.fleet_card(settings));
+        }
+        if self.inputs.follows_dds() && self.inputs.other_follows_dds() {
+            // Each hears of the other, and both stop.
+            self.end_outside(Disarmed::Stop);
         }
         let Some(run) = &mut self.inputs.follow else {
             return;

@@ -255,7 +255,7 @@ impl ParamsState {
                 ParamStep::Read(span, bytes) => self.take(span, &bytes, at),
                 ParamStep::Row(row) => self.written(row, at),
                 ParamStep::Saving => self.doing = Doing::Saving,
-                ParamStep::BackingUp | ParamStep::Meant(_) => {}
+                ParamStep::BackingUp | ParamStep::Meant(_) | ParamStep::Writing => {}
             }
         }
         let Some(end) = end else { return };

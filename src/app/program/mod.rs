@@ -134,7 +134,7 @@ impl App {
             hand.offer_tare(settings);
             hand.record();
             if self.records {
-                hand.tick_recording(settings, env);
+                hand.tick_recording(settings, env, notices);
             }
             hand.go_on_leaving(env, notices);
             self.quirk_notes.tick(hand, env, notices, now);
@@ -268,6 +268,13 @@ impl App {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: Exhibition, now: Moment) {
         self.exhibit.enter(start, &mut self.state, &self.env, now);
+    }
+
+    /// A frame was drawn: whoever stands before it can see and press STOP. An exhibition goes on only while this is called.
+    pub fn drawn(&self, now: Moment) {
+        if let Some(exhibit) = &self.state.exhibit {
+            exhibit.drawn.mark(now);
+        }
     }
 
     /// A person wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.

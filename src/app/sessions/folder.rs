@@ -3,7 +3,7 @@
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{BackgroundJob, create_folder, on_thread};
 use std::future::ready;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub(crate) fn choose(
         let place = path.clone();
         let made = on_thread(move || {
             let place = std::path::absolute(place)?;
-            std::fs::create_dir_all(&place).map(|()| place)
+            create_folder(&place).map(|()| place)
         });
         let made = made.await;
         made.map_err(|error| NoticeKind::not_saved(path, &error))

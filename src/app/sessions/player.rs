@@ -161,7 +161,7 @@ impl SessionPlayer {
             marks: Arc::new(item.marks),
             strip: Arc::new(item.strip),
             waits: false,
-            damaged: file.skipped() > 0,
+            damaged: file.is_damaged(),
             live_needs_eyes: false,
         };
         let mut player = Self {

@@ -10,7 +10,9 @@ use crate::link::{LinkHandle, LinkObserver};
 use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
-use crate::record::file::{Opening, Recorder, RecorderStatus, RecordingPlan, SystemDisk};
+use crate::record::file::{
+    Opening, Recorder, RecorderNotice, RecorderStatus, RecordingPlan, SystemDisk,
+};
 use crate::record::{Entry, Event, EventKind};
 use crate::store::BackgroundJob;
 use crate::store::calendar::{day, since_1970, stamp};
@@ -89,12 +91,14 @@ impl HandRecording {
         })
     }
 
-    /// Brings the status up to date, and takes in what the hand was asked for.
-    pub(crate) fn tick(&mut self, now: Moment) {
+    /// Brings the status up to date, and takes in what the hand was asked for; gives what happened to the file since.
+    pub(crate) fn tick(&mut self, now: Moment) -> Vec<RecorderNotice> {
+        let told = self.status.notices.len();
         self.status = self.recorder.status();
         if let Some(kept) = BackgroundJob::take_from(&mut self.asking) {
             self.params(&kept, now);
         }
+        self.status.notices.iter().skip(told).cloned().collect()
     }
 
     /// Ends the file and waits for that, at most a few seconds.
@@ -125,6 +129,7 @@ impl HandRecording {
         }
         self.params.clone_from(live);
         let file = ParamsFile {
+            hand: self.hand.clone(),
             at: stamp(since_1970()),
             why: "recorded".into(),
             params: live.clone(),

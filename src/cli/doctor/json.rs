@@ -35,6 +35,7 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
         "now_at": status.and_then(|status| status.moved_to.as_ref()),
         "adapter_echoes": status.map(|status| status.echoes),
         "other_controller": status.map(|status| status.other_controller),
+        "foreign_setpoint": status.and_then(|status| status.foreign_setpoint),
         "latency_ticks": measured.map(|measured| measured.ticks_seen),
         "windows": measured.map(|measured| measured.windows.iter().map(window_json).collect::<Vec<_>>()),
         "errors": measured.map(errors_json),

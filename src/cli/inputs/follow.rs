@@ -1,17 +1,24 @@
 //! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, a gamepad or another hand, once a person lets it.
 
-use crate::cli::inputs::source::{FollowSource, SourceArgs};
+use crate::cli::inputs::consent::{self, ConsentFrom};
+use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
 use crate::cli::interrupt::Interrupt;
-use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, say};
 use crate::cli::parse::{self, number};
+use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
-use crate::hand::{Force, HandSample, Moment, PerDof, Speed};
+use crate::hand::heat::HOT;
+use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
-use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
+use crate::link::{ArmRequest, Clock, LeaseRefusal, LinkHandle, Owner, PollRates, Records};
 use crate::record::{Disarmed, Record};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use crate::transport::Endpoint;
-use anyhow::bail;
+use anyhow::{anyhow, bail};
+use serde_json::json;
+use std::convert::Infallible;
+use std::path::PathBuf;
+use std::pin::pin;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep, timeout};
@@ -45,6 +52,12 @@ pub(crate) struct FollowArgs {
     /// Force threshold of all joints, g [default: gentle]
     #[arg(long, value_parser = parse::force)]
     force: Option<Force>,
+    /// Take a line of standard input for an answer, also where that is no terminal: one that comes after the question
+    #[arg(long, value_name = "FROM", requires = "arm")]
+    consent: Option<ConsentFrom>,
+    /// Record meanwhile, as 'handscope record' does; every write is recorded as it was sent
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
     /// Print JSON: an object a second, and one at each change
     #[arg(long)]
     json: bool,
@@ -94,15 +107,20 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         () = interrupt.wished() => return Ok(()),
         seen = known(&link, &mut records, &args.hand) => seen?,
     };
+    let allowed = Allowed {
+        limits: args.arm_request(),
+        moves: args.arm,
+    };
     let source = tokio::select! {
         biased;
         () = interrupt.wished() => return Ok(()),
-        source = FollowSource::open(&args.from, &args.hand, (&link, clock), args.arm_request()) => source?,
+        source = FollowSource::open(&args.from, &args.hand, (&link, clock), allowed) => source?,
     };
-    out.line(&source.ready())?;
-    out.flush()?;
+    let recording = args.record.as_deref();
+    let recording = SideRecording::begin(recording, &link, &args.hand, args.from.side())?;
     let mut at = AtHand {
-        link,
+        link: link.clone(),
+        records,
         seen,
         clock,
         args,
@@ -110,18 +128,41 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         teller: Teller {
             out,
             json: args.json,
+            question: None,
+            heat: None,
             told: None,
         },
     };
-    tokio::select! {
+    let ended = tokio::select! {
         biased;
-        () = interrupt.wished() => {}
-        ended = at.go_on() => ended?,
+        () = interrupt.wished() => Ok(()),
+        Err(ended) = at.go_on() => Err(ended),
+    };
+    drop(at);
+    let done = match args.arm {
+        true => leave(ended, session::stopped(&link, &mut link.records()).await),
+        false => ended,
+    };
+    drop((source, link));
+    recording.end().await;
+    done
+}
+
+/// How a command ends that could move the hand. It has stopped it, if that could be done.
+fn leave(ended: anyhow::Result<()>, stopped: anyhow::Result<()>) -> anyhow::Result<()> {
+    let Err(why) = ended else { return stopped };
+    if why.is::<ReaderGone>() {
+        let words = match stopped {
+            Ok(()) => "the hand was stopped".to_owned(),
+            Err(not) => not.to_string(),
+        };
+        say(&format!("nobody reads the output any more: {words}"));
+        return Err(AlreadyReported.into());
     }
-    match args.arm {
-        true => session::stopped(&at.link, &mut records).await,
-        false => Ok(()),
+    if let Err(not) = stopped {
+        say(&not.to_string());
     }
+    Err(why)
 }
 
 /// Waits until the hand says where it is.
@@ -145,6 +186,7 @@ async fn known(
 
 struct AtHand<'a> {
     link: LinkHandle,
+    records: Records,
     seen: HandSample,
     clock: Clock,
     args: &'a FollowArgs,
@@ -154,89 +196,147 @@ struct AtHand<'a> {
 
 impl AtHand<'_> {
     /// Follows whoever sends, each time that a person lets it.
-    async fn go_on(&mut self) -> anyhow::Result<()> {
-        let mut entered = entered_lines();
+    async fn go_on(&mut self) -> anyhow::Result<Infallible> {
+        self.teller.out.line(&self.source.ready())?;
+        self.teller.out.flush()?;
         loop {
             let (owner, sender) = self.sender().await?;
-            let (offers, lease) = (self.source.follow(), self.link.grant(owner));
-            let start = FollowStart {
-                lease,
-                terms: watch::Sender::new(self.args.terms()).subscribe(),
-                arm: self.args.arm_request(),
-                seen: self.seen,
-                clock: self.clock,
+            let end = tokio::select! {
+                biased;
+                why = self.source.must_end(), if self.args.arm => bail!("{why}: the hand was stopped"),
+                end = self.follow(owner) => end?,
             };
-            let (source, teller, clock) = (self.source, &mut self.teller, self.clock);
-            let mut trouble = None;
-            let tell = |view| {
-                let told = teller.tell(source, Some(view), clock.now());
-                trouble = trouble.take().or(told.err());
+            let by_other = FollowEnd::Lease(LeaseRefusal::Ended(Disarmed::OtherController));
+            let foreign = self.link.status().foreign_setpoint;
+            let why = match foreign.filter(|_| end == by_other) {
+                Some(foreign) => {
+                    format!("another controller wrote {foreign}, and may move the hand")
+                }
+                None => ended(end, &sender),
             };
-            let end = follow(&self.link, start, offers, tell).await;
-            if let Some(trouble) = trouble {
-                return Err(trouble);
-            }
-            let why = match end {
-                FollowEnd::Silent | FollowEnd::Gone => format!("{sender} fell silent"),
-                FollowEnd::Lease(_) => self.lease_end(),
-            };
-            say(&format!(
-                "{why}: the hand was stopped; press Enter to let it move again, Ctrl-C to leave"
-            ));
-            self.teller.tell(self.source, None, clock.now())?;
-            if entered.recv().await.is_none() {
-                bail!("{why}, and nobody can press Enter here");
-            }
+            self.ask(&why).await?;
         }
     }
 
-    fn lease_end(&self) -> String {
-        let why = match self.link.status().disarmed {
-            Some(Disarmed::Stop) => "it was told to stop",
-            Some(Disarmed::Fault) => "a drive reports a fault",
-            Some(Disarmed::LinkLost) => "the link was lost",
-            Some(Disarmed::Stale) => "feedback grew old",
-            Some(Disarmed::Resume) => "this computer slept",
-            Some(Disarmed::OtherController) => "another controller talks to the hand",
-            _ => "it may not be moved any more",
+    /// Follows until that ends; what keeps it from being told ends it as well.
+    async fn follow(&mut self, owner: Owner) -> anyhow::Result<FollowEnd> {
+        let offers = self.source.follow();
+        let start = FollowStart {
+            lease: self.link.grant(owner),
+            terms: watch::Sender::new(self.args.terms()).subscribe(),
+            arm: self.args.arm_request(),
+            seen: self.seen,
+            clock: self.clock,
         };
-        why.to_owned()
+        let (source, teller, clock) = (self.source, &mut self.teller, self.clock);
+        let (untold, mut failed) = mpsc::channel(1);
+        let tell = |view| {
+            if let Err(error) = teller.tell(source, Some(view), clock.now()) {
+                // One is enough.
+                let _again = untold.try_send(error);
+            }
+        };
+        tokio::select! {
+            biased;
+            Some(error) = failed.recv() => Err(error),
+            end = follow(&self.link, start, offers, tell) => Ok(end),
+        }
+    }
+
+    /// Asks whether the hand may be moved again, and waits for the answer.
+    async fn ask(&mut self, why: &str) -> anyhow::Result<()> {
+        let earlier = consent::forget_earlier(self.args.consent);
+        let earlier = self.telling_meanwhile(earlier).await?;
+        earlier.map_err(|nobody| anyhow!("{why}, and {nobody}"))?;
+        let how = match self.args.consent {
+            None => "press Enter to let it move again, Ctrl-C to leave",
+            Some(ConsentFrom::Stdin) => "enter a line to let it move again",
+        };
+        say(&format!("{why}; {how}"));
+        self.teller.question = Some(why.to_owned());
+        let given = self.telling_meanwhile(consent::given()).await?;
+        self.teller.question = None;
+        given.map_err(|nobody| anyhow!("{why}, and {nobody}"))
+    }
+
+    /// Goes on telling how it stands while something is waited for.
+    async fn telling_meanwhile<T>(&mut self, wait: impl Future<Output = T>) -> anyhow::Result<T> {
+        let mut wait = pin!(wait);
+        loop {
+            self.look()?;
+            if let Ok(done) = timeout(LOOK_EACH, &mut wait).await {
+                return Ok(done);
+            }
+        }
     }
 
     /// Waits until there is somebody to follow; for ever if the hand is not to move.
     async fn sender(&mut self) -> anyhow::Result<(Owner, String)> {
         loop {
-            let now = self.clock.now();
-            self.teller.tell(self.source, None, now)?;
-            if let Some(owner) = self.source.owner(now).filter(|_| self.args.arm) {
+            self.look()?;
+            let owner = self.source.owner(self.clock.now());
+            if let Some(owner) = owner.filter(|_| self.args.arm) {
                 return Ok(owner);
             }
             sleep(LOOK_EACH).await;
         }
     }
-}
 
-/// A message for each line that a person enters, until there can be no more.
-fn entered_lines() -> mpsc::Receiver<()> {
-    let (entered, lines) = mpsc::channel(1);
-    // Reading a terminal blocks, and ends with the program.
-    std::thread::spawn(move || {
-        let mut line = String::new();
-        while matches!(std::io::stdin().read_line(&mut line), Ok(1..)) {
-            line.clear();
-            if entered.blocking_send(()).is_err() {
-                return;
+    /// Takes in what was read while nothing is followed, and tells how it stands.
+    fn look(&mut self) -> anyhow::Result<()> {
+        while let Some(record) = self.records.try_next() {
+            if let Record::Reading { sample, .. } = record {
+                self.seen = *sample;
             }
         }
-    });
-    lines
+        let now = self.clock.now();
+        self.teller.warn(DriveHeat::warmest(&self.seen, now));
+        self.teller.tell(self.source, None, now)
+    }
+}
+
+/// Why a hand is not followed any more, and what that did to it.
+fn ended(end: FollowEnd, sender: &str) -> String {
+    let why = match end {
+        FollowEnd::Silent | FollowEnd::Gone => format!("{sender} fell silent"),
+        FollowEnd::Hot(heat) => heat.to_string(),
+        FollowEnd::Lease(LeaseRefusal::Taken(_)) => {
+            return "another may move the hand now".into();
+        }
+        FollowEnd::Lease(LeaseRefusal::Ended(why)) => match why {
+            Disarmed::LinkLost => {
+                return "the link was lost: nothing reached the hand, which may still finish its move"
+                    .into();
+            }
+            Disarmed::Resume => {
+                return "this computer slept: nothing reached the hand, which may have finished its move"
+                    .into();
+            }
+            Disarmed::OtherController => {
+                return "another controller talks to the hand, and may move it".into();
+            }
+            Disarmed::Stop => "it was told to stop".into(),
+            Disarmed::Fault => "a drive reports a fault".into(),
+            Disarmed::Stale => "feedback grew old".into(),
+            Disarmed::FrozenFeedback => {
+                return "its feedback stands still though motion was asked for: the hand is held where it must be, look at it"
+                    .into();
+            }
+            _ => "it may not be moved any more".into(),
+        },
+    };
+    format!("{why}: the hand was stopped")
 }
 
 /// Prints how it goes: at each change, and each second.
 struct Teller<'a> {
     out: &'a mut Out,
     json: bool,
-    told: Option<(Option<FollowPhase>, Moment)>,
+    /// What a person is asked now: why the hand does not move.
+    question: Option<String>,
+    /// The warmest drive, if one is warm.
+    heat: Option<DriveHeat>,
+    told: Option<((Option<FollowPhase>, bool), Moment)>,
 }
 
 impl Teller<'_> {
@@ -246,12 +346,16 @@ impl Teller<'_> {
         follow: Option<FollowView>,
         now: Moment,
     ) -> anyhow::Result<()> {
+        if let Some(view) = follow {
+            self.warn(view.heat);
+        }
         let phase = follow.map(|view| view.phase);
-        let is_due = |(told, at): (_, Moment)| told != phase || now.since(at) >= TELL_EACH;
+        let stands = (phase, self.question.is_some());
+        let is_due = |(told, at): (_, Moment)| told != stands || now.since(at) >= TELL_EACH;
         if !self.told.is_none_or(is_due) {
             return Ok(());
         }
-        self.told = Some((phase, now));
+        self.told = Some((stands, now));
         let phase = phase.map_or("waiting", phase_word);
         let (words, mut object) = source.told(now);
         match object.as_object_mut().filter(|_| self.json) {
@@ -263,11 +367,31 @@ impl Teller<'_> {
                 let delay = follow.and_then(|view| view.delay_p99);
                 let delay = delay.map(|delay| delay.as_secs_f64() * 1e3);
                 fields.insert("delay_p99_ms".into(), delay.into());
+                fields.insert("question".into(), self.question.clone().into());
+                let heat = self.heat;
+                let heat =
+                    heat.map(|heat| json!({"joint": heat.dof.name(), "celsius": heat.celsius}));
+                fields.insert("heat".into(), heat.into());
                 self.out.object(&object)?;
             }
-            None => self.out.line(&format!("{phase:<9} {words}"))?,
+            None => {
+                let heat = self
+                    .heat
+                    .map_or_else(String::new, |heat| format!("  {heat}"));
+                self.out.line(&format!("{phase:<9} {words}{heat}"))?;
+            }
         }
         self.out.flush()
+    }
+
+    /// Warns, once, of a drive that is warm.
+    fn warn(&mut self, heat: Option<DriveHeat>) {
+        if let Some(heat) = heat.filter(|_| self.heat.is_none()) {
+            say(&format!(
+                "warning: {heat}; from {HOT} °C on the hand is stopped"
+            ));
+        }
+        self.heat = heat;
     }
 }
 

@@ -1,6 +1,6 @@
 //! `inputs`: the gamepads of this computer, and what the controls of one ask of a hand, without a hand. Moves nothing.
 
-use crate::cli::inputs::source::pad_input;
+use crate::cli::inputs::source::{is_folder, pad_input};
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::hand::{Angle, Dof, Moment, PerDof};
@@ -64,6 +64,7 @@ fn list(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
 
 async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     let input = pad_input(args.map.as_deref())?;
+    is_folder(&args.devices)?;
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let mut reader = PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?;

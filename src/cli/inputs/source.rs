@@ -17,10 +17,10 @@ use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
 use crate::share::dds::SharedOnDds;
-use crate::share::fleet::FleetCard;
+use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::store::toml_file;
 use crate::transport::Endpoint;
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -68,6 +68,11 @@ fn scale(text: &str) -> Result<MirrorScale, String> {
 }
 
 impl SourceArgs {
+    /// Which hand it is.
+    pub(super) const fn side(&self) -> Side {
+        self.side
+    }
+
     /// What of it cannot be meant for this hand, if anything.
     pub(super) fn wrong(&self, hand: &Endpoint) -> Option<&'static str> {
         // Each built-in hand is one of its own.
@@ -79,21 +84,30 @@ impl SourceArgs {
     }
 }
 
+/// What a person lets a source do.
+#[derive(Clone, Copy)]
+pub(super) struct Allowed {
+    /// Speeds and forces at most.
+    pub(super) limits: ArmRequest,
+    /// Whether it moves the hand at all.
+    pub(super) moves: bool,
+}
+
 /// What the hand follows.
 pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
-    Dds(DdsSource, SharedOnDds),
+    Dds(DdsSource, SharedOnDds, OtherFollowers),
     Pad(PadSource),
     Mirror(Endpoint, LinkHandle, MirrorSource),
 }
 
 impl FollowSource {
-    /// Opens what the person named; nothing it takes goes beyond what is allowed.
+    /// Opens what the person named; nothing it takes goes beyond what is allowed, and nothing moves where nothing is.
     pub(super) async fn open(
         args: &SourceArgs,
         hand: &Endpoint,
         (link, clock): (&LinkHandle, Clock),
-        allowed: ArmRequest,
+        allowed: Allowed,
     ) -> anyhow::Result<Self> {
         if let Some(other) = &args.mirror {
             let leader = session::open(other, PollRates::default(), clock);
@@ -106,20 +120,19 @@ impl FollowSource {
             side: args.side,
             ..args.dds.card(hand)
         };
-        if let Some(out) = args.dds.open(link, card)? {
-            let messages = out.node.reader(&ctrl::topic(args.side), ctrl::KEPT)?;
-            let config = DdsSourceConfig {
-                allowed,
-                clock,
-                wake: Arc::new(|| ()),
-            };
-            return Ok(Self::Dds(DdsSource::open(config, messages), out));
+        let can = match allowed.moves {
+            true => "read this hand and move it",
+            false => "read this hand and send to it",
+        };
+        if let Some(out) = args.dds.open(link, card.clone(), can)? {
+            return Self::on_dds((out, card), clock, allowed).await;
         }
         let stops = link.clone();
         let stop = Arc::new(move || stops.stop());
         let udp = args.udp.map(StreamPlace::Udp);
         let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
             let input = pad_input(args.map.as_deref())?;
+            is_folder(&args.devices)?;
             return Ok(Self::Pad(PadSource::open(PadSourceConfig {
                 reader: PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?,
                 input,
@@ -139,8 +152,45 @@ impl FollowSource {
         let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
         let source = StreamSource::open(config, &Handle::current())
             .map_err(|error| listen::refused(at, &error))?;
-        listen::warn_if_reachable(source.local(), "send to this hand");
+        let can = match allowed.moves {
+            true => "move this hand",
+            false => "send to this hand",
+        };
+        listen::warn_if_reachable(source.local(), can);
         Ok(Self::Stream(place, source))
+    }
+
+    /// Two hands of one side would both obey one sender: the second is not let.
+    async fn on_dds(
+        (out, card): (SharedOnDds, FleetCard),
+        clock: Clock,
+        allowed: Allowed,
+    ) -> anyhow::Result<Self> {
+        let others = OtherFollowers::open(&out.node, card.side, clock)?;
+        let messages = out.node.reader(&ctrl::topic(card.side), ctrl::KEPT)?;
+        let config = DdsSourceConfig {
+            allowed: allowed.limits,
+            clock,
+            wake: Arc::new(|| ()),
+        };
+        if allowed.moves {
+            if let Some(other) = others.was_there().await {
+                bail!(followed(&other));
+            }
+            out.say(FleetCard {
+                follows: true,
+                ..card
+            });
+        }
+        Ok(Self::Dds(DdsSource::open(config, messages), out, others))
+    }
+
+    /// Why a hand may be moved no more whatever is sent, once there is a reason.
+    pub(super) async fn must_end(&self) -> String {
+        match self {
+            Self::Dds(_, _, others) => followed(&others.appears().await),
+            Self::Stream(..) | Self::Pad(_) | Self::Mirror(..) => std::future::pending().await,
+        }
     }
 
     /// The line that says that it can be used.
@@ -148,7 +198,7 @@ impl FollowSource {
         match self {
             Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
             Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
-            Self::Dds(_, shared) => dds::ready(shared),
+            Self::Dds(_, shared, _) => dds::ready(shared),
             Self::Pad(_) => "ready gamepad".into(),
             Self::Mirror(other, ..) => format!("ready mirror {other}"),
         }
@@ -157,7 +207,7 @@ impl FollowSource {
     pub(super) fn follow(&self) -> mpsc::Receiver<Offer> {
         match self {
             Self::Stream(_, source) => source.follow(),
-            Self::Dds(source, _) => source.follow(),
+            Self::Dds(source, ..) => source.follow(),
             Self::Pad(source) => source.follow(),
             Self::Mirror(_, _, source) => source.follow(),
         }
@@ -171,7 +221,7 @@ impl FollowSource {
                 let is_fresh = now.since(last) < HOLDS_AFTER;
                 is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
             }
-            Self::Dds(source, _) => {
+            Self::Dds(source, ..) => {
                 let (sender, last) = source.view().sender?;
                 let is_fresh = now.since(last) < HOLDS_AFTER;
                 is_fresh.then(|| (Owner::Dds, format!("the program on DDS ({sender})")))
@@ -213,7 +263,7 @@ impl FollowSource {
                 });
                 (words, object)
             }
-            Self::Dds(source, out) => told_of_dds(&source.view(), out),
+            Self::Dds(source, out, _) => told_of_dds(&source.view(), out),
             Self::Pad(source) => {
                 let view = source.view();
                 let held = if view.is_held { "held" } else { "not held" };
@@ -272,6 +322,29 @@ fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
         "lost": told.lost,
     });
     (words, object)
+}
+
+/// Another hand that obeys the same sender.
+fn followed(other: &FleetCard) -> String {
+    let side = match other.side {
+        Side::Left => "left",
+        Side::Right => "right",
+    };
+    let (name, host) = (&other.name, &other.host);
+    format!(
+        "the {side} hand {name} of {host} follows what is sent on DDS here, and one sender must not move two hands: end that, or choose another --domain or --side"
+    )
+}
+
+/// Where gamepads come and go; they are waited for there, but not for the folder.
+pub(super) fn is_folder(devices: &Path) -> anyhow::Result<()> {
+    match devices.is_dir() {
+        true => Ok(()),
+        false => bail!(
+            "there is no folder {} to find gamepads in; without --devices it is {FOLDER}",
+            devices.display()
+        ),
+    }
 }
 
 /// A gamepad with what its controls do and where its poses are: of a file, else as delivered.

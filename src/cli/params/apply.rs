@@ -2,6 +2,7 @@
 
 use crate::cli::out::{Out, WrongUsage, end, say};
 use crate::cli::params::args::ApplyArgs;
+use crate::cli::params::patience::Patience;
 use crate::cli::params::words::{self, or_dash, outcome_json, outcome_line};
 use crate::cli::params::{place, reach};
 use crate::params::changes::RowOutcome;
@@ -11,6 +12,9 @@ use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::{ParamStep, TaskError};
 use anyhow::{anyhow, bail};
 use serde_json::json;
+
+/// What is not known if a person does not wait.
+pub(crate) const UNKNOWN: &str = "it is not known what the hand holds: see with 'handscope params dump'; 'handscope params backups' names what it held before";
 
 /// Applies. Fails unless every chosen row is in effect.
 pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
@@ -53,13 +57,18 @@ async fn rows(
             false => Otherwise::Undo,
         },
     };
-    let link = reach::open(&args.common.hand).await?;
-    let told = |step| {
-        if let ParamStep::Meant(risks) = step {
-            words::warn(&risks);
-        }
+    let mut patience = Patience::begin()?;
+    let written = patience.written();
+    let link = patience
+        .see_through(reach::open(&args.common.hand), "")
+        .await??;
+    let told = |step| match step {
+        ParamStep::Meant(risks) => words::warn(&risks),
+        ParamStep::Writing => written.set(true),
+        _ => {}
     };
-    let applied = apply(&link, &task, told).await?;
+    let apply = apply(&link, &task, told);
+    let applied = patience.see_through(apply, UNKNOWN).await??;
     for row in applied.before.differences(whole) {
         if row.id.is_place() && task.wanted.get(row.id).is_none() {
             let (name, theirs, ours) = (row.id.name(), row.theirs, or_dash(row.ours));
@@ -99,27 +108,24 @@ fn tell(out: &mut Out, args: &ApplyArgs, applied: &Applied) -> anyhow::Result<Op
     let is_written = |row: &&RowOutcome| row.before != Some(row.wanted);
     let rows: Vec<&RowOutcome> = applied.rows.iter().filter(is_written).collect();
     let is_whole = applied.is_whole();
-    out.result(
-        args.common.json,
-        &json!({
-            "hand": args.common.hand.to_string(),
-            "backup": backup,
-            "rows": rows.iter().map(|row| outcome_json(row)).collect::<Vec<_>>(),
-            "applied": is_whole,
-            "undone": applied.undone,
-        }),
-        rows.iter()
-            .map(|row| outcome_line(row))
-            .chain([words::backup(backup)]),
-    )?;
+    let object = json!({
+        "hand": args.common.hand.to_string(),
+        "backup": backup,
+        "rows": rows.iter().map(|row| outcome_json(row)).collect::<Vec<_>>(),
+        "applied": is_whole,
+        "undone": applied.undone,
+    });
+    let mut lines: Vec<String> = rows.iter().map(|row| outcome_line(row)).collect();
+    lines.push(words::backup(backup));
+    if is_whole {
+        lines.push("not in flash yet: 'handscope params save' keeps it".into());
+    }
+    words::show(out, args.common.json, &object, &lines)?;
     if is_whole {
         if rows.iter().any(|row| row.id == ParamId::IpAddress) {
             say(
                 "ip_address takes effect after a save and a power cycle; until then the hand answers at its old address",
             );
-        }
-        if !args.common.json {
-            out.line("not in flash yet: 'handscope params save' keeps it")?;
         }
         return Ok(Some(true));
     }

@@ -38,7 +38,7 @@ pub(crate) enum ParamsCommand {
     Save(FlashArgs),
     /// Return the hand to its factory parameters
     #[command(
-        after_help = "A backup is made first; 'handscope params apply' restores it. The hand must be at rest. Id, serial speed and IP address return to their factory values too; the hand is then looked for, and its address printed."
+        after_help = "A backup is made first; 'handscope params apply' restores it. The hand must be at rest. Id, serial speed and IP address return to their factory values too; the hand is then looked for, and its address printed.\n\nExit status: 0 reset and read back; 1 failed, ignored, or not known."
     )]
     Reset(FlashArgs),
     /// List the backups of a hand and its last save, without asking the hand

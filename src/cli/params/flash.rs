@@ -2,16 +2,21 @@
 
 use crate::cli::out::{Out, end, say};
 use crate::cli::params::args::FlashArgs;
+use crate::cli::params::patience::Patience;
 use crate::cli::params::reach::{self, LinkOpener};
 use crate::cli::params::words;
 use crate::params::backups::saved_name;
-use crate::params::rows::ParamId;
+use crate::params::place::PlacePair;
 use crate::record::Saved;
-use crate::tasks::reset::{self, ResetEnd};
+use crate::tasks::reset::{self, ResetEnd, ResetProof, ResetReport, ResetStep};
 use crate::tasks::save::{self, Save};
 use crate::tasks::{Consent, ParamStep};
 use anyhow::bail;
 use serde_json::json;
+
+/// What is not known if a person does not wait.
+const UNKNOWN_SAVE: &str = "it is not known whether the parameters are in flash: switch the hand off and on, then compare with 'handscope params diff'";
+const UNKNOWN_RESET: &str = "it is not known whether the hand was reset, and where it answers: look for it with 'handscope scan'; 'handscope params backups' names what it held before";
 
 /// Saves. Fails unless the parameters are saved, as far as the wire can tell.
 pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
@@ -19,51 +24,65 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
     let common = &args.common;
     let backups = common.backups()?;
     let known = backups.known().unwrap_or_default();
-    let link = reach::open(&common.hand).await?;
+    let mut patience = Patience::begin()?;
+    let written = patience.written();
+    let link = patience
+        .see_through(reach::open(&common.hand), "")
+        .await??;
     let task = Save {
         backups,
         before: known.saved.map(|file| file.params).unwrap_or_default(),
         consent: Consent::Given,
     };
-    let told = |step| {
-        if let ParamStep::Meant(risks) = step {
-            words::warn(&risks);
-        }
+    let told = |step| match step {
+        ParamStep::Meant(risks) => words::warn(&risks),
+        ParamStep::Saving => written.set(true),
+        _ => {}
     };
-    let report = save::save(&link, &task, told).await?;
+    let save = save::save(&link, &task, told);
+    let report = patience.see_through(save, UNKNOWN_SAVE).await??;
     let sentence = words::saved(&report.saved);
     if let Some(why) = report.not_noted {
         bail!("{sentence}; and this could not be noted: {why}");
     }
     let is_saved = matches!(report.saved, Saved::Confirmed | Saved::ReadBack);
-    if common.json {
-        out.object(&json!({
-            "hand": common.hand.to_string(),
-            "backup": report.backup,
-            "result": saved_name(&report.saved),
-            "words": sentence,
-            "params": report.params,
-        }))?;
-    } else if is_saved {
-        out.lines([sentence, words::backup(&report.backup)])?;
+    let object = json!({
+        "hand": common.hand.to_string(),
+        "backup": report.backup,
+        "result": saved_name(&report.saved),
+        "words": sentence,
+        "params": report.params,
+    });
+    if common.json || is_saved {
+        let lines = [sentence, words::backup(&report.backup)];
+        words::show(out, common.json, &object, &lines)?;
     } else {
         say(&sentence);
     }
     end(is_saved)
 }
 
-/// Resets, and tells where the hand answers then. Fails unless it is found and holds the factory parameters.
+/// Resets, and tells where the hand answers then. Fails unless it is found, and what was read back shows that it was reset.
 pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
     args.consented(
         "reset returns the hand to its factory parameters, including id, serial speed and IP address",
     )?;
     let hand = &args.common.hand;
     let files = args.common.backups()?;
+    let mut patience = Patience::begin()?;
+    let written = patience.written();
     // Says why, if nobody answers.
-    drop(reach::open(hand).await?);
+    drop(patience.see_through(reach::open(hand), "").await??);
     let places = reset::places(hand);
-    let report = reset::reset(&mut LinkOpener::default(), &places, &files, |_| ()).await?;
-    let (at, params, left) = match report.end {
+    let told = |step| {
+        if step == ResetStep::Sending {
+            written.set(true);
+        }
+    };
+    let mut links = LinkOpener::default();
+    let reset = reset::reset(&mut links, &places, &files, told);
+    let report = patience.see_through(reset, UNKNOWN_RESET).await??;
+    match &report.end {
         ResetEnd::NotSent(Some(why)) => bail!("not reset, nothing was written: {why}"),
         ResetEnd::NotSent(None) => bail!("not reset, nothing was written"),
         ResetEnd::Refused { reason } => bail!("not reset: {reason}"),
@@ -71,36 +90,69 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
             "the reset was sent, and no hand answers at {hand} or at the factory id and speed. Switch the hand off and on, then look for it with 'handscope scan': the factory id is 1, the speed 115200 baud, the address 192.168.11.210:6000. Its former parameters are in {}",
             report.backup.display()
         ),
-        ResetEnd::Found { at, params, left } => (at, params, left),
-    };
-    if let Some(why) = report.not_noted {
-        bail!("the hand was reset, and its files could not be kept up: {why}");
+        ResetEnd::Found { .. } => {}
     }
+    if let Some(why) = &report.not_noted {
+        say(&format!(
+            "the files of the hand could not be kept up: {why}"
+        ));
+    }
+    let is_reset = tell_reset(out, args, &places, &report)?;
+    end(is_reset && report.not_noted.is_none())
+}
+
+/// Tells what a hand that answers after the reset holds. Whether that shows that it was reset.
+fn tell_reset(
+    out: &mut Out,
+    args: &FlashArgs,
+    places: &PlacePair,
+    report: &ResetReport,
+) -> anyhow::Result<bool> {
+    let ResetEnd::Found {
+        at,
+        params,
+        left,
+        proof,
+    } = &report.end
+    else {
+        return Ok(false);
+    };
     let result = match report.is_acknowledged {
         true => "acknowledged",
         false => "unanswered",
     };
-    let place = places.endpoint(at);
-    out.result(
-        args.common.json,
-        &json!({
-            "hand": hand.to_string(),
-            "backup": report.backup,
-            "result": result,
-            "answers_at": place.to_string(),
-            "params": params,
-        }),
-        [
-            format!("reset ({result}); the hand answers at {place}"),
-            words::backup(&report.backup),
-        ],
-    )?;
-    let mut left = left.iter();
-    let is_reset = left.all(|id| *id == ParamId::IpAddress || id.is_place() && place != hand);
-    if !is_reset {
-        say(
-            "the hand does not hold the factory parameters: it may need a power cycle, or did not accept the reset",
-        );
+    let place = places.endpoint(*at);
+    let names: Vec<String> = left.iter().map(|id| id.name()).collect();
+    let names = names.join(", ");
+    let sentence = match proof {
+        ResetProof::Done => format!("reset ({result}); the hand answers at {place}"),
+        ResetProof::Ignored => format!(
+            "not reset ({result}): the hand at {place} still holds other values than the factory's in {names}; it ignored the reset, as a whole or in part, or needs a power cycle"
+        ),
+        ResetProof::Unchanged => format!(
+            "not known whether it was reset ({result}): the hand at {place} holds what it held before; either that is what the factory set, or it ignored the reset. The manual prints no factory speeds and forces"
+        ),
+        ResetProof::NotRead(why) => format!(
+            "not known whether it was reset ({result}): the hand answers at {place}, and not everything could be read back: {why}"
+        ),
+    };
+    let object = json!({
+        "hand": args.common.hand.to_string(),
+        "backup": report.backup,
+        "result": result,
+        "outcome": proof.name(),
+        "words": sentence,
+        "left": left,
+        "answers_at": place.to_string(),
+        "params": params,
+    });
+    let is_reset = *proof == ResetProof::Done;
+    let lines = [sentence, words::backup(&report.backup)];
+    if is_reset || args.common.json {
+        words::show(out, args.common.json, &object, &lines)?;
     }
-    end(is_reset)
+    if !is_reset {
+        lines.iter().for_each(|line| say(line));
+    }
+    Ok(is_reset)
 }

@@ -5,6 +5,7 @@ mod apply;
 mod args;
 mod flash;
 mod inspect;
+mod patience;
 mod place;
 mod reach;
 mod words;

@@ -2,17 +2,21 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::params::args::ApplyArgs;
+use crate::cli::params::patience::Patience;
 use crate::cli::params::reach::{self, LinkOpener, said_yes};
 use crate::cli::params::words;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
-use crate::tasks::place::{PlaceChange, PlaceReport, change_place};
+use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep, change_place};
 use crate::tasks::{Risks, read};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use serde_json::json;
 use std::path::Path;
+
+/// What is not known if a person does not wait.
+const UNKNOWN: &str = "it is not known at which of both places the hand answers: look for it with 'handscope scan --all-ids'; nothing is in flash, so switched off and on it is where it was";
 
 /// Changes it, and says where the hand answers then. Whether it is there, or will be after a SAVE or a power-up; `None` if the
 /// hand held the value already.
@@ -24,8 +28,11 @@ pub(crate) async fn change(
 ) -> anyhow::Result<Option<bool>> {
     let files = args.common.backups()?;
     let old = args.common.hand.clone();
-    let link = reach::open(&old).await?;
-    let rows = read::rows(&link, |_, _| ()).await;
+    let mut patience = Patience::begin()?;
+    let written = patience.written();
+    let link = patience.see_through(reach::open(&old), "").await??;
+    let rows = read::rows(&link, |_, _| ());
+    let rows = patience.see_through(rows, "").await?;
     drop(link);
     let before = rows.with(|_| true)?.get(id);
     let Some(before) = before.filter(|before| *before != wanted) else {
@@ -44,7 +51,13 @@ pub(crate) async fn change(
         is_followed: true,
     };
     let mut reach = LinkOpener::default();
-    let report = change_place(&mut reach, &change, &files, said_yes(), |_| ()).await?;
+    let told = |step| {
+        if matches!(step, PlaceStep::Writing(_)) {
+            written.set(true);
+        }
+    };
+    let changed = change_place(&mut reach, &change, &files, said_yes(), told);
+    let report = patience.see_through(changed, UNKNOWN).await??;
     if let Some(why) = &report.not_noted {
         bail!(
             "the hand was changed, and its backups could not be taken along: they are in {}: {why}",
@@ -72,23 +85,23 @@ fn tell(
     };
     let sentence = outcome(moved, change, backup);
     let is_done = matches!(moved, Moved::There | Moved::Waits);
-    if args.common.json {
-        let row = json!({
-            "name": change.id,
-            "before": change.before,
-            "wanted": change.wanted,
-            "verdict": moved.name(),
-        });
-        out.object(&json!({
-            "hand": old.to_string(),
-            "backup": backup,
-            "rows": [row],
-            "applied": is_done,
-            "answers_at": answers_at,
-            "words": sentence,
-        }))?;
-    } else if is_done {
-        out.lines([&sentence, &words::backup(backup)])?;
+    let row = json!({
+        "name": change.id,
+        "before": change.before,
+        "wanted": change.wanted,
+        "verdict": moved.name(),
+    });
+    let object = json!({
+        "hand": old.to_string(),
+        "backup": backup,
+        "rows": [row],
+        "applied": is_done,
+        "answers_at": answers_at,
+        "words": sentence,
+    });
+    if args.common.json || is_done {
+        let lines = [sentence.clone(), words::backup(backup)];
+        words::show(out, args.common.json, &object, &lines)?;
     }
     if !is_done {
         say(&sentence);

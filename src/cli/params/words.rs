@@ -1,6 +1,6 @@
 //! Rows, dangers and results in sentences, tables and JSON, as the commands about parameters share them. Pure.
 
-use crate::cli::out::say;
+use crate::cli::out::{Out, ReaderGone, say};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile};
@@ -39,6 +39,25 @@ pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> 
     let unknown = file.unknown_keys();
     let note = format!("unknown keys: {}", unknown.join(", "));
     Ok((file, (!unknown.is_empty()).then_some(note)))
+}
+
+/// Prints a result: as one JSON object, or as lines. Where nobody reads standard output any more the lines go to standard error:
+/// what a hand holds after a write is told in any case.
+pub(crate) fn show(
+    out: &mut Out,
+    as_json: bool,
+    object: &Json,
+    lines: &[String],
+) -> anyhow::Result<()> {
+    let shown = out.result(as_json, object, lines);
+    let shown = shown.and_then(|()| out.flush());
+    if shown.is_err() {
+        lines.iter().for_each(|line| say(line));
+    }
+    match shown {
+        Err(error) if !error.is::<ReaderGone>() => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Where the backup lies.
@@ -116,6 +135,7 @@ fn verdict(end: &RowOutcome) -> String {
             "not applied: the hand did not object, but kept its old value".into()
         }
         RowVerdict::Altered => "not applied: the hand took another value".into(),
+        RowVerdict::PutBack => "put back: not all rows could be applied".into(),
         RowVerdict::Unverified(why) => format!("not known: {why}"),
         RowVerdict::NotSent(why) => format!("not written: {why}"),
     }

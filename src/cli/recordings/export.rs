@@ -1,13 +1,21 @@
-//! `export`: a session, or a stretch of it, in a format of others; `recover`: a damaged one made whole again.
+//! `export`: sessions, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
 
-use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::out::{Out, ReaderGone, WrongUsage, say};
+use crate::cli::progress::{EndWished, Progress};
 use crate::cli::recordings::picture;
-use crate::cli::recordings::session_file::{self, FileArgs, StretchArgs, lost};
-use crate::record::export::lerobot::LeRobotPlan;
-use crate::record::export::{ExportError, Exported, csv, cut, lerobot, parquet, rosbag};
+use crate::cli::recordings::session_file::{
+    self, FileArgs, StretchArgs, is_standard, lost, say_remarks,
+};
+use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan, LeRobotSet};
+use crate::record::export::output::Folder;
+use crate::record::export::{
+    Destination, ExportError, Exported, Source, csv, cut, lerobot, parquet, rosbag,
+};
 use crate::record::file::SessionFile;
+use crate::record::file::reader::Stretch;
 use anyhow::{anyhow, bail};
 use serde_json::json;
+use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 
 /// Frames a second, as cameras have it.
@@ -15,24 +23,35 @@ const FPS: u32 = 30;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
-    #[command(flatten)]
-    file: FileArgs,
+    /// Session files, as 'handscope record' and the window write them; - reads one from standard input
+    #[arg(value_name = "FILE.mcap", required = true, num_args = 1..)]
+    files: Vec<PathBuf>,
     #[command(flatten)]
     form: FormArgs,
     #[command(flatten)]
     stretch: StretchArgs,
-    /// The file or folder to write; it must not exist yet
+    /// The file or folder to write, which must not exist yet; of several sessions a folder; - is standard output
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// With --lerobot: frames a second [default: 30]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
     fps: Option<u32>,
-    /// With --lerobot: what the hand does, in words [default: grasp]
+    /// With --lerobot: what the hand does, in words [default: the note that begins the episode, or grasp]
     #[arg(long, value_name = "WORDS")]
     task: Option<String>,
+    /// With --lerobot: where an episode begins: after a silence, or at each note [default: gaps]
+    #[arg(long, value_name = "WHERE")]
+    episode: Option<Episodes>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+}
+
+/// Where episodes begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Episodes {
+    Gaps,
+    Notes,
 }
 
 /// The format, one of these.
@@ -59,6 +78,55 @@ struct FormArgs {
     png: bool,
 }
 
+/// The format that was chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Csv,
+    Parquet,
+    Rosbag,
+    Mcap,
+    LeRobot,
+    Png,
+}
+
+impl FormArgs {
+    fn form(&self) -> Form {
+        match self {
+            Self { csv: true, .. } => Form::Csv,
+            Self { parquet: true, .. } => Form::Parquet,
+            Self { rosbag: true, .. } => Form::Rosbag,
+            Self { lerobot: true, .. } => Form::LeRobot,
+            Self { png: true, .. } => Form::Png,
+            _ => Form::Mcap,
+        }
+    }
+}
+
+impl Form {
+    /// What its files are called behind the point; folders have none.
+    const fn ending(self) -> Option<&'static str> {
+        match self {
+            Self::Csv => Some("csv"),
+            Self::Parquet => Some("parquet"),
+            Self::Mcap => Some("mcap"),
+            Self::Png => Some("png"),
+            Self::Rosbag | Self::LeRobot => None,
+        }
+    }
+
+    /// What is counted.
+    const fn rows(self) -> &'static str {
+        match self {
+            Self::Csv => "lines",
+            Self::Parquet => "rows",
+            Self::Rosbag => "messages",
+            Self::Mcap => "entries",
+            Self::LeRobot => "frames",
+            Self::Png => "picture",
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct RecoverArgs {
     #[command(flatten)]
@@ -71,52 +139,256 @@ pub(crate) struct RecoverArgs {
     json: bool,
 }
 
+/// Exports.
+pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
+    let form = args.form.form();
+    args.check(form)?;
+    let files = args.files.iter();
+    let files: Vec<SessionFile> = files
+        .map(|file| session_file::open_or_stdin(file))
+        .collect::<anyhow::Result<_>>()?;
+    files.iter().for_each(say_remarks);
+    let stretches = files.iter().map(|file| args.stretch.of(file));
+    let stretches: Vec<Stretch> = stretches.collect::<anyhow::Result<_>>()?;
+    if form == Form::Png {
+        let (Some(file), Some(stretch)) = (files.first(), stretches.first()) else {
+            return Ok(());
+        };
+        return picture(out, args, file, *stretch);
+    }
+    let to_stdout = is_standard(&args.out);
+    // What goes to standard output leaves nothing behind, and its reader may not read on.
+    let wished = match to_stdout {
+        true => EndWished::never(),
+        false => EndWished::listen()?,
+    };
+    let work = Work {
+        files: &files,
+        stretches: &stretches,
+        form,
+        wished,
+        progress: Progress::new(),
+    };
+    let done = match form {
+        Form::LeRobot => work.lerobot(&args.out, &args.plan()),
+        _ if to_stdout => work.one_by_one(&[Destination::Stdout]),
+        _ if files.len() == 1 => work.one_by_one(&[Destination::Path(args.out.clone())]),
+        _ => work.to_folder(&args.out, &args.files),
+    };
+    drop(work.progress);
+    let done = done.map_err(told)?;
+    done.report(out, args, form)
+}
+
 impl ExportArgs {
+    /// What clap cannot see.
+    fn check(&self, form: Form) -> anyhow::Result<()> {
+        // clap does not ask for a flag that another one of its group rules out.
+        let of_sets = self.fps.is_some() || self.task.is_some() || self.episode.is_some();
+        if form != Form::LeRobot && of_sets {
+            return Err(WrongUsage::error(
+                "--fps, --task and --episode are for --lerobot; leave them out, or export with --lerobot",
+            ));
+        }
+        let from_stdin = self.files.iter().filter(|file| is_standard(file)).count();
+        if from_stdin > 1 {
+            return Err(WrongUsage::error(
+                "standard input holds one file: write - once",
+            ));
+        }
+        if form == Form::Png && (self.files.len() > 1 || from_stdin > 0) {
+            return Err(WrongUsage::error("--png draws one session: name its file"));
+        }
+        if !is_standard(&self.out) {
+            return Ok(());
+        }
+        let why = match form {
+            _ if self.files.len() > 1 => "of several sessions a folder is made: name it with --out",
+            Form::Rosbag | Form::LeRobot => "this format is a folder: name it with --out",
+            Form::Png => "a picture is a file: name it with --out",
+            _ if self.json => "standard output holds what is exported: leave out --json",
+            Form::Csv => return Ok(()),
+            _ if io::stdout().is_terminal() => {
+                "this format is no text for a terminal: pipe it into a program, or name a file with --out"
+            }
+            _ => return Ok(()),
+        };
+        Err(WrongUsage::error(why))
+    }
+
     fn plan(&self) -> LeRobotPlan {
         LeRobotPlan {
             fps: self.fps.unwrap_or(FPS),
-            task: self.task.clone().unwrap_or_else(|| "grasp".into()),
+            task: self.task.clone(),
+            episodes: match self.episode {
+                Some(Episodes::Notes) => EpisodeStart::Note,
+                Some(Episodes::Gaps) | None => EpisodeStart::Gap,
+            },
         }
     }
 }
 
-/// Exports.
-pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
-    // clap does not ask for a flag that another one of its group rules out.
-    if !args.form.lerobot && (args.fps.is_some() || args.task.is_some()) {
-        return Err(WrongUsage::error(
-            "--fps and --task are for --lerobot; leave them out, or export with --lerobot",
+/// What is to be done.
+struct Work<'a> {
+    files: &'a [SessionFile],
+    stretches: &'a [Stretch],
+    form: Form,
+    wished: EndWished,
+    progress: Progress,
+}
+
+/// What was done.
+struct Done {
+    sessions: Vec<Exported>,
+    set: Option<LeRobotSet>,
+}
+
+impl Work<'_> {
+    /// Gives each session with how far all of them are.
+    fn watched<T>(
+        &self,
+        number: usize,
+        give: impl FnOnce(Source<'_>) -> Result<T, ExportError>,
+    ) -> Option<Result<T, ExportError>> {
+        let (file, stretch) = (self.files.get(number)?, self.stretches.get(number)?);
+        let watch = |share: f64| {
+            self.progress
+                .tell(share_of_all(number, share, self.files.len()));
+            self.wished.flow()
+        };
+        Some(give(Source {
+            file,
+            stretch: *stretch,
+            watch: &watch,
+        }))
+    }
+
+    fn one_by_one(&self, places: &[Destination]) -> Result<Done, ExportError> {
+        let mut sessions = Vec::new();
+        for (number, to) in places.iter().enumerate() {
+            let export = |source: Source<'_>| match (self.form, to) {
+                (Form::Csv, _) => csv::write(source, to),
+                (Form::Parquet, _) => parquet::write(source, to),
+                (Form::Rosbag, Destination::Path(path)) => rosbag::write(source, path),
+                _ => cut::write(source, to),
+            };
+            if let Some(exported) = self.watched(number, export) {
+                sessions.push(exported?);
+            }
+        }
+        Ok(Done {
+            sessions,
+            set: None,
+        })
+    }
+
+    /// Each into a file of its own, which is called as the session.
+    fn to_folder(&self, out: &Path, names: &[PathBuf]) -> Result<Done, ExportError> {
+        let folder = Folder::new(out)?;
+        let mut places: Vec<Destination> = Vec::new();
+        for name in names {
+            let stem = match is_standard(name) {
+                true => "stdin".into(),
+                false => name.file_stem().unwrap_or_default().to_string_lossy(),
+            };
+            let ending = self.form.ending().map(|ending| format!(".{ending}"));
+            let ending = ending.unwrap_or_default();
+            let named = |number: usize| match number {
+                1 => format!("{stem}{ending}"),
+                more => format!("{stem}-{more}{ending}"),
+            };
+            // Sessions of several days may have one name.
+            let free = (1..).map(|number| Destination::Path(folder.path().join(named(number))));
+            places.extend(
+                free.filter(|place| !places.contains(place))
+                    .take(1)
+                    .collect::<Vec<_>>(),
+            );
+        }
+        let done = self.one_by_one(&places)?;
+        folder.finish()?;
+        Ok(done)
+    }
+
+    fn lerobot(&self, out: &Path, plan: &LeRobotPlan) -> Result<Done, ExportError> {
+        let shares = (0..self.files.len()).map(|number| {
+            move |share: f64| {
+                self.progress
+                    .tell(share_of_all(number, share, self.files.len()));
+                self.wished.flow()
+            }
+        });
+        let watches: Vec<_> = shares.collect();
+        let sessions = self.files.iter().zip(self.stretches).zip(&watches);
+        let sources: Vec<Source<'_>> = sessions
+            .map(|((file, stretch), watch)| Source {
+                file,
+                stretch: *stretch,
+                watch,
+            })
+            .collect();
+        let set = lerobot::write(&sources, out, plan)?;
+        Ok(Done {
+            sessions: set.sessions.clone(),
+            set: Some(set),
+        })
+    }
+}
+
+/// How far all are, if this one is so far.
+fn share_of_all(number: usize, share: f64, all: usize) -> f64 {
+    let count = |number: usize| f64::from(u32::try_from(number).unwrap_or(u32::MAX));
+    (count(number) + share) / count(all.max(1))
+}
+
+impl Done {
+    fn report(&self, out: &mut Out, args: &ExportArgs, form: Form) -> anyhow::Result<()> {
+        let mut all = Exported::default();
+        for (path, session) in args.files.iter().zip(&self.sessions) {
+            if let Some(words) = lost(&session.damage) {
+                say(&format!("{} is damaged: {words}", path.display()));
+            }
+            all.rows += session.rows;
+            all.damage.add(&session.damage);
+        }
+        let mut line = format!("{} {} in {}", all.rows, form.rows(), args.out.display());
+        let mut object = as_json(&args.out, &all);
+        if let Some(set) = &self.set {
+            line = format!("{line}, {} episodes", set.episodes);
+            if let Some(fields) = object.as_object_mut() {
+                fields.insert("episodes".into(), set.episodes.into());
+                fields.insert("action_read_back_frames".into(), set.read_back.into());
+            }
+            warn_read_back(set);
+        }
+        match is_standard(&args.out) {
+            true => {
+                say(&format!("{} {}", all.rows, form.rows()));
+                Ok(())
+            }
+            false => out.result(args.json, &object, [line]),
+        }
+    }
+}
+
+fn warn_read_back(set: &LeRobotSet) {
+    if set.read_back > 0 {
+        say(&format!(
+            "in {} of {} frames something else than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
+            set.read_back,
+            set.frames()
         ));
     }
-    let file = session_file::open(&args.file.file)?;
-    let stretch = args.stretch.of(&file)?;
-    let form = &args.form;
-    if form.png {
-        return picture(out, args, &file);
-    }
-    let (done, what) = if form.csv {
-        (csv::write(&file, stretch, &args.out), "lines")
-    } else if form.parquet {
-        (parquet::write(&file, stretch, &args.out), "rows")
-    } else if form.rosbag {
-        (rosbag::write(&file, stretch, &args.out), "messages")
-    } else if form.lerobot {
-        let plan = args.plan();
-        (lerobot::write(&file, stretch, &args.out, &plan), "frames")
-    } else {
-        (cut::write(&file, stretch, &args.out), "entries")
-    };
-    let exported = done.map_err(told)?;
-    if let Some(words) = lost(exported.damage) {
-        say(&format!("{} is damaged: {words}", args.file.file.display()));
-    }
-    let line = format!("{} {what} in {}", exported.rows, args.out.display());
-    out.result(args.json, &as_json(&args.out, exported), [line])
 }
 
 /// Draws the window.
-fn picture(out: &mut Out, args: &ExportArgs, file: &SessionFile) -> anyhow::Result<()> {
-    let drawn = picture::draw(file, args.stretch.of(file)?, &args.out);
+fn picture(
+    out: &mut Out,
+    args: &ExportArgs,
+    file: &SessionFile,
+    stretch: Stretch,
+) -> anyhow::Result<()> {
+    let drawn = picture::draw(file, stretch, &args.out);
     drawn.map_err(|error| match error.downcast() {
         Ok(error) => told(error),
         Err(error) => error,
@@ -126,22 +398,36 @@ fn picture(out: &mut Out, args: &ExportArgs, file: &SessionFile) -> anyhow::Resu
         ..Exported::default()
     };
     let line = format!("1 picture in {}", args.out.display());
-    out.result(args.json, &as_json(&args.out, exported), [line])
+    out.result(args.json, &as_json(&args.out, &exported), [line])
 }
 
 /// Writes a whole copy of a file that is damaged or was not closed.
 pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = session_file::open(path)?;
+    say_remarks(&file);
     let to = args.out.clone().unwrap_or_else(|| beside(path));
-    let recovered = cut::recover(&file, &to).map_err(told)?;
+    let wished = EndWished::listen()?;
+    let progress = Progress::new();
+    let watch = |share: f64| {
+        progress.tell(share);
+        wished.flow()
+    };
+    let source = Source {
+        file: &file,
+        stretch: Stretch::WHOLE,
+        watch: &watch,
+    };
+    let recovered = cut::recover(source, &Destination::Path(to.clone()));
+    drop(progress);
+    let recovered = recovered.map_err(told)?;
     let mut lines = vec![format!("{} entries in {}", recovered.rows, to.display())];
-    lines.push(match (lost(recovered.damage), file.is_closed()) {
+    lines.push(match (lost(&recovered.damage), file.is_closed()) {
         (Some(words), _) => format!("lost: {words}"),
         (None, true) => "nothing was lost: the file was whole".into(),
         (None, false) => "nothing that was on the disk was lost; the file was not closed".into(),
     });
-    let mut object = as_json(&to, recovered);
+    let mut object = as_json(&to, &recovered);
     if let Some(fields) = object.as_object_mut() {
         fields.insert("was_closed".into(), file.is_closed().into());
     }
@@ -157,7 +443,7 @@ fn beside(path: &Path) -> PathBuf {
     path.with_file_name(format!("{stem}-recovered.mcap"))
 }
 
-fn as_json(path: &Path, exported: Exported) -> serde_json::Value {
+fn as_json(path: &Path, exported: &Exported) -> serde_json::Value {
     json!({
         "file": path,
         "rows": exported.rows,
@@ -173,7 +459,12 @@ pub(crate) fn told(error: ExportError) -> anyhow::Error {
         ExportError::Unwritable { .. } => {
             anyhow!("{error}; choose a folder that exists and has room")
         }
-        ExportError::Unreadable { .. } => anyhow!("{error}; nothing was written"),
+        ExportError::Unreadable { .. } | ExportError::Interrupted => {
+            anyhow!("{error}; nothing was written")
+        }
         ExportError::Empty => anyhow!("{error}; choose another with --from and --to"),
+        ExportError::NoNotes => anyhow!("{error}; leave out --episode notes"),
+        ExportError::BothSides => anyhow!("{error}; make a set of each"),
+        ExportError::ReaderGone => ReaderGone.into(),
     }
 }

@@ -1,42 +1,83 @@
 //! `import`: a session file out of values that `export --csv` wrote.
 
-use crate::cli::out::Out;
+use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::progress::{EndWished, Progress};
 use crate::cli::recordings::export::told;
-use crate::record::import::csv::{self, ImportError};
+use crate::cli::recordings::session_file::{is_standard, stdin_as_file};
+use crate::record::export::Destination;
+use crate::record::import::csv::{self, ImportError, Imported};
 use anyhow::anyhow;
 use serde_json::json;
-use std::path::PathBuf;
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, BufReader, IsTerminal as _, Read, Seek as _};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ImportArgs {
-    /// Comma-separated values, as 'handscope export --csv' writes them
-    #[arg(value_name = "FILE.csv")]
-    file: PathBuf,
-    /// The session file to write; it must not exist yet [default: FILE.mcap, beside the file]
+    /// Comma-separated values, as 'handscope export --csv' writes them, also after pandas or polars; - reads them from standard input
+    #[arg(value_name = "FILE.csv", required = true, num_args = 1..)]
+    files: Vec<PathBuf>,
+    /// The session file to write, which must not exist yet; - is standard output [default: FILE.mcap, beside the file]
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
-    /// Print one JSON object
+    /// Print one JSON object for each file
     #[arg(long)]
     json: bool,
 }
 
+impl ImportArgs {
+    /// What clap cannot see.
+    fn check(&self) -> anyhow::Result<()> {
+        let from_stdin = self.files.iter().any(|file| is_standard(file));
+        let to_stdout = self.out.as_deref().is_some_and(is_standard);
+        let why = match &self.out {
+            Some(_) if self.files.len() > 1 => {
+                "--out names one file: leave it out, and each is made beside its values"
+            }
+            None if from_stdin => "name the session file with --out",
+            _ if to_stdout && self.json => {
+                "standard output holds the session file: leave out --json"
+            }
+            _ if to_stdout && io::stdout().is_terminal() => {
+                "a session file is no text for a terminal: pipe it into a program, or name a file with --out"
+            }
+            _ => return Ok(()),
+        };
+        Err(WrongUsage::error(why))
+    }
+}
+
 /// Imports.
 pub(crate) fn run(out: &mut Out, args: &ImportArgs) -> anyhow::Result<()> {
-    let beside = || args.file.with_extension("mcap");
-    let to = args.out.clone().unwrap_or_else(beside);
-    let imported = csv::import(&args.file, &to).map_err(|error| {
-        let file = args.file.display();
-        match error {
-            ImportError::Output(error) => told(error),
-            ImportError::Unreadable { .. } => {
-                anyhow!("cannot import {file}: {error}; check the path")
-            }
-            ImportError::Line { .. } => {
-                anyhow!("cannot import {file}: {error}; nothing was written")
-            }
-        }
+    args.check()?;
+    args.files
+        .iter()
+        .try_for_each(|file| import(out, args, file))
+}
+
+fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
+    let name = match is_standard(file) {
+        true => "standard input".into(),
+        false => file.display().to_string(),
+    };
+    let beside = || file.with_extension("mcap");
+    let path = args.out.clone().unwrap_or_else(beside);
+    let to = match is_standard(&path) {
+        true => Destination::Stdout,
+        false => Destination::Path(path.clone()),
+    };
+    let from = match is_standard(file) {
+        true => stdin_as_file()?,
+        false => File::open(file)
+            .map_err(|error| anyhow!("cannot import {name}: {error}; check the path"))?,
+    };
+    let imported = values(from, &to).map_err(|error| match error {
+        ImportError::Output(error) => told(error),
+        ImportError::Unreadable { .. } => anyhow!("cannot import {name}: {error}; check the path"),
+        ImportError::Line { .. } => anyhow!("cannot import {name}: {error}; nothing was written"),
     })?;
-    let mut lines = vec![format!("{} lines in {}", imported.rows, to.display())];
+    let mut lines = vec![format!("{} lines in {}", imported.rows, path.display())];
     if !imported.unknown.is_empty() {
         lines.push(format!("skipped columns: {}", imported.unknown.join(", ")));
     }
@@ -46,11 +87,61 @@ pub(crate) fn run(out: &mut Out, args: &ImportArgs) -> anyhow::Result<()> {
             imported.incomplete_tips
         ));
     }
+    if to == Destination::Stdout {
+        lines.iter().for_each(|line| say(line));
+        return Ok(());
+    }
     let object = json!({
-        "file": to,
+        "file": path,
         "rows": imported.rows,
         "skipped_columns": imported.unknown,
         "incomplete_fingertips": imported.incomplete_tips,
     });
     out.result(args.json, &object, lines)
+}
+
+/// Imports, and tells how far that is.
+fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
+    let unreadable = |error: io::Error| ImportError::Unreadable {
+        message: error.to_string(),
+    };
+    let unlistened = |error: anyhow::Error| ImportError::Unreadable {
+        message: error.to_string(),
+    };
+    // What comes from standard input was written here just now.
+    let is_plain = from.metadata().map_err(unreadable)?.is_file();
+    if is_plain {
+        from.rewind().map_err(unreadable)?;
+    }
+    let wished = match to {
+        Destination::Stdout => EndWished::never(),
+        Destination::Path(_) => EndWished::listen().map_err(unlistened)?,
+    };
+    let length = from.metadata().map_or(0, |data| data.len());
+    let (progress, read) = (Progress::new(), Cell::new(0));
+    let from = CountedRead { from, read: &read };
+    csv::import(BufReader::new(from), to, &|| {
+        progress.tell(share(read.get(), length));
+        wished.flow()
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
+fn share(read: u64, length: u64) -> f64 {
+    (read as f64 / length.max(1) as f64).min(1.0)
+}
+
+/// A file of which is known how much was read.
+struct CountedRead<'a> {
+    from: File,
+    read: &'a Cell<u64>,
+}
+
+impl Read for CountedRead<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.from.read(into)?;
+        self.read
+            .update(|read| read + u64::try_from(count).unwrap_or(0));
+        Ok(count)
+    }
 }

@@ -2,13 +2,16 @@
 
 use crate::cli::out::Out;
 use crate::cli::recordings::session_file::{self, FileArgs, length, lost};
+use crate::hand::Moment;
 use crate::record::EventKind;
-use crate::record::file::SessionFile;
-use crate::record::file::reader::{Damage, Stretch};
+use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, Remark, SessionFile};
 use crate::store::calendar;
 use anyhow::Context as _;
 use serde_json::{Value, json};
 use std::time::Duration;
+
+/// Gaps that are printed line by line.
+const GAPS_TOLD: usize = 20;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
@@ -23,13 +26,12 @@ pub(crate) struct InfoArgs {
 pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = session_file::open(path)?;
-    let damage = file
-        .messages(Stretch::WHOLE.from, Stretch::WHOLE.to, |_, _, _| ())
+    let contents = Contents::of(&file)
         .with_context(|| format!("cannot read {} to its end", path.display()))?;
     let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
     let told = Told {
         file: &file,
-        damage,
+        contents,
         bytes,
     };
     out.result(args.json, &told.json(), told.lines())
@@ -37,7 +39,7 @@ pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
 
 struct Told<'a> {
     file: &'a SessionFile,
-    damage: Damage,
+    contents: Contents,
     bytes: u64,
 }
 
@@ -56,19 +58,60 @@ impl Told<'_> {
             .map(|mark| (mark.at.since(self.file.first()), mark.words.as_str()))
     }
 
+    /// The file that this one names so as another part of the same recording.
+    fn part(&self, named: &str) -> Option<&str> {
+        let mut said = self.said_missing();
+        said.find_map(|(_, words)| Some(words.strip_prefix(named)?.split_once(": ")?.0))
+    }
+
     fn gaps(&self) -> u64 {
-        let said = u64::try_from(self.said_missing().count()).unwrap_or(u64::MAX);
-        self.damage.chunks + u64::from(self.damage.bytes > 0) + said
+        let Damage {
+            chunks,
+            bytes,
+            ref gaps,
+            ..
+        } = self.contents.damage;
+        // One that the recorder said is among those whose length is known, too.
+        let said = self.said_missing().count();
+        let said = u64::try_from(said).unwrap_or(u64::MAX);
+        let known = u64::try_from(gaps.len()).unwrap_or(u64::MAX);
+        known.max(chunks + u64::from(bytes > 0) + said)
+    }
+
+    /// A moment in seconds from the start.
+    fn seconds(&self, at: Moment) -> f64 {
+        at.since(self.file.first()).as_secs_f64()
+    }
+
+    /// A count, and how many of them can be read if not all.
+    fn count(written: u64, read: u64) -> String {
+        match written > read {
+            true => format!("{written}, of which {read} can be read"),
+            false => written.to_string(),
+        }
     }
 
     fn json(&self) -> Value {
         let (opening, counts) = (self.file.opening(), self.file.overview().counts);
+        let Contents {
+            counts: read,
+            damage,
+            ..
+        } = &self.contents;
+        let remarks = self.file.remarks().iter();
+        let gaps = damage.gaps.iter().map(|gap| {
+            json!({
+                "from_s": self.seconds(gap.from),
+                "to_s": self.seconds(gap.to),
+                "messages": gap.messages,
+            })
+        });
         json!({
             "file": self.file.path(),
             "start": self.start(),
             "length_s": length(self.file).as_secs_f64(),
             "hand": opening.hand,
-            "simulated": opening.simulated,
+            "simulated": opening.is_simulated(),
             "version": opening.version,
             "states": counts.states,
             "touch_sweeps": counts.touch_sweeps(),
@@ -76,21 +119,34 @@ impl Told<'_> {
             "faults": counts.faults,
             "notes": counts.notes,
             "gaps": self.gaps(),
-            "damaged_chunks": self.damage.chunks,
-            "damaged_bytes": self.damage.bytes,
+            "damaged_chunks": damage.chunks,
+            "damaged_bytes": damage.bytes,
             "missing_entries": counts.missing,
+            "missing_messages": damage.messages,
+            "missing_s": damage.length().as_secs_f64(),
+            "gap_list": gaps.collect::<Vec<_>>(),
+            "readable": {
+                "states": read.states,
+                "touch_sweeps": read.touch_sweeps(),
+                "writes": read.writes,
+                "notes": read.notes,
+            },
+            "remarks": remarks.map(ToString::to_string).collect::<Vec<_>>(),
             "closed": self.file.is_closed(),
+            "previous": self.part(GOES_ON_FROM),
+            "next": self.part(GOES_ON_IN),
             "bytes": self.bytes,
         })
     }
 
     fn lines(&self) -> Vec<String> {
         let (opening, counts) = (self.file.opening(), self.file.overview().counts);
+        let read = self.contents.counts;
         let known = |text: &str| match text {
             "" => "not known".to_owned(),
             text => text.to_owned(),
         };
-        let simulated = match opening.simulated {
+        let simulated = match opening.is_simulated() == Some(true) {
             true => " (simulated)",
             false => "",
         };
@@ -101,25 +157,55 @@ impl Told<'_> {
             format!("length        {:.3} s", length(self.file).as_secs_f64()),
             format!("hand          {}{simulated}", known(&opening.hand)),
             format!("version       {}", known(&opening.version)),
-            format!("states        {}", counts.states),
-            format!("touch sweeps  {}", counts.touch_sweeps()),
-            format!("writes        {}", counts.writes),
+            format!("states        {}", Self::count(counts.states, read.states)),
+            format!(
+                "touch sweeps  {}",
+                Self::count(counts.touch_sweeps(), read.touch_sweeps())
+            ),
+            format!("writes        {}", Self::count(counts.writes, read.writes)),
             format!("faults        {}", counts.faults),
-            format!("notes         {}", counts.notes),
+            format!("notes         {}", Self::count(counts.notes, read.notes)),
             format!("size          {megabytes:.1} MB"),
         ];
         if !self.file.is_closed() {
-            lines.push(
-                "not closed: the program ended without ending the file, so up to a quarter of a second is missing at its end; 'handscope recover' writes a closed copy".into(),
-            );
+            lines.push(format!(
+                "not closed: the program ended without ending the file. It can be read up to {:.3} s; what came after is in no file: a quarter of a second where the program was killed, more where the disk was full or the power lost; 'handscope recover' writes a closed copy",
+                self.seconds(self.contents.last)
+            ));
         }
-        lines.extend(lost(self.damage).map(|words| format!("missing: {words}")));
+        lines.extend(self.file.remarks().iter().map(ToString::to_string));
+        lines.extend(lost(&self.contents.damage).map(|words| format!("missing: {words}")));
+        lines.extend(self.gap_lines());
         lines.extend(
             self.said_missing()
                 .map(|(at, words)| format!("at {:.3} s: {words}", at.as_secs_f64())),
         );
-        if self.file.is_closed() && self.gaps() == 0 {
+        let is_whole = !self.file.remarks().iter().any(Remark::is_loss)
+            && self.contents.damage == Damage::default();
+        if self.file.is_closed() && self.gaps() == 0 && is_whole {
             lines.push("nothing is missing".into());
+        }
+        lines
+    }
+
+    /// When something is missing, and for how long.
+    fn gap_lines(&self) -> Vec<String> {
+        let gaps = &self.contents.damage.gaps;
+        let mut lines: Vec<String> = gaps
+            .iter()
+            .take(GAPS_TOLD)
+            .map(|gap| {
+                let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
+                let length = to - from;
+                let count = match gap.messages {
+                    0 => String::new(),
+                    count => format!(", {count} messages"),
+                };
+                format!("gap: {from:.3} s to {to:.3} s ({length:.3} s{count})")
+            })
+            .collect();
+        if let Some(more) = gaps.len().checked_sub(GAPS_TOLD).filter(|more| *more > 0) {
+            lines.push(format!("and {more} more gaps; --json lists them"));
         }
         lines
     }

@@ -1,5 +1,6 @@
 //! The commands on recorded sessions: recording one without a window, and all that is done with its file.
 
+pub(crate) mod beside;
 pub(crate) mod export;
 pub(crate) mod import;
 pub(crate) mod info;

@@ -1,6 +1,7 @@
 //! `export --png`: the window as it replays a session, its plots over a stretch.
 
 use crate::app::settings::{Language, Theme};
+use crate::cli::progress::EndWished;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::SessionFile;
@@ -40,5 +41,7 @@ pub(crate) fn draw(file: &SessionFile, stretch: Stretch, out: &Path) -> anyhow::
     let mut driver = Driver::start(&scene)?;
     driver.replay(file.path().to_owned(), (from, to))?;
     let picture = driver.picture(View::Live);
+    // From here on a signal finds a whole file or none.
+    let _wished = EndWished::listen()?;
     Ok(png::save(out, &picture.rgba, picture.size)?)
 }

@@ -98,9 +98,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     };
     drop(link);
     let _ended = timeout(LINK_ENDS_WITHIN, pump).await;
-    let status = recorder.end();
-    done?;
-    finish(out, &path, &status)
+    finish(out, &path, &recorder.end(), done)
 }
 
 /// The file, which must not be there.
@@ -149,7 +147,12 @@ fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
 }
 
 /// Records what the hand keeps, if it tells.
-async fn tell_parameters(link: &LinkHandle, hand: &Endpoint, input: &RecorderInput, clock: Clock) {
+pub(crate) async fn tell_parameters(
+    link: &LinkHandle,
+    hand: &Endpoint,
+    input: &RecorderInput,
+    clock: Clock,
+) {
     let rows = timeout(PARAMETERS_WITHIN, read::rows(link, |_, _| ())).await;
     let Some(rows) = rows.ok().filter(|rows| !rows.params.is_empty()) else {
         return;
@@ -170,10 +173,16 @@ async fn tell_parameters(link: &LinkHandle, hand: &Endpoint, input: &RecorderInp
 
 /// Says once each when the disk or the hand fails, and when they are well again. Never ends by itself.
 async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
-    let (mut disk, mut lost) = (None, None);
+    let (mut disk, mut lost, mut told) = (None, None, 0);
     loop {
         sleep(LOOK_EACH).await;
-        let trouble = recorder.status().trouble;
+        let RecorderStatus {
+            trouble, notices, ..
+        } = recorder.status();
+        for notice in notices.iter().skip(told) {
+            say(&notice.to_string());
+        }
+        told = notices.len();
         if disk != trouble {
             say(&match &trouble {
                 Some(trouble) => format!("the file cannot be written: {trouble}; trying again"),
@@ -193,34 +202,45 @@ async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyho
     }
 }
 
-/// Reads the file back and says what is in it.
-fn finish(out: &mut Out, asked: &Path, status: &RecorderStatus) -> anyhow::Result<()> {
+/// Reads the file back and says what is in it, also where the recording failed.
+fn finish(
+    out: &mut Out,
+    asked: &Path,
+    status: &RecorderStatus,
+    done: anyhow::Result<()>,
+) -> anyhow::Result<()> {
     let path = status.path.as_deref().unwrap_or(asked);
-    if let Some(trouble) = &status.trouble {
-        return Err(cannot_write(path, trouble));
-    }
-    if !status.ended {
-        bail!(
+    let written = match (&status.trouble, status.ended) {
+        (Some(trouble), _) => Err(cannot_write(path, trouble)),
+        (None, false) => Err(anyhow!(
             "{} was not ended: the disk does not take its last bytes; 'handscope recover' repairs it",
             path.display()
-        );
-    }
+        )),
+        (None, true) => Ok(()),
+    };
     let file = SessionFile::open(path)
-        .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()))?;
-    out.object(&statistics(&file, status))
+        .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()));
+    let object = statistics(path, file.as_ref().ok(), status);
+    // What it failed of says more than that the file cannot be read.
+    let failed = done.and(written).and(file.map(|_| ()));
+    let told = out.object(&object);
+    failed.and(told)
 }
 
-fn statistics(file: &SessionFile, status: &RecorderStatus) -> Value {
-    let counts = file.overview().counts;
+/// What is in the file; `null` where it cannot be read.
+fn statistics(path: &Path, file: Option<&SessionFile>, status: &RecorderStatus) -> Value {
+    let counts = file.map(|file| file.overview().counts);
+    let length = file.map(|file| file.last().since(file.first()).as_secs_f64());
     json!({
-        "file": file.path(),
-        "length_s": file.last().since(file.first()).as_secs_f64(),
-        "states": counts.states,
-        "touch_sweeps": counts.touch_sweeps(),
-        "writes": counts.writes,
-        "faults": counts.faults,
+        "file": path,
+        "length_s": length,
+        "states": counts.map(|counts| counts.states),
+        "touch_sweeps": counts.map(|counts| counts.touch_sweeps()),
+        "writes": counts.map(|counts| counts.writes),
+        "faults": counts.map(|counts| counts.faults),
         "missing": status.missing,
         "bytes": status.bytes + status.earlier_bytes,
         "mb_per_hour": status.megabytes_an_hour(),
+        "closed": file.is_some_and(SessionFile::is_closed),
     })
 }

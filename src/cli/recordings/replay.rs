@@ -3,7 +3,7 @@
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
-use crate::cli::recordings::session_file::{self, FileArgs, lost};
+use crate::cli::recordings::session_file::{self, FileArgs, lost, say_remarks};
 use crate::cli::wires::{WireArgs, failed};
 use crate::hand::{Group, HandId, Moment};
 use crate::params::file;
@@ -52,6 +52,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
     let mut interrupt = Interrupt::listen()?;
     let path = &args.file.file;
     let file = Arc::new(session_file::open(path)?);
+    say_remarks(&file);
     let hands = SimHands::from(hand(&file, args.id)?);
     let wires = args.wires.serve(&hands).await?;
     out.lines(wires.iter().map(|wire| wire.ready()))?;
@@ -59,7 +60,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
     let play = async {
         loop {
             let damage = play(&file, &hands, args.speed).await?;
-            if let Some(words) = lost(damage) {
+            if let Some(words) = lost(&damage) {
                 say(&format!("{} is damaged: {words}", path.display()));
             }
             if !args.again {

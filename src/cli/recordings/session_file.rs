@@ -1,10 +1,13 @@
 //! Session files that a person names: how one is opened, its moments in seconds from its start, and what is missing in words.
 
-use crate::cli::parse::seconds;
+use crate::cli::out::{WrongUsage, say};
+use crate::cli::parse::{SessionTime, session_time};
 use crate::hand::Moment;
+use crate::record::file::SessionFile;
 use crate::record::file::reader::{Damage, OpenError, Stretch};
-use crate::record::file::{FLUSH_EACH, SessionFile};
-use anyhow::{anyhow, bail};
+use anyhow::{Context as _, anyhow, bail};
+use std::fs::File;
+use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -19,18 +22,21 @@ pub(crate) struct FileArgs {
 /// A stretch of a recording, in seconds from its start.
 #[derive(Debug, clap::Args)]
 pub(crate) struct StretchArgs {
-    /// Begin here, in seconds from the session's start [default: at its start]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    from: Option<Duration>,
+    /// Begin here, in seconds from the session's start, or with - before its end [default: at its start]
+    #[arg(long, value_name = "SECONDS", value_parser = session_time, allow_negative_numbers = true)]
+    from: Option<SessionTime>,
     /// End here [default: at its end]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    to: Option<Duration>,
+    #[arg(long, value_name = "SECONDS", value_parser = session_time, allow_negative_numbers = true)]
+    to: Option<SessionTime>,
 }
 
 impl StretchArgs {
     /// The stretch of this file.
     pub(crate) fn of(&self, file: &SessionFile) -> anyhow::Result<Stretch> {
-        let at = |step: Duration| file.first().plus(step);
+        let at = |time: SessionTime| match time {
+            SessionTime::FromStart(step) => file.first().plus(step),
+            SessionTime::BeforeEnd(step) => file.first().plus(length(file).saturating_sub(step)),
+        };
         let from = self.from.map_or(Moment::ZERO, at);
         let to = self.to.map_or(file.last(), at);
         let length_s = length(file).as_secs_f64();
@@ -49,7 +55,40 @@ impl StretchArgs {
 
 /// Opens a file.
 pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
-    SessionFile::open(path).map_err(|error| {
+    opened(SessionFile::open(path), path)
+}
+
+/// True for what stands for standard input or output in place of a file.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Opens a file, or what comes on standard input.
+pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<SessionFile> {
+    match is_standard(path) {
+        true => opened(
+            SessionFile::of(stdin_as_file()?, path),
+            Path::new("standard input"),
+        ),
+        false => open(path),
+    }
+}
+
+/// All of standard input, in a file that has no name and is gone with the program.
+pub(crate) fn stdin_as_file() -> anyhow::Result<File> {
+    let mut from = io::stdin().lock();
+    if from.is_terminal() {
+        return Err(WrongUsage::error(
+            "- reads a file from standard input, and that is a terminal; name a file, or pipe one into it",
+        ));
+    }
+    let mut file = tempfile::tempfile().context("cannot keep what comes on standard input")?;
+    io::copy(&mut from, &mut file).context("cannot keep what comes on standard input")?;
+    Ok(file)
+}
+
+fn opened(file: Result<SessionFile, OpenError>, path: &Path) -> anyhow::Result<SessionFile> {
+    file.map_err(|error| {
         let is_csv = path.extension().is_some_and(|ending| ending == "csv");
         let what_to_do = match error {
             OpenError::Unreadable { .. } => "check the path",
@@ -58,6 +97,9 @@ pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
                 "name a session file of 'handscope record' or of the window"
             }
             OpenError::Foreign => "only sessions of Handscope can be opened",
+            OpenError::SeveralHands { .. } => {
+                "take them apart with the program that put them together"
+            }
             OpenError::Empty => "there is nothing to recover",
         };
         anyhow!("cannot open {}: {error}; {what_to_do}", path.display())
@@ -70,18 +112,33 @@ pub(crate) fn length(file: &SessionFile) -> Duration {
 }
 
 /// What could not be read, in words; `None` if all could.
-pub(crate) fn lost(damage: Damage) -> Option<String> {
-    let Damage { chunks, bytes } = damage;
+pub(crate) fn lost(damage: &Damage) -> Option<String> {
+    let Damage {
+        chunks,
+        bytes,
+        messages,
+        ref gaps,
+    } = *damage;
     let chunks = (chunks > 0).then(|| {
         let (noun, verb) = if chunks == 1 {
             ("piece", "is")
         } else {
             ("pieces", "are")
         };
-        let length_s = FLUSH_EACH.as_secs_f64();
-        format!("{chunks} {noun} of about {length_s} s {verb} damaged and left out")
+        format!("{chunks} {noun} {verb} damaged and left out")
     });
     let bytes = (bytes > 0).then(|| format!("{bytes} bytes hold no record"));
-    let words: Vec<String> = chunks.into_iter().chain(bytes).collect();
+    let messages = (messages > 0).then(|| format!("{messages} messages are missing"));
+    let length = damage.length().as_secs_f64();
+    let gaps = (!gaps.is_empty()).then(|| format!("{length:.3} s in all"));
+    let words = [chunks, bytes, messages, gaps].into_iter().flatten();
+    let words: Vec<String> = words.collect();
     (!words.is_empty()).then(|| words.join(", "))
+}
+
+/// What is to be said of how the file was found, on stderr.
+pub(crate) fn say_remarks(file: &SessionFile) {
+    for remark in file.remarks() {
+        say(&format!("{}: {remark}", file.path().display()));
+    }
 }

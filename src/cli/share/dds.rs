@@ -45,14 +45,16 @@ impl DdsArgs {
             side: Side::Right,
             at: None,
             first_may_move: false,
+            follows: false,
         }
     }
 
-    /// Tells this hand from now on, if the person wants it.
+    /// Tells this hand from now on, if the person wants it; others can do that.
     pub(crate) fn open(
         &self,
         link: &LinkHandle,
         card: FleetCard,
+        can: &str,
     ) -> anyhow::Result<Option<SharedOnDds>> {
         let Some(interface) = &self.dds else {
             return Ok(None);
@@ -65,7 +67,7 @@ impl DdsArgs {
         let address = shared.node.address();
         if !address.is_loopback() {
             say(&format!(
-                "warning: anyone in the network of {address} can read this hand and send to it; --dds alone keeps to this computer"
+                "warning: anyone in the network of {address} can {can}; --dds alone keeps to this computer"
             ));
         }
         Ok(Some(shared))

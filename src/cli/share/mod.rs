@@ -7,6 +7,7 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{number, side};
+use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::cli::share::dds::DdsArgs;
 use crate::hand::kinematics::Side;
@@ -16,11 +17,12 @@ use crate::record::{Disarmed, LinkState};
 use crate::share::fleet::FleetCard;
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
-    ClientId, ClientLease, Gateway, GatewayClient, GatewayConfig, SILENCE, Writers,
+    ClientLease, Gateway, GatewayClient, GatewayConfig, MoverChange, MoverEvent, SILENCE, Writers,
 };
 use crate::store::calendar;
 use crate::transport::Endpoint;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::interval;
@@ -54,6 +56,9 @@ pub(crate) struct ShareArgs {
     /// Read as fast as the wire allows, instead of 100 states and 30 touch sweeps a second
     #[arg(long)]
     full_rate: bool,
+    /// Record meanwhile, as 'handscope record' does; what clients write is recorded as it passes
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
 }
 
 /// Shares the hand until a person ends it.
@@ -69,10 +74,25 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         () = interrupt.wished() => return Ok(()),
         answered = session::answered(&link, &args.hand) => answered?,
     }
+    let recording = args.record.as_deref();
+    let recording = SideRecording::begin(recording, &link, &args.hand, args.side)?;
+    let shared = serve(out, args, &link, &mut interrupt).await;
+    drop(link);
+    recording.end().await;
+    shared
+}
+
+/// Shares a hand that answers.
+async fn serve(
+    out: &mut Out,
+    args: &ShareArgs,
+    link: &LinkHandle,
+    interrupt: &mut Interrupt,
+) -> anyhow::Result<()> {
     let mut ways = Vec::new();
-    let gateway = args.tcp.map(|at| open(&link, at, args)).transpose()?;
+    let gateway = args.tcp.map(|at| open(link, at, args)).transpose()?;
     ways.extend(gateway.iter().map(|gateway| ("tcp", gateway.address())));
-    let viewers = args.foxglove.map(|at| show(&link, at, &args.hand));
+    let viewers = args.foxglove.map(|at| show(link, at, &args.hand));
     let viewers = viewers.transpose()?;
     ways.extend(viewers.iter().map(|server| ("foxglove", server.address())));
     for (way, address) in ways {
@@ -84,7 +104,7 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
         first_may_move: args.writers,
         ..args.dds.card(&args.hand)
     };
-    let dds = args.dds.open(&link, card)?;
+    let dds = args.dds.open(link, card, "read this hand")?;
     if let Some(dds) = &dds {
         out.line(&dds::ready(dds))?;
     }
@@ -92,10 +112,10 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     tokio::select! {
         biased;
         () = interrupt.wished() => {}
-        () = tell(&link, gateway.as_ref(), &args.hand) => {}
+        () = tell(link, gateway.as_ref(), &args.hand) => {}
     }
     match gateway {
-        Some(gateway) => end(&link, gateway).await,
+        Some(gateway) => end(link, gateway).await,
         None => Ok(()),
     }
 }
@@ -104,6 +124,7 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
 async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
     let moved = gateway.clients().iter().any(is_held);
+    tell_movers(&gateway);
     drop(gateway);
     if !moved && link.status().state != LinkState::Holding {
         return Ok(());
@@ -153,7 +174,7 @@ async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
         told.link(link, hand);
         if let Some(gateway) = gateway {
             told.turned_away(gateway);
-            told.leases(gateway);
+            tell_movers(gateway);
         }
     }
 }
@@ -163,8 +184,6 @@ async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
 struct Told {
     trouble: Option<LinkTrouble>,
     turned_away: bool,
-    /// The client that may move the hand.
-    mover: Option<ClientId>,
 }
 
 impl Told {
@@ -187,50 +206,42 @@ impl Told {
             say("there are as many clients as there may be: more are turned away");
         }
     }
+}
 
-    /// What moves the hand, and that it does no more.
-    fn leases(&mut self, gateway: &Gateway) {
-        let clients = gateway.clients();
-        if let Some(mover) = self.mover {
-            match clients.iter().find(|client| client.id == mover) {
-                None => {
-                    say("the client that could move the hand is gone: the hand is stopped");
-                    self.mover = None;
-                }
-                Some(client) if !matches!(client.lease, ClientLease::Held(_)) => {
-                    let address = client.address;
-                    say(&format!(
-                        "{address} may no longer move the hand: {}",
-                        ended(client.lease)
-                    ));
-                    self.mover = None;
-                }
-                Some(_) => {}
+/// Tells of each client that may move the hand, and that it may no more.
+fn tell_movers(gateway: &Gateway) {
+    for MoverEvent { client, change } in gateway.movers() {
+        say(&match change {
+            MoverChange::Began => format!("{client} may move the hand"),
+            MoverChange::Left => {
+                format!("{client}, which could move the hand, is gone: the hand is stopped")
             }
-        }
-        for client in clients {
-            let is_new = self.mover != Some(client.id);
-            if is_new && matches!(client.lease, ClientLease::Held(_)) {
-                say(&format!("{} may move the hand", client.address));
-                self.mover = Some(client.id);
+            MoverChange::Ended(end) => {
+                format!("{client} may no longer move the hand: {}", ended(end))
             }
-        }
+        });
     }
 }
 
-fn ended(lease: ClientLease) -> &'static str {
-    match lease {
-        ClientLease::Ended(LeaseRefusal::Ended(why)) => match why {
+fn ended(end: LeaseRefusal) -> &'static str {
+    match end {
+        LeaseRefusal::Ended(why) => match why {
             Disarmed::Silent => "it asked nothing for too long, and the hand is stopped",
             Disarmed::Fault => "a drive reports a fault, and the hand is stopped",
-            Disarmed::LinkLost | Disarmed::Resume => "the link was lost",
+            Disarmed::LinkLost | Disarmed::Resume => {
+                "the link was lost, and the hand may still finish its move"
+            }
+            Disarmed::Hot => "a drive is too hot, and the hand is stopped",
             Disarmed::Stale => "feedback grew old, and the hand is stopped",
+            Disarmed::FrozenFeedback => {
+                "its feedback stands still though motion was asked for, and the hand is stopped"
+            }
             Disarmed::OtherController => {
                 "another controller talks to the hand, and the hand is stopped"
             }
             _ => "the hand was stopped",
         },
-        _ => "another may now",
+        LeaseRefusal::Taken(_) => "another may now",
     }
 }
 

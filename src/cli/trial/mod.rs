@@ -28,6 +28,9 @@ pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     if let Some(why) = outcome.aborted_words() {
         bail!("{why}{}", output::stop_words(outcome.report.stop));
     }
+    if let Some(why) = outcome.dead_words() {
+        bail!(why);
+    }
     if let Some(criterion) = outcome.criterion.filter(|_| outcome.best.is_none()) {
         bail!("no setting that was tried qualifies: {criterion}");
     }

@@ -41,6 +41,21 @@ impl Outcome {
         self.report.aborted.map(|why| format!("ended early: {why}"))
     }
 
+    /// The joints of which nothing was measured because none of their trials moved them, if no joint at all moved.
+    pub(crate) fn dead_words(&self) -> Option<String> {
+        let joints = || self.trials.iter().flat_map(|trial| &trial.joints);
+        let are_dead = joints().next().is_some() && joints().all(|joint| joint.dead_drive);
+        let mut names: Vec<&str> = joints().map(|joint| joint.dof.name()).collect();
+        names.sort_unstable();
+        names.dedup();
+        are_dead.then(|| {
+            format!(
+                "nothing was measured: told to close, {} never moved; look at STATUS, ERROR and the supply, and move the joint from the window",
+                names.join(", ")
+            )
+        })
+    }
+
     /// The last line: `{"session": {…}}`.
     pub(crate) fn json(&self, args: &TrialArgs) -> Value {
         let stop = self.report.stop.map(|stop| {
@@ -140,6 +155,9 @@ fn joint_words(joint: &JointMetrics) -> String {
         Some(format!("{word} {} {}", column.text(joint), column.unit))
     });
     let values: Vec<String> = values.collect();
-    let end = joint.end_status.as_deref().unwrap_or("-");
+    let end = match joint.dead_drive {
+        true => "dead drive: it never moved",
+        false => joint.end_status.as_deref().unwrap_or("-"),
+    };
     format!("{} {}, {end}", joint.dof.name(), values.join(", "))
 }

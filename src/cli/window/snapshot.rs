@@ -20,7 +20,7 @@ pub(crate) struct SnapshotArgs {
     /// The hand to show [default: the built-in one]
     #[arg(long, value_name = "URL")]
     hand: Option<Endpoint>,
-    /// What the built-in hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes
+    /// What the built-in hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes, frozen
     #[arg(long, value_name = "NAME", conflicts_with = "hand")]
     scenario: Option<Scenario>,
     /// Seed of the built-in hand

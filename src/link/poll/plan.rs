@@ -23,6 +23,11 @@ const LONGEST_PERIOD: Duration = Duration::from_millis(30);
 const STARVED_AFTER: Duration = Duration::from_secs(1);
 /// Temperatures change slowly and are read just often enough not to be shown as old.
 const TEMPERATURE_HZ: f64 = 5.0;
+/// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
+/// three of them show another controller within a second.
+const WATCHED_HZ: f64 = 10.0;
+/// A write this long after the one before is none of a stream.
+const ALONE: Duration = Duration::from_millis(100);
 /// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
 const RECENT: usize = 3;
 /// Reckoned with before the first answer: that of a quick hand.
@@ -112,6 +117,11 @@ struct Due {
 /// Decides what is read next.
 #[derive(Debug)]
 pub(crate) struct PollPlan {
+    rates: PollRates,
+    /// Whether setpoints are read often enough to see another controller's.
+    watched: bool,
+    /// When a setpoint was written last.
+    wrote: Option<Moment>,
     parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
@@ -125,6 +135,9 @@ pub(crate) struct PollPlan {
 impl PollPlan {
     pub(crate) fn new(rates: PollRates, cost: WireCost, now: Moment) -> Self {
         Self {
+            rates,
+            watched: false,
+            wrote: None,
             parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
@@ -143,8 +156,26 @@ impl PollPlan {
 
     /// Reads at other rates: what is wanted more often than before waits one of its new periods at most.
     pub(crate) fn change_rates(&mut self, rates: PollRates, now: Moment) {
+        self.rates = rates;
+        self.keep_rates(now);
+    }
+
+    /// Reads setpoints often, or as usual again.
+    pub(crate) fn watch_setpoints(&mut self, watched: bool, now: Moment) {
+        if std::mem::replace(&mut self.watched, watched) != watched {
+            self.keep_rates(now);
+        }
+    }
+
+    fn keep_rates(&mut self, now: Moment) {
         for due in &mut self.parts {
-            due.period = period(rates.of(due.part));
+            let is_watched = matches!(due.part, ReadPart::Targets | ReadPart::Speeds);
+            let least = if self.watched && is_watched {
+                WATCHED_HZ
+            } else {
+                0.0
+            };
+            due.period = period(self.rates.of(due.part).max(least));
             due.next = due.next.min(now.plus(due.period));
         }
     }
@@ -298,11 +329,20 @@ impl PollPlan {
         self.asked(window, now);
     }
 
-    /// Reads the setpoints as soon as possible: they were just written.
-    pub(crate) fn hasten_settings(&mut self, now: Moment) {
+    /// A setpoint was written: one that stands alone is read back at once, so that nobody else's comes between.
+    pub(crate) fn wrote_setpoint(&mut self, now: Moment) {
+        let before = self.wrote.replace(now);
+        let stands_alone = before.is_none_or(|at| now.since(at) >= ALONE);
+        if self.watched && stands_alone {
+            self.look_at_settings(now);
+        }
+    }
+
+    /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
+    pub(crate) fn look_at_settings(&mut self, at: Moment) {
         for due in &mut self.parts {
             if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
-                due.next = due.next.min(now);
+                due.next = due.next.min(at);
             }
         }
     }

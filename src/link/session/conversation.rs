@@ -6,6 +6,7 @@ use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, Bus, BusCounts, BusError};
 use crate::link::clock::SleepWatch;
 use crate::link::config::LinkConfig;
+use crate::link::guard::MotionGuard;
 use crate::link::image::RegisterImage;
 use crate::link::latency::Ticks;
 use crate::link::poll::cost::WireCost;
@@ -13,6 +14,7 @@ use crate::link::poll::plan::PollPlan;
 use crate::link::request::RequestError;
 use crate::link::session::adapter::KnownAdapter;
 use crate::link::session::counters::Counters;
+use crate::link::session::feedback_watch::FeedbackWatch;
 use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::other_controller::OtherController;
@@ -60,6 +62,7 @@ pub(crate) struct Session {
     pub(crate) plan: PollPlan,
     pub(crate) motion: Motion,
     pub(crate) moving: RestWatch,
+    pub(crate) feedback: FeedbackWatch,
     pub(crate) job: Option<SessionJob>,
     /// The line is left to a hand that saves or calibrates.
     pub(crate) leaves_line: bool,
@@ -77,12 +80,15 @@ pub(crate) struct Session {
     late: LateReplies,
     pub(crate) others: OtherController,
     closed_wires: BusCounts,
+    /// What holds the hand if this program ends.
+    pub(crate) guard: Arc<MotionGuard>,
 }
 
 impl Session {
     pub(crate) fn new(config: LinkConfig, ends: Ends) -> Self {
         let now = config.clock.now();
         Self {
+            guard: MotionGuard::enter(Arc::clone(&ends.wanted)),
             plan: PollPlan::new(config.rates, WireCost::default(), now),
             sleep: SleepWatch::start(),
             dialled: config.endpoint.clone(),
@@ -93,6 +99,7 @@ impl Session {
             sample: HandSample::default(),
             motion: Motion::default(),
             moving: RestWatch::default(),
+            feedback: FeedbackWatch::default(),
             job: None,
             leaves_line: false,
             broken_off: None,
@@ -211,6 +218,8 @@ impl Session {
             self.plan.know_gap(gap);
         }
         self.moving = RestWatch::default();
+        self.feedback = FeedbackWatch::default();
+        self.status.feedback_in_doubt = false;
         self.ticks = Ticks::default();
         self.motion = Motion::after(self.motion.last_epoch);
         self.status.dialling = Dialling::Idle;
@@ -218,6 +227,7 @@ impl Session {
         self.status.hold = Hold::None;
         let image = RegisterImage::live(self.plan.periods());
         self.ends.image.send_replace(image);
+        self.guard.reaches(true);
         self.go(LinkState::Monitoring);
     }
 
@@ -225,6 +235,7 @@ impl Session {
     fn lost(&mut self, trouble: LinkTrouble) {
         self.disarm(Disarmed::LinkLost);
         self.motion.forget();
+        self.guard.reaches(false);
         self.status.trouble = Some(trouble);
         self.counters.lost();
         self.forget_wishes();
@@ -394,6 +405,16 @@ impl Session {
             self.counters.stats.line = line;
         }
         self.ends.stats.send_replace(self.counters.stats);
+    }
+}
+
+impl Drop for Session {
+    /// A link that ends in good order ends with a hand that nobody moves, or that a person was told of.
+    fn drop(&mut self) {
+        let is_held = self.motion.hold.is_none_or(|hold| hold.alarmed);
+        if self.status.armed.is_none() && is_held {
+            self.guard.rests();
+        }
     }
 }
 

@@ -14,6 +14,9 @@ pub(crate) const HOLD_ALARM_AFTER: Duration = Duration::from_millis(500);
 const REST_COUNTS: i32 = 2;
 /// … over at least this time.
 const REST_OVER: Duration = Duration::from_millis(100);
+/// A hand that moved when it was stopped is not called at rest before this has passed since the first hold frame. Should feedback
+/// have frozen around the stop, the joints go on for the dead time and come back to where they were seen last: by then they are there.
+const MOVED_REST_AFTER: Duration = Duration::from_millis(250);
 
 /// One stop, from the press until feedback shows rest.
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +28,12 @@ pub(crate) struct HoldWatch {
     first_sent: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
+    moved: bool,
 }
 
 impl HoldWatch {
-    pub(crate) const fn new(at: Moment) -> Self {
+    /// A stop that is asked for now, of a hand that moves or does not, as far as is known.
+    pub(crate) const fn new(at: Moment, moved: bool) -> Self {
         Self {
             at,
             sent: 0,
@@ -37,6 +42,7 @@ impl HoldWatch {
             first_sent: None,
             last_sent: None,
             still_since: None,
+            moved,
         }
     }
 
@@ -82,7 +88,8 @@ impl HoldWatch {
         }
         match self.still_since {
             Some((since, from)) if near(&from, &angle.value) => {
-                angle.asked.since(since) >= REST_OVER
+                let is_back = angle.asked.since(first_sent) >= MOVED_REST_AFTER;
+                angle.asked.since(since) >= REST_OVER && (is_back || !self.moved)
             }
             _ => {
                 self.still_since = Some((angle.received, angle.value));
@@ -127,7 +134,10 @@ mod tests {
 
     /// Feeds an angle each 10 ms and gives the time at which rest was seen.
     fn rest_at(angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
-        let mut watch = HoldWatch::new(ms(0));
+        rest_of(HoldWatch::new(ms(0), false), angle_at, sent)
+    }
+
+    fn rest_of(mut watch: HoldWatch, angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
         (0..200).map(|n| n * 10).find(|t| {
             if *t == sent {
                 watch.frame(&PerDof::splat(Target::Leave), ms(*t));
@@ -142,6 +152,15 @@ mod tests {
         let seen = rest_at(|_| 500, 0).unwrap();
         assert!((100..=130).contains(&seen), "{seen}");
         assert!(rest_at(|_| 500, 300).unwrap() >= 400);
+    }
+
+    #[test]
+    fn a_hand_that_moved_rests_only_once_it_may_be_back_from_where_it_was_not_seen() {
+        let moved = || HoldWatch::new(ms(0), true);
+        let frozen = rest_of(moved(), |_| 500, 0).unwrap();
+        assert!((250..=280).contains(&frozen), "{frozen}");
+        let late = rest_of(moved(), |t| 500 - i16::try_from(t.min(300)).unwrap(), 0).unwrap();
+        assert!((400..=430).contains(&late), "{late}");
     }
 
     #[test]
@@ -160,14 +179,14 @@ mod tests {
 
     #[test]
     fn the_alarm_is_due_after_half_a_second() {
-        let watch = HoldWatch::new(ms(0));
+        let watch = HoldWatch::new(ms(0), false);
         assert!(!watch.alarm_due(ms(499)));
         assert!(watch.alarm_due(ms(500)));
     }
 
     #[test]
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
-        let mut watch = HoldWatch::new(ms(7));
+        let mut watch = HoldWatch::new(ms(7), false);
         assert_eq!(watch.next_frame(ms(7)), ms(7));
         watch.frame(&PerDof::splat(Target::Leave), ms(9));
         assert_eq!(watch.next_frame(ms(10)), ms(49));
@@ -176,11 +195,11 @@ mod tests {
     #[test]
     fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
-        let mut watch = HoldWatch::new(ms(0));
+        let mut watch = HoldWatch::new(ms(0), false);
         assert_eq!(watch.frame(&pose(500), ms(0)), pose(500));
         assert_eq!(watch.frame(&pose(480), ms(40)), pose(480));
         assert_eq!(watch.frame(&pose(470), ms(160)), pose(480));
-        let mut blind = HoldWatch::new(ms(0));
+        let mut blind = HoldWatch::new(ms(0), false);
         let unknown = PerDof::splat(Target::Leave);
         assert_eq!(blind.frame(&unknown, ms(0)), unknown);
         assert_eq!(blind.frame(&pose(300), ms(200)), pose(300));

@@ -3,6 +3,7 @@
 pub(crate) mod adapter;
 pub(crate) mod conversation;
 pub(crate) mod counters;
+pub(crate) mod feedback_watch;
 pub(crate) mod hold;
 pub(crate) mod identify;
 pub(crate) mod job;
@@ -15,4 +16,5 @@ pub(crate) mod save_watch;
 #[cfg(test)]
 pub(crate) mod save_watch_tests;
 pub(crate) mod serve;
+pub(crate) mod setpoint_watch;
 pub(crate) mod settings;

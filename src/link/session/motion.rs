@@ -198,14 +198,17 @@ pub(crate) fn arm_refusal(
         LinkState::Monitoring => {}
     }
     if sample.faults.is_none() {
-        return Some(ArmRefusal::UnknownPose { dof: Dof::Little });
+        return Some(ArmRefusal::NotRead);
     }
     let angle = sample
         .angle
         .filter(|angle: &Timed<_>| angle.age(now) <= ANGLE_FRESH);
+    let Some(angle) = angle else {
+        return Some(ArmRefusal::NotRead);
+    };
     Dof::ALL
         .into_iter()
-        .find(|dof| angle.is_none_or(|angle| angle.value[*dof].hold().is_none()))
+        .find(|dof| angle.value[*dof].hold().is_none())
         .map(|dof| ArmRefusal::UnknownPose { dof })
 }
 
@@ -236,12 +239,16 @@ mod tests {
         let late = at.plus(ANGLE_FRESH + Duration::from_millis(1));
         let check = |state, sample: HandSample, now| arm_refusal(state, &sample, now);
         assert_eq!(check(LinkState::Monitoring, sample(500, at), at), None);
-        let unknown = Some(ArmRefusal::UnknownPose { dof: Dof::Little });
-        assert_eq!(check(LinkState::Monitoring, sample(500, at), late), unknown);
-        assert_eq!(check(LinkState::Monitoring, sample(-200, at), at), unknown);
+        let unread = Some(ArmRefusal::NotRead);
+        assert_eq!(check(LinkState::Monitoring, sample(500, at), late), unread);
+        let mut senseless = sample(500, at);
+        let readings = &mut senseless.angle.as_mut().unwrap().value;
+        readings[Dof::Middle] = AngleReading::new(-200);
+        let unknown = Some(ArmRefusal::UnknownPose { dof: Dof::Middle });
+        assert_eq!(check(LinkState::Monitoring, senseless, at), unknown);
         assert_eq!(
             check(LinkState::Monitoring, HandSample::default(), at),
-            unknown
+            unread
         );
         assert_eq!(
             check(LinkState::Fault, sample(500, at), at),

@@ -1,9 +1,11 @@
 //! Another controller on the same hand: requests that are not ours, and setpoints that change though nobody here wrote
 //! them. Only judges; what follows from it is the session's.
 
-use crate::hand::{Force, RegisterWrite, Speed, Target};
-use crate::hand::{Group, Groups, HandSample, Moment, PerDof, Timed, register};
-use crate::link::bus::late_replies::LATE_HORIZON;
+use crate::hand::sample::SET_OUT_OF_RANGE;
+use crate::hand::{AngleReading, Force, RegisterWrite, Speed, Target};
+use crate::hand::{Group, Groups, HandSample, Moment, PerDof, register};
+use crate::link::session::setpoint_watch::{Seen, SetpointWatch, Wrote};
+use crate::record::{SetpointConflict, SetpointRegister};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
@@ -15,25 +17,46 @@ const WITHIN: Duration = Duration::from_secs(2);
 const GONE_AFTER: Duration = Duration::from_secs(5);
 
 /// What was noticed of another controller.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct OtherController {
     counted: u64,
     requests: ArrayVec<Moment, REQUESTS>,
     noticed: Option<Moment>,
-    angles: GroupMemory<PerDof<Option<Target>>>,
-    forces: GroupMemory<PerDof<Option<Force>>>,
-    speeds: GroupMemory<PerDof<Option<Speed>>>,
+    angles: SetpointWatch,
+    forces: SetpointWatch,
+    speeds: SetpointWatch,
     /// Setpoints that changed though nobody here wrote them.
     pub(crate) changes: u64,
+    /// The last such setpoint.
+    pub(crate) foreign: Option<SetpointConflict>,
+    /// A setpoint that the hand did not take, while nobody else was seen to write.
+    pub(crate) not_taken: Option<SetpointConflict>,
+}
+
+impl Default for OtherController {
+    fn default() -> Self {
+        Self {
+            counted: 0,
+            requests: ArrayVec::new(),
+            noticed: None,
+            angles: SetpointWatch::new(SetpointRegister::AngleSet),
+            forces: SetpointWatch::new(SetpointRegister::ForceSet),
+            speeds: SetpointWatch::new(SetpointRegister::SpeedSet),
+            changes: 0,
+            foreign: None,
+            not_taken: None,
+        }
+    }
 }
 
 impl OtherController {
     /// A fresh conversation with the hand: what it held before does not count. What was noticed does, and what we wrote
     /// through the wire before may still act.
     pub(crate) fn begin(&mut self) {
-        self.angles.forget();
-        self.forces.forget();
-        self.speeds.forget();
+        self.angles.begin();
+        self.forces.begin();
+        self.speeds.begin();
+        self.not_taken = None;
     }
 
     /// The wire has counted this many foreign requests in all.
@@ -53,35 +76,64 @@ impl OtherController {
         }
     }
 
-    /// We write this, or may have: what it changes is ours.
+    /// We write this, or may have.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
         let within = |row: &register::Register| row.span().covers(write.span());
         if within(&register::ANGLE_SET) {
-            self.angles.wrote(now);
+            self.angles.wrote(values(write, &register::ANGLE_SET), now);
         } else if within(&register::FORCE_SET) {
-            self.forces.wrote(now);
+            self.forces.wrote(values(write, &register::FORCE_SET), now);
         } else if within(&register::SPEED_SET) {
-            self.speeds.wrote(now);
+            self.speeds.wrote(values(write, &register::SPEED_SET), now);
         } else {
             // A gesture, a cleared fault: the hand may set its own setpoints then.
-            self.angles.wrote(now);
-            self.forces.wrote(now);
-            self.speeds.wrote(now);
+            self.angles.hand_decides(now);
+            self.forces.hand_decides(now);
+            self.speeds.hand_decides(now);
         }
     }
 
-    /// The setpoints that the hand holds were read.
-    pub(crate) fn read(&mut self, sample: &HandSample, fresh: Groups) {
+    /// The setpoints that the hand holds were read. True if they should be read again soon, for one reading proves nothing.
+    pub(crate) fn read(&mut self, sample: &HandSample, fresh: Groups) -> bool {
         let fresh = |group| fresh.contains(group);
-        let changed = [
-            fresh(Group::AngleSet).then(|| self.angles.take(sample.angle_set)),
-            fresh(Group::ForceSet).then(|| self.forces.take(sample.force_set)),
-            fresh(Group::SpeedSet).then(|| self.speeds.take(sample.speed_set)),
+        let angles = sample.angle.map(|angle| angle.value.map(AngleReading::raw));
+        let angle_set = sample.angle_set.filter(|_| fresh(Group::AngleSet));
+        let force_set = sample.force_set.filter(|_| fresh(Group::ForceSet));
+        let speed_set = sample.speed_set.filter(|_| fresh(Group::SpeedSet));
+        let seen = [
+            angle_set.map(|set| {
+                let values = set
+                    .value
+                    .map(|set| set.map_or(SET_OUT_OF_RANGE, Target::raw));
+                (self.angles.read(&values, angles, set.asked), set.received)
+            }),
+            force_set.map(|set| {
+                let values = set
+                    .value
+                    .map(|set| set.map_or(SET_OUT_OF_RANGE, Force::get));
+                (self.forces.read(&values, None, set.asked), set.received)
+            }),
+            speed_set.map(|set| {
+                let values = set
+                    .value
+                    .map(|set| set.map_or(SET_OUT_OF_RANGE, Speed::get));
+                (self.speeds.read(&values, None, set.asked), set.received)
+            }),
         ];
-        for at in changed.into_iter().flatten().flatten() {
-            self.changes += 1;
-            self.noticed = Some(at);
+        let mut again = false;
+        for (seen, at) in seen.into_iter().flatten() {
+            match seen {
+                Seen::Usual => {}
+                Seen::Doubtful => again = true,
+                Seen::NotTaken(conflict) => self.not_taken = Some(conflict),
+                Seen::Foreign(conflict) => {
+                    self.changes += 1;
+                    self.noticed = Some(at);
+                    self.foreign = Some(conflict);
+                }
+            }
         }
+        again
     }
 
     /// True while another controller is at work.
@@ -90,66 +142,14 @@ impl OtherController {
     }
 }
 
-/// One group of setpoints as the hand holds it.
-#[derive(Debug)]
-struct GroupMemory<T> {
-    known: Option<T>,
-    /// Read once and unlike what was known: one reading may be wrong, two are not.
-    doubted: bool,
-    wrote: Option<Moment>,
-}
-
-impl<T> Default for GroupMemory<T> {
-    fn default() -> Self {
-        Self {
-            known: None,
-            doubted: false,
-            wrote: None,
-        }
-    }
-}
-
-impl<T: Copy + PartialEq> GroupMemory<T> {
-    /// We wrote it: what was read before says nothing any more, however long the next reading takes.
-    fn wrote(&mut self, now: Moment) {
-        self.wrote = Some(now);
-        self.forget();
-    }
-
-    fn forget(&mut self) {
-        self.known = None;
-        self.doubted = false;
-    }
-
-    /// When a change that is not ours was read, for the second time.
-    fn take(&mut self, read: Option<Timed<T>>) -> Option<Moment> {
-        let read = read?;
-        // A write of ours may act as late as any reply may come.
-        let ours = self
-            .wrote
-            .is_some_and(|at| read.asked.since(at) < LATE_HORIZON);
-        if ours {
-            self.forget();
-            return None;
-        }
-        match self.known {
-            Some(known) if known != read.value && !self.doubted => {
-                self.doubted = true;
-                None
-            }
-            Some(known) => {
-                let changed = known != read.value;
-                self.known = Some(read.value);
-                self.doubted = false;
-                changed.then_some(read.received)
-            }
-            None => {
-                self.known = Some(read.value);
-                self.doubted = false;
-                None
-            }
-        }
-    }
+/// What a write within a group says of each joint.
+fn values(write: &RegisterWrite, row: &register::Register) -> PerDof<Wrote> {
+    let is_angle = row.address == register::ANGLE_SET.address;
+    write.shorts(row).map(|value| match value {
+        None => Wrote::Nothing,
+        Some(-1) if is_angle => Wrote::Leave,
+        Some(value) => Wrote::Value(value),
+    })
 }
 
 #[cfg(test)]
@@ -197,7 +197,7 @@ mod tests {
         read(&mut other, 100, 0);
         read(&mut other, 7, 500);
         read(&mut other, 100, 1000);
-        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
+        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(250))));
         other.wrote(&speeds.writes()[0], at(1200));
         // It acts late, after a reading that still shows the old values.
         for (ms, speed) in [
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn our_write_may_act_at_the_end_of_its_horizon_and_through_a_wire_that_is_gone() {
-        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::GENTLE)));
+        let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(250))));
         for reconnected in [false, true] {
             let mut other = OtherController::default();
             read(&mut other, 100, 0);

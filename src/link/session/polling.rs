@@ -7,11 +7,14 @@ use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
+use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// A group that cannot be requested now is tried again after this: often enough, and not in a busy loop.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
+/// Setpoints that nobody here wrote are read again after this: one reading may be wrong.
+const LOOK_AGAIN: Duration = Duration::from_millis(30);
 
 impl Session {
     /// What to ask now. While a stop is being confirmed only motion and faults count; once it failed, the rest gets its
@@ -20,6 +23,10 @@ impl Session {
         let now = self.now();
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().priority);
+        // Elsewhere requests of others are heard.
+        let is_tcp = matches!(self.dialled, Endpoint::Tcp { .. });
+        let watched = is_tcp && self.status.armed.is_some();
+        self.plan.watch_setpoints(watched, now);
         if self.motion.hold.is_none() {
             if self.motion.wants_pose(now) {
                 return Some(self.plan.motion(now, tempo));
@@ -100,20 +107,20 @@ impl Session {
             .answered(reply.span, reply.asked, now.since(reply.asked));
         self.ends.image.send_modify(|image| image.take(reply));
         let fresh = self.sample.take(reply);
-        self.others.read(&self.sample, fresh);
+        if self.others.read(&self.sample, fresh) {
+            self.plan.look_at_settings(now.plus(LOOK_AGAIN));
+        }
         self.moving.take(&self.sample, fresh, now);
+        self.feedback.take(&self.sample, fresh);
+        self.watch_feedback();
         self.counters.fresh(fresh, now);
         let sample = Arc::new(self.sample);
         self.tell(Record::Reading { sample, fresh });
         if fresh.contains(Group::Faults) {
             self.watch_faults();
         }
-        if self
-            .motion
-            .hold
-            .as_mut()
-            .is_some_and(|hold| hold.rests(&self.sample, fresh))
-        {
+        let hold = self.motion.hold.as_mut();
+        if hold.is_some_and(|hold| hold.rests(&self.sample, fresh)) && !self.feedback.is_doubted() {
             self.hold_confirmed();
         }
     }

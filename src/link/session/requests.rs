@@ -8,7 +8,6 @@ use crate::link::lease::Lease;
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::session::job::{JOB_MAX, ReadJob, SessionJob, WriteJob};
-use crate::link::session::motion::hold_targets;
 use crate::record::{LinkState, WriteCause};
 use arrayvec::ArrayVec;
 use std::sync::Arc;
@@ -52,7 +51,7 @@ impl Session {
         let mut writes = ArrayVec::new();
         // A cleared fault may set free a move to an old target: the pose is made the target first.
         if command == HandCommand::ClearErrors {
-            let hold = HandCommand::Angles(hold_targets(&self.sample, self.now()));
+            let hold = HandCommand::Angles(self.hold_targets(self.now()));
             extend(&mut writes, hold.writes());
         }
         extend(&mut writes, command.writes());

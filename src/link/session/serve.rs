@@ -1,9 +1,10 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{ArmEpoch, HandCommand, RegisterWrite};
+use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, RegisterWrite, Target};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
+use crate::link::holder::Started;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
@@ -11,11 +12,13 @@ use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
-use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, WriteCause, WriteFate};
+use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::time::sleep_until;
+use tokio::time::{sleep_until, timeout};
 
+/// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
+const HOLDER_WITHIN: Duration = Duration::from_millis(250);
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
 
@@ -94,11 +97,18 @@ impl Session {
 
     /// Says whether the hand rests, and whether the line is left to it.
     pub(crate) fn tell_rest(&mut self) {
-        let rest = self.moving.rest(&self.sample, self.now());
+        let rest = match self.feedback.is_doubted() {
+            true => Rest::Unknown,
+            false => self.moving.rest(&self.sample, self.now()),
+        };
         if (self.status.line_left, self.status.rest) != (self.leaves_line, rest) {
             self.status.line_left = self.leaves_line;
             self.status.rest = rest;
             self.publish();
+        }
+        let is_left_alone = self.status.armed.is_none() && self.motion.hold.is_none();
+        if is_left_alone && rest == Rest::Resting {
+            self.guard.rests();
         }
     }
 
@@ -189,6 +199,7 @@ impl Session {
             self.refuse_arm(reason);
             return Ok(());
         }
+        let holder = self.guard.moves(&self.dialled);
         let limits = [
             HandCommand::Speeds(request.speed.map(Some)),
             HandCommand::Forces(request.force.map(Some)),
@@ -207,6 +218,10 @@ impl Session {
                 return Ok(());
             }
         }
+        self.status.unguarded = match holder {
+            Some(started) => no_holder(started).await,
+            None => self.status.unguarded.take(),
+        };
         // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
         if self.arming_is_over(lease) {
             return Ok(());
@@ -215,9 +230,11 @@ impl Session {
         self.motion.last_epoch = epoch;
         self.status.armed = Some(epoch);
         self.status.disarmed = None;
+        self.others.foreign = None;
+        self.others.not_taken = None;
         self.status.hold = Hold::None;
         let now = self.now();
-        self.plan.hasten_settings(now);
+        self.plan.look_at_settings(now);
         self.go(LinkState::Armed);
         Ok(())
     }
@@ -270,9 +287,13 @@ impl Session {
     fn watch_others(&mut self, bus: &dyn Bus) {
         let is_there = self.others.is_active(self.now());
         let is_news = is_there && !self.status.other_controller;
-        if (self.status.other_controller, self.status.echoes) != (is_there, bus.echoes()) {
-            self.status.other_controller = is_there;
-            self.status.echoes = bus.echoes();
+        let seen = (self.others.foreign, self.others.not_taken);
+        let status = &mut self.status;
+        let told = (status.foreign_setpoint, status.setpoint_not_taken);
+        if (status.other_controller, status.echoes, told) != (is_there, bus.echoes(), seen) {
+            status.other_controller = is_there;
+            status.echoes = bus.echoes();
+            (status.foreign_setpoint, status.setpoint_not_taken) = seen;
             self.publish();
         }
         if is_news {
@@ -298,20 +319,57 @@ impl Session {
             job.fail(RequestError::NotArmed);
         }
         if self.motion.hold.is_none_or(|hold| hold.alarmed) {
-            self.motion.hold = Some(HoldWatch::new(now));
+            self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
             self.status.hold = Hold::Asked { at: now, sent: 0 };
+        }
+        if self.feedback.is_suspect() {
+            self.doubt_feedback();
         }
         self.go(LinkState::Holding);
     }
 
+    /// What is read counts for nothing until it changes: the hold that is asked for cannot be confirmed by it.
+    fn doubt_feedback(&mut self) {
+        self.feedback.doubt();
+        self.status.feedback_in_doubt = true;
+        if let Some(hold) = &self.motion.hold {
+            self.status.hold = Hold::Alarm { at: hold.at };
+        }
+        self.publish();
+    }
+
+    /// Feedback that stands still while motion was asked for ends arming, and confirms no stop.
+    pub(crate) fn watch_feedback(&mut self) {
+        if self.status.feedback_in_doubt && !self.feedback.is_doubted() {
+            self.status.feedback_in_doubt = false;
+            self.publish();
+        }
+        if self.feedback.is_doubted() {
+            return;
+        }
+        if self.status.armed.is_some() && self.feedback.is_frozen() {
+            self.begin_hold(Disarmed::FrozenFeedback);
+        } else if self.motion.hold.is_some() && self.feedback.is_suspect() {
+            self.doubt_feedback();
+        }
+    }
+
+    /// The targets that hold the hand where it is, as far as that is known.
+    pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
+        match self.feedback.is_doubted() {
+            true => self.feedback.hold_targets(now),
+            false => hold_targets(&self.sample, now),
+        }
+    }
+
     async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
-        let newest = hold_targets(&self.sample, now);
+        let newest = self.hold_targets(now);
         let Some(hold) = &mut self.motion.hold else {
             return Ok(());
         };
         let command = HandCommand::Angles(hold.frame(&newest, now));
-        if !hold.alarmed {
+        if !hold.alarmed && !self.feedback.is_doubted() {
             self.status.hold = Hold::Asked {
                 at: hold.at,
                 sent: hold.sent,
@@ -334,6 +392,7 @@ impl Session {
             at: hold.at,
             rest: self.now(),
         };
+        self.guard.rests();
         self.go(if self.sample.has_fault() {
             LinkState::Fault
         } else {
@@ -363,6 +422,8 @@ impl Session {
         self.counters.stats.writes += 1;
         let number = self.counters.stats.writes;
         self.others.wrote(write, asked);
+        self.feedback.wrote(write, asked);
+        self.plan.wrote_setpoint(asked);
         self.tell(Record::Sent {
             at: asked,
             number,
@@ -410,6 +471,16 @@ impl Session {
     /// Waits for the line; of all failures it can only be lost.
     pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         unless_lost(bus.turn().await)
+    }
+}
+
+/// Waits a little for the process that holds the hand if this one dies: nothing moves before. Why there is none, if so.
+async fn no_holder(started: Started) -> Option<String> {
+    match timeout(HOLDER_WITHIN, started).await {
+        Ok(Ok(started)) => started.err(),
+        Ok(Err(_gone)) => Some("no thread could be started".into()),
+        // It is late, and will be there.
+        Err(_late) => None,
     }
 }
 

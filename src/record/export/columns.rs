@@ -68,6 +68,11 @@ impl ParquetColumn {
         }
     }
 
+    /// Of what type its values are.
+    pub(crate) const fn values(&self) -> &Values {
+        &self.values
+    }
+
     /// Adds a row. A value of another type than the column's is none.
     pub(crate) fn push(&mut self, cell: ParquetCell) {
         match (&mut self.values, cell) {

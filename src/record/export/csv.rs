@@ -2,53 +2,47 @@
 
 use crate::hand::column::{channel_column, joint_column, text_cell, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
-use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
-use crate::record::file::reader::Stretch;
-use crate::record::file::{FileMark, SessionFile};
+use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
+use crate::record::export::source::Source;
+use crate::record::file::FileMark;
 use crate::record::{Entry, EventKind, Record};
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::iter::Peekable;
-use std::ops::ControlFlow;
-use std::path::Path;
 
 /// Channels of a fingertip.
 const CHANNELS: u8 = 8;
+
+/// The column that names values outside the manual's ranges, whose cells are empty.
+pub(crate) const UNDOCUMENTED: &str = "undocumented";
 
 /// Writes a stretch. Times are seconds from the session's start.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(path)?;
+pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+    let output = Unfinished::new(to)?;
     let mut to = output.file()?;
-    let marks = file.overview().marks.iter();
+    let stretch = source.stretch;
+    let marks = source.file.overview().marks.iter();
     let marks = marks.filter(|mark| (stretch.from..=stretch.to).contains(&mark.at));
     let mut lines = Lines {
         to: &mut to,
-        start: file.first(),
+        start: source.file.first(),
         marks: marks.peekable(),
         line: Line::default(),
         rows: 0,
     };
-    let mut done = lines.head();
-    let no_wire = Stretch {
-        wire: false,
-        ..stretch
-    };
-    let damage = file.entries(no_wire, |entry| {
-        if done.is_ok()
-            && let Entry::Heard(Record::Reading { sample, fresh }) = &entry
-        {
-            done = lines.reading(entry.at(), sample, *fresh);
+    let broken = |error: io::Error| output.error(&error);
+    lines.head().map_err(broken)?;
+    let damage = source.without_wire().entries(|entry| {
+        if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
+            lines.reading(entry.at(), sample, *fresh)?;
         }
-        match done {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
+        Ok(())
     });
-    let damage = damage.map_err(|error| unreadable(&error))?;
-    done.and_then(|()| lines.end())
-        .map_err(|error| output.error(&error))?;
+    let damage = damage.map_err(|error| error.of(&output))?;
+    lines.end().map_err(broken)?;
     let rows = lines.rows;
     output.sync(to)?;
     output.finish()?;
@@ -61,6 +55,7 @@ struct Line {
     at: Option<Moment>,
     taken: Groups,
     cells: Vec<String>,
+    undocumented: String,
 }
 
 struct Lines<'a, W: Write, M: Iterator<Item = &'a FileMark>> {
@@ -75,7 +70,8 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
     fn head(&mut self) -> io::Result<()> {
         self.line.cells = vec![String::new(); columns().count()];
         let names: Vec<String> = columns().collect();
-        writeln!(self.to, "time_s,{},event", names.join(","))
+        let names = names.join(",");
+        writeln!(self.to, "time_s,{names},{UNDOCUMENTED},event")
     }
 
     fn reading(&mut self, at: Moment, sample: &HandSample, fresh: Groups) -> io::Result<()> {
@@ -90,6 +86,14 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
             if let Some(value) = value {
                 *cell = value;
             }
+        }
+        let columns = Quantity::ALL.into_iter().map(Quantity::group);
+        let columns: Groups = columns.filter(|group| fresh.contains(*group)).collect();
+        for value in sample.undocumented(columns) {
+            let words = &mut self.line.undocumented;
+            let gap = if words.is_empty() { "" } else { " " };
+            // Writing to a string cannot fail.
+            let _done = write!(words, "{gap}{value}");
         }
         Ok(())
     }
@@ -110,6 +114,8 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
             cell.clear();
         }
         self.line.taken = Groups::NONE;
+        write!(self.to, ",{}", self.line.undocumented)?;
+        self.line.undocumented.clear();
         let words = mark.map(words).unwrap_or_default();
         writeln!(self.to, ",{}", text_cell(&words))
     }
@@ -117,7 +123,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
     /// A line on which nothing was received.
     fn mark(&mut self, mark: &FileMark) -> io::Result<()> {
         self.rows += 1;
-        let empty = ",".repeat(self.line.cells.len());
+        let empty = ",".repeat(self.line.cells.len() + 1);
         let words = text_cell(&words(mark));
         writeln!(self.to, "{:.6}{empty},{words}", self.seconds(mark.at))
     }
@@ -161,6 +167,15 @@ fn columns() -> impl Iterator<Item = String> {
     joints.chain(tips).chain(channels)
 }
 
+/// A number that no reader takes for a whole one, and then the column for one of whole numbers.
+fn decimal(value: f32) -> String {
+    let digits = value.to_string();
+    match digits.contains('.') {
+        true => digits,
+        false => digits + ".0",
+    }
+}
+
 /// The values of those columns that are fresh and known.
 fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<String>> {
     let joints = Quantity::ALL.into_iter().flat_map(move |quantity| {
@@ -179,7 +194,7 @@ fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<Str
                 Touch::Normal => block.normal(),
                 Touch::Tangential => block.tangential(),
             };
-            value.map(|value| value.to_string())
+            value.map(decimal)
         })
     });
     let channels = Finger::ALL.into_iter().flat_map(move |finger| {

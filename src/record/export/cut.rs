@@ -1,15 +1,13 @@
 //! A stretch of a session as a session file of its own: closed, with an index, made anew of what could be read.
 
-use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
-use crate::record::file::reader::{Damage, Stretch};
+use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
+use crate::record::export::source::{Broken, Source};
+use crate::record::file::index::Counted;
+use crate::record::file::reader::Damage;
 use crate::record::file::writer::SessionWriter;
 use crate::record::file::{Opening, SessionFile};
 use crate::record::{Entry, Event, EventKind};
-use mcap::McapError;
-use std::fs::File;
-use std::io::{self, BufWriter, Write as _};
-use std::ops::ControlFlow;
-use std::path::Path;
+use std::io::Write;
 
 /// Entries between two writes to the disk: some hundred kilobytes.
 const ENTRIES_AT_ONCE: u64 = 1024;
@@ -18,30 +16,33 @@ const ENTRIES_AT_ONCE: u64 = 1024;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(path)?;
-    let (exported, to) =
-        copy(file, stretch, output.file()?, |_| None).map_err(|error| error.of(&output))?;
-    output.sync(to)?;
-    output.finish()?;
-    Ok(exported)
+pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+    put(source, to, |_| None)
 }
 
 /// Writes all that can be read of a damaged file, and at its end what was lost.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn recover(file: &SessionFile, path: &Path) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(path)?;
-    let said = |damage: Damage| (damage != Damage::default()).then(|| recovered(file, damage));
-    let (exported, to) =
-        copy(file, Stretch::WHOLE, output.file()?, said).map_err(|error| error.of(&output))?;
-    output.sync(to)?;
-    output.finish()?;
-    Ok(exported)
+pub fn recover(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+    put(source, to, |damage| {
+        (*damage != Damage::default()).then(|| recovered(source.file, damage))
+    })
 }
 
-fn recovered(file: &SessionFile, damage: Damage) -> Event {
+fn put(
+    source: Source<'_>,
+    to: &Destination,
+    said: impl FnOnce(&Damage) -> Option<Event>,
+) -> Result<Exported, ExportError> {
+    let output = Unfinished::new(to)?;
+    let copied = copy(source, output.file()?, said).map_err(|error| error.of(&output))?;
+    output.sync(copied.to)?;
+    output.finish()?;
+    Ok(copied.exported)
+}
+
+fn recovered(file: &SessionFile, damage: &Damage) -> Event {
     Event {
         at: file.last(),
         kind: EventKind::Recording,
@@ -52,69 +53,42 @@ fn recovered(file: &SessionFile, damage: Damage) -> Event {
     }
 }
 
-/// Why a copy broke off.
-#[derive(Debug)]
-pub(crate) enum CopyError {
-    /// The session cannot be read on.
-    Source(io::Error),
-    /// The copy cannot be written.
-    Copy(io::Error),
-}
-
-impl CopyError {
-    /// For what was to be written.
-    pub(crate) fn of(&self, output: &Unfinished) -> ExportError {
-        match self {
-            Self::Source(error) => unreadable(error),
-            Self::Copy(error) => output.error(error),
-        }
-    }
-}
-
-impl From<McapError> for CopyError {
-    fn from(error: McapError) -> Self {
-        Self::Copy(io::Error::other(error))
-    }
+/// A finished copy.
+pub(crate) struct Copied<W> {
+    pub(crate) exported: Exported,
+    pub(crate) counted: Counted,
+    pub(crate) to: W,
 }
 
 /// Copies a stretch, and then what is to be said of what could not be read.
-pub(crate) fn copy(
-    file: &SessionFile,
-    stretch: Stretch,
-    to: BufWriter<File>,
-    said: impl FnOnce(Damage) -> Option<Event>,
-) -> Result<(Exported, BufWriter<File>), CopyError> {
+pub(crate) fn copy<W: Write>(
+    source: Source<'_>,
+    to: W,
+    said: impl FnOnce(&Damage) -> Option<Event>,
+) -> Result<Copied<W>, Broken> {
     let opening = Opening {
-        began: stretch.from.max(file.first()),
-        ..file.opening().clone()
+        began: source.stretch.from.max(source.file.first()),
+        ..source.file.opening().clone()
     };
     let mut copy = SessionCopy::new(&opening, to)?;
-    let mut done = Ok(());
-    let damage = file.entries(stretch, |entry| {
-        done = copy.push(&entry);
-        match done {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
-    });
-    let damage = damage.map_err(CopyError::Source)?;
-    done?;
-    if let Some(event) = said(damage) {
+    let damage = source.entries(|entry| copy.push(&entry))?;
+    if let Some(event) = said(&damage) {
         copy.push(&Entry::Event(event))?;
     }
-    let (rows, to) = copy.end()?;
-    Ok((Exported { rows, damage }, to))
+    let mut copied = copy.end()?;
+    copied.exported.damage = damage;
+    Ok(copied)
 }
 
 /// A session file that is made of entries.
-pub(crate) struct SessionCopy {
+pub(crate) struct SessionCopy<W> {
     writer: SessionWriter,
-    to: BufWriter<File>,
+    to: W,
     rows: u64,
 }
 
-impl SessionCopy {
-    pub(crate) fn new(opening: &Opening, to: BufWriter<File>) -> Result<Self, CopyError> {
+impl<W: Write> SessionCopy<W> {
+    pub(crate) fn new(opening: &Opening, to: W) -> Result<Self, Broken> {
         Ok(Self {
             writer: SessionWriter::new(opening)?,
             to,
@@ -122,7 +96,7 @@ impl SessionCopy {
         })
     }
 
-    pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), CopyError> {
+    pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), Broken> {
         self.writer.push(entry)?;
         self.rows += 1;
         match self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
@@ -131,19 +105,27 @@ impl SessionCopy {
         }
     }
 
-    fn put(&mut self) -> Result<(), CopyError> {
+    fn put(&mut self) -> Result<(), Broken> {
         let bytes = self.writer.take_bytes();
-        self.to.write_all(&bytes).map_err(CopyError::Copy)
+        Ok(self.to.write_all(&bytes)?)
     }
 
-    /// Ends the file; how many entries are in it.
-    pub(crate) fn end(mut self) -> Result<(u64, BufWriter<File>), CopyError> {
+    /// Ends the file.
+    pub(crate) fn end(mut self) -> Result<Copied<W>, Broken> {
         let end = self.writer.finish()?;
+        let counted = end.counted();
         self.put()?;
         for piece in end {
-            self.to.write_all(&piece).map_err(CopyError::Copy)?;
+            self.to.write_all(&piece)?;
         }
-        self.to.flush().map_err(CopyError::Copy)?;
-        Ok((self.rows, self.to))
+        self.to.flush()?;
+        Ok(Copied {
+            exported: Exported {
+                rows: self.rows,
+                ..Exported::default()
+            },
+            counted,
+            to: self.to,
+        })
     }
 }

@@ -1,38 +1,71 @@
-//! DatasetFrames at an even rate, made of readings that come when they come.
+//! DatasetFrames at an even rate, made of readings and commands that come when they come.
 
-use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Target};
+use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity};
+use crate::record::export::targets::CommandedTargets;
 use crate::record::file::SessionFile;
-use crate::record::{Entry, Record, WrittenMemory};
+use crate::record::{Entry, Record, WriteFate};
+use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A reading that is older is not taken for what holds now.
 const GAP_AFTER: Duration = Duration::from_millis(500);
-/// The same for targets, which are read about twice a second.
+/// The same for targets that nobody sent, which are read about twice a second.
 const TARGET_GAP_AFTER: Duration = Duration::from_secs(3);
 /// Angles are 0 to 1000.
 const FULL_SCALE: f32 = 1000.0;
 /// Fingertips that are read less often than so many times a second are left out: each frame would be a silence.
 const TOUCH_HZ_MIN: f64 = 4.0;
-/// How many values the parts of a frame have: angles, targets, forces, normal and tangential forces of the fingertips.
-pub(crate) const FRAME_WIDTHS: [usize; 4] = [6, 6, 6, 10];
+/// Values of the fingertips: normal, then tangential forces.
+const TOUCH_WIDTH: usize = 10;
+/// Values of the force sensors of the joints, which stand before the fingertips.
+const FORCE_WIDTH: usize = 6;
 
 /// What was known at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DatasetFrame {
     /// In its episode, from 0.
     pub(crate) number: u64,
+    /// The moment of it.
+    pub(crate) at: Moment,
     /// Since the episode's first, s.
     pub(crate) time_s: f32,
+    /// The note that began the episode.
+    pub(crate) note: Option<Arc<str>>,
+    /// A target was set by something else than the writes of the recording.
+    pub(crate) is_read_back: bool,
     state: [f32; 6],
     action: [f32; 6],
-    force: [f32; 6],
-    touch: [f32; 10],
+    /// Forces of the joints, then of the fingertips, if those are there.
+    environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
+}
+
+/// Names and lengths of the parts of a frame.
+pub(crate) fn frame_parts(with_touch: bool) -> Vec<(&'static str, usize)> {
+    let touch = if with_touch { TOUCH_WIDTH } else { 0 };
+    let mut parts = vec![
+        ("observation.state", 6),
+        ("action", 6),
+        ("observation.environment_state", FORCE_WIDTH + touch),
+        ("observation.force", FORCE_WIDTH),
+    ];
+    if with_touch {
+        parts.push(("observation.touch", TOUCH_WIDTH));
+    }
+    parts
 }
 
 impl DatasetFrame {
-    /// Its parts, as [`FRAME_WIDTHS`] counts them; the last means nothing where the fingertips are left out.
-    pub(crate) fn parts(&self) -> [&[f32]; 4] {
-        [&self.state, &self.action, &self.force, &self.touch]
+    /// Its parts, as [`frame_parts`] names them.
+    pub(crate) fn parts(&self, with_touch: bool) -> Vec<&[f32]> {
+        let (force, touch) = self.environment.split_at(FORCE_WIDTH);
+        let mut parts: Vec<&[f32]> = vec![&self.state, &self.action];
+        if with_touch {
+            parts.extend([&self.environment, force, touch]);
+        } else {
+            parts.extend([force, force]);
+        }
+        parts
     }
 }
 
@@ -44,26 +77,36 @@ pub(crate) fn has_touch(file: &SessionFile) -> bool {
     sweeps > 0.0 && sweeps >= TOUCH_HZ_MIN * length_s
 }
 
+/// How frames are made.
+#[derive(Debug, Clone)]
+pub(crate) struct FramePlan {
+    pub(crate) fps: u32,
+    /// Whether a frame needs the fingertips.
+    pub(crate) with_touch: bool,
+    /// No frame is before this; entries before it say what was commanded.
+    pub(crate) from: Moment,
+    /// Where an episode begins, in the order of time; `None` if it begins wherever all is known.
+    pub(crate) notes: Option<VecDeque<(Moment, Arc<str>)>>,
+}
+
 /// Makes frames of entries.
 #[derive(Debug)]
 pub(crate) struct DatasetFrames {
-    fps: u32,
-    /// Whether a frame needs the fingertips.
-    with_touch: bool,
+    plan: FramePlan,
     sample: HandSample,
-    /// Targets, newer than those that were read back.
-    sent: PerDof<Option<(Moment, i16)>>,
+    targets: CommandedTargets,
+    note: Option<Arc<str>>,
     began: Option<Moment>,
     number: u64,
 }
 
 impl DatasetFrames {
-    pub(crate) fn new(file: &SessionFile, fps: u32) -> Self {
+    pub(crate) fn new(plan: FramePlan) -> Self {
         Self {
-            fps: fps.max(1),
-            with_touch: has_touch(file),
+            plan,
             sample: HandSample::default(),
-            sent: PerDof::splat(None),
+            targets: CommandedTargets::UNKNOWN,
+            note: None,
             began: None,
             number: 0,
         }
@@ -72,7 +115,52 @@ impl DatasetFrames {
     /// Gives the frames before this entry, and takes it in.
     pub(crate) fn take(&mut self, entry: &Entry, mut give: impl FnMut(&DatasetFrame)) {
         let now = entry.at();
-        while let Some((began, at)) = self.next_at().filter(|(_, at)| *at < now) {
+        while let Some((at, note)) = self.next_note(now) {
+            self.advance(at, &mut give);
+            self.note = Some(note);
+            self.begin(at);
+        }
+        self.advance(now, &mut give);
+        match entry {
+            Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
+            Entry::Heard(Record::Sent {
+                at, number, write, ..
+            }) => self.targets.sent(*at, *number, write),
+            Entry::Heard(Record::Answered {
+                number,
+                fate: WriteFate::Refused { .. },
+                ..
+            }) => self.targets.refused(*number),
+            Entry::Heard(Record::State { state, .. }) if !state.is_live() => {
+                self.sample = HandSample::default();
+                self.targets = CommandedTargets::UNKNOWN;
+                self.began = None;
+            }
+            _ => {}
+        }
+        if self.began.is_none() {
+            self.begin(now);
+        }
+    }
+
+    /// The next note that was made until now.
+    fn next_note(&mut self, now: Moment) -> Option<(Moment, Arc<str>)> {
+        let notes = self.plan.notes.as_mut()?;
+        notes.front().filter(|(at, _)| *at <= now)?;
+        notes.pop_front()
+    }
+
+    /// Begins an episode here, if all is known and one is wanted.
+    fn begin(&mut self, at: Moment) {
+        let is_wanted = self.plan.notes.is_none() || self.note.is_some();
+        let is_wanted = is_wanted && at >= self.plan.from;
+        self.number = 0;
+        self.began = Some(at).filter(|_| is_wanted && self.frame(at, at).is_some());
+    }
+
+    /// Gives the frames that are due before this.
+    fn advance(&mut self, until: Moment, give: &mut impl FnMut(&DatasetFrame)) {
+        while let Some((began, at)) = self.next_at().filter(|(_, at)| *at < until) {
             match self.frame(began, at) {
                 Some(frame) => give(&frame),
                 None => {
@@ -82,45 +170,19 @@ impl DatasetFrames {
             }
             self.number += 1;
         }
-        match entry {
-            Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
-            Entry::Heard(Record::Sent { at, write, .. }) => self.sent(*at, write),
-            Entry::Heard(Record::State { state, .. }) if !state.is_live() => {
-                self.sample = HandSample::default();
-                self.sent = PerDof::splat(None);
-                self.began = None;
-            }
-            _ => {}
-        }
-        if self.began.is_none() && self.frame(now, now).is_some() {
-            self.began = Some(now);
-            self.number = 0;
-        }
     }
 
     /// When the next frame is due.
     fn next_at(&self) -> Option<(Moment, Moment)> {
         let began = self.began?;
-        let micros = self.number.saturating_mul(1_000_000) / u64::from(self.fps);
+        let micros = self.number.saturating_mul(1_000_000) / u64::from(self.plan.fps.max(1));
         Some((began, began.plus(Duration::from_micros(micros))))
     }
 
     fn reading(&mut self, sample: &HandSample, fresh: Groups) {
         self.sample = *sample;
-        if let Some(read) = sample.angle_set.filter(|_| fresh.contains(Group::AngleSet)) {
-            for (_, sent) in self.sent.iter_mut() {
-                if sent.is_some_and(|(at, _)| at <= read.asked) {
-                    *sent = None;
-                }
-            }
-        }
-    }
-
-    fn sent(&mut self, at: Moment, write: &WrittenMemory) {
-        for (dof, angle) in write.angle_targets().iter() {
-            if let Some(angle) = angle {
-                self.sent[dof] = Some((at, angle.get()));
-            }
+        if let Some(held) = sample.angle_set.filter(|_| fresh.contains(Group::AngleSet)) {
+            self.targets.read(held);
         }
     }
 
@@ -129,39 +191,32 @@ impl DatasetFrames {
         let fresh = |received: Moment, within: Duration| at.since(received) <= within;
         let angle = Quantity::Angle.documented(&self.sample)?;
         let force = Quantity::Force.documented(&self.sample)?;
-        let target = self.sample.angle_set?;
-        if !fresh(angle.received, GAP_AFTER)
-            || !fresh(force.received, GAP_AFTER)
-            || !fresh(target.received, TARGET_GAP_AFTER)
-        {
+        if !fresh(angle.received, GAP_AFTER) || !fresh(force.received, GAP_AFTER) {
+            return None;
+        }
+        if !self.targets.are_sent() && !fresh(self.sample.angle_set?.received, TARGET_GAP_AFTER) {
             return None;
         }
         let mut frame = DatasetFrame {
             number: self.number,
+            at,
             time_s: at.since(began).as_secs_f32(),
+            note: self.note.clone(),
+            is_read_back: self.targets.are_read_back(),
             state: [0.0; 6],
             action: [0.0; 6],
-            force: [0.0; 6],
-            touch: [0.0; 10],
+            environment: [0.0; FORCE_WIDTH + TOUCH_WIDTH],
         };
-        for (dof, ((state, action), grams)) in Dof::ALL.into_iter().zip(
-            frame
-                .state
-                .iter_mut()
-                .zip(&mut frame.action)
-                .zip(&mut frame.force),
-        ) {
+        let (forces, touch) = frame.environment.split_at_mut(FORCE_WIDTH);
+        let joints = frame.state.iter_mut().zip(&mut frame.action).zip(forces);
+        for (dof, ((state, action), grams)) in Dof::ALL.into_iter().zip(joints) {
             let angle = angle.value[dof]?;
-            let held = target.value[dof]
-                .and_then(Target::angle)
-                .map(|angle| angle.get());
-            let sent = self.sent[dof].map(|(_, value)| value);
             *state = f32::from(angle) / FULL_SCALE;
-            *action = f32::from(sent.or(held).unwrap_or(angle)) / FULL_SCALE;
+            *action = f32::from(self.targets.angle(dof).unwrap_or(angle)) / FULL_SCALE;
             *grams = f32::from(force.value[dof]?);
         }
-        if self.with_touch {
-            let (normal, tangential) = frame.touch.split_at_mut(Finger::ALL.len());
+        if self.plan.with_touch {
+            let (normal, tangential) = touch.split_at_mut(Finger::ALL.len());
             for (finger, (normal, tangential)) in Finger::ALL
                 .into_iter()
                 .zip(normal.iter_mut().zip(tangential))
@@ -185,19 +240,16 @@ mod tests {
     use crate::hand::Reply;
     use crate::hand::command::HandCommand;
     use crate::hand::register::ANGLE_SET;
-    use crate::hand::{Angle, Span};
+    use crate::hand::{Angle, PerDof, Span, Target};
     use crate::record::WriteCause;
-    use std::sync::Arc;
 
     fn empty() -> DatasetFrames {
-        DatasetFrames {
+        DatasetFrames::new(FramePlan {
             fps: 10,
             with_touch: false,
-            sample: HandSample::default(),
-            sent: PerDof::splat(None),
-            began: None,
-            number: 0,
-        }
+            from: Moment::ZERO,
+            notes: None,
+        })
     }
 
     fn millis(millis: u64) -> Moment {
@@ -270,5 +322,47 @@ mod tests {
             .map(|frame| (frame.action[5] * FULL_SCALE).round() as i32)
             .collect();
         assert_eq!(actions, [300, 300, 900, 900]);
+    }
+
+    #[test]
+    fn a_command_before_the_stretch_is_known_in_it_and_episodes_begin_at_notes() {
+        let plan = FramePlan {
+            from: millis(1000),
+            notes: Some(
+                [(1500, "pick"), (2200, "place")]
+                    .map(|(at, words)| (millis(at), words.into()))
+                    .into(),
+            ),
+            ..empty().plan
+        };
+        let (mut frames, mut sample) = (DatasetFrames::new(plan), HandSample::default());
+        let command = HandCommand::Angles(PerDof::splat(Target::Go(Angle::new(900).unwrap())));
+        let mut all = Vec::new();
+        for n in 0..=60 {
+            // Read 200 ms after the command, the hand still holds what it held before.
+            let mut entries = vec![reading(&mut sample, millis(50 * n), 300)];
+            if n == 18 {
+                entries.push(Entry::Heard(Record::Sent {
+                    at: millis(900),
+                    number: 1,
+                    cause: WriteCause::Hold,
+                    write: command.writes().first().unwrap().into(),
+                }));
+            }
+            for entry in entries {
+                frames.take(&entry, |frame| all.push(frame.clone()));
+            }
+        }
+        let told: Vec<(u64, &str, u64)> = all
+            .iter()
+            .map(|frame| {
+                assert!((frame.action[2] - 0.9).abs() < 1e-6, "{frame:?}");
+                let note = frame.note.as_deref().unwrap();
+                (frame.number, note, frame.at.micros() / 1000)
+            })
+            .collect();
+        let first = (0..7).map(|n| (n, "pick", 1500 + 100 * n));
+        let second = (0..8).map(|n| (n, "place", 2200 + 100 * n));
+        assert_eq!(told, first.chain(second).collect::<Vec<_>>());
     }
 }

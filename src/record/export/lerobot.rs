@@ -1,13 +1,17 @@
-//! A session as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time. What was
+//! Sessions as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time. What was
 //! not read is never filled in: a silence ends the episode.
 
+use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use crate::record::EventKind;
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
-use crate::record::export::frames::{DatasetFrame, DatasetFrames, FRAME_WIDTHS, has_touch};
-use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
+use crate::record::export::frames::{
+    DatasetFrame, DatasetFrames, FramePlan, frame_parts, has_touch,
+};
+use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
+use crate::record::export::source::{Broken, Source};
 use crate::record::export::statistics::Statistics;
 use crate::record::file::SessionFile;
-use crate::record::file::reader::Stretch;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
@@ -15,126 +19,201 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use serde_json::{Map, Value, json};
+use std::collections::VecDeque;
 use std::fs::{self, File};
-use std::io::{self, BufWriter};
-use std::ops::ControlFlow;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
 /// DatasetFrames that an episode keeps in memory: half an hour at 30 a second. A longer one is written as several groups of rows.
 const GROUP_FRAMES: u64 = 65_536;
-/// Names of what a frame holds, in the order of [`FRAME_WIDTHS`].
-const PARTS: [&str; 4] = [
-    "observation.state",
-    "action",
-    "observation.force",
-    "observation.touch",
-];
 /// Files of one kind; LeRobot counts them with three digits.
 const FILE: &str = "chunk-000/file-000.parquet";
+/// What is said of a set in which actions are read back.
+const READ_BACK: &str = "in action_read_back_frames frames a target was set by something else than the writes of the recording: another controller, or the hand itself for a gesture; the action is what the hand held when it was read, up to half a second late";
+/// What a hand does of which nobody says it.
+const TASK: &str = "grasp";
+
+/// Where an episode begins. A silence ends it in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EpisodeStart {
+    /// Where a recording begins, and after each silence.
+    Gap,
+    /// At each note that a person made; what is before the first is left out.
+    Note,
+}
 
 /// How frames are made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeRobotPlan {
     /// DatasetFrames a second.
     pub fps: u32,
-    /// What the hand does, in words.
-    pub task: String,
+    /// What the hand does, in words; `None` if the note at which an episode begins says it.
+    pub task: Option<String>,
+    /// Where episodes begin.
+    pub episodes: EpisodeStart,
 }
 
-/// Writes a stretch as a folder.
+/// What is in a data set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeRobotSet {
+    /// Frames, and what could not be read of each session.
+    pub sessions: Vec<Exported>,
+    /// How many episodes.
+    pub episodes: u64,
+    /// Frames whose action is not as it was sent, but as the hand held it when it was asked.
+    pub read_back: u64,
+}
+
+impl LeRobotSet {
+    /// Of all sessions.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.sessions.iter().map(|session| session.rows).sum()
+    }
+}
+
+/// Writes stretches of sessions as one folder.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
 pub fn write(
-    file: &SessionFile,
-    stretch: Stretch,
-    path: &Path,
+    sources: &[Source<'_>],
+    to: &Path,
     plan: &LeRobotPlan,
-) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(path)?;
+) -> Result<LeRobotSet, ExportError> {
+    let mut sides = sources.iter().map(|source| source.file.opening().side);
+    let side = sides.next().unwrap_or(Side::Right);
+    if sides.any(|other| other != side) {
+        return Err(ExportError::BothSides);
+    }
+    let output = Unfinished::new(&Destination::from(to))?;
     let folder = output.folder()?.to_owned();
     let error = |error: io::Error| output.error(&error);
-    let parquet_error = |failed: ParquetError| error(io::Error::other(failed));
     for part in ["data/chunk-000", "meta/episodes/chunk-000"] {
         fs::create_dir_all(folder.join(part)).map_err(error)?;
     }
     let data = folder.join("data").join(FILE);
-    let data = BufWriter::new(File::create_new(data).map_err(error)?);
-    let mut set = DataSet::new(data, parts(file)).map_err(parquet_error)?;
-    let mut frames = DatasetFrames::new(file, plan.fps);
-    let mut done = Ok(());
-    let no_wire = Stretch {
-        wire: false,
-        ..stretch
+    let data = Sink::File(File::create_new(data).map_err(error)?);
+    let with_touch = sources.iter().all(|source| has_touch(source.file));
+    let set = DataSet::new(BufWriter::new(data), with_touch);
+    let mut set = set.map_err(|error| output.parquet_error(error))?;
+    let mut sessions = Vec::new();
+    for (number, source) in sources.iter().enumerate() {
+        set.recording = number;
+        let session = add(&mut set, source, plan).map_err(|error| error.of(&output))?;
+        sessions.push(session);
+    }
+    let ended = set.end().map_err(|error| output.parquet_error(error))?;
+    if ended.index == 0 {
+        let has_note = sources.iter().any(|source| !notes(source).is_empty());
+        return Err(match plan.episodes {
+            EpisodeStart::Note if !has_note => ExportError::NoNotes,
+            _ => ExportError::Empty,
+        });
+    }
+    let meta = Meta {
+        sources,
+        side,
+        with_touch,
+        plan,
+        ended: &ended,
     };
-    let damage = file.entries(no_wire, |entry| {
+    meta.write(&folder.join("meta")).map_err(error)?;
+    let made = LeRobotSet {
+        sessions,
+        episodes: u64::try_from(ended.episodes.len()).unwrap_or(u64::MAX),
+        read_back: ended.episodes.iter().map(|episode| episode.read_back).sum(),
+    };
+    output.sync(ended.data)?;
+    output.finish()?;
+    Ok(made)
+}
+
+/// Adds the frames of one session. It is read from its start, because what was commanded before the stretch holds on in it.
+fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exported, Broken> {
+    let mut frames = DatasetFrames::new(FramePlan {
+        fps: plan.fps,
+        with_touch: set.with_touch,
+        from: source.stretch.from,
+        notes: match plan.episodes {
+            EpisodeStart::Gap => None,
+            EpisodeStart::Note => Some(notes(source)),
+        },
+    });
+    let mut whole = source.without_wire();
+    whole.stretch.from = Moment::ZERO;
+    let before = set.index;
+    let damage = whole.entries(|entry| {
+        let mut done = Ok(());
         frames.take(&entry, |frame| {
             if done.is_ok() {
-                done = set.frame(frame);
+                done = set.frame(frame, source.file.first(), plan);
             }
         });
-        match done {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
-    });
-    let damage = damage.map_err(|error| unreadable(&error))?;
-    done.map_err(parquet_error)?;
-    let ended = set.end().map_err(parquet_error)?;
-    if ended.index == 0 {
-        return Err(ExportError::Empty);
-    }
-    output.sync(ended.data)?;
-    let meta = Meta {
-        file,
-        plan,
-        frames: ended.index,
-        episodes: &ended.episodes,
-    };
-    meta.write(&folder.join("meta"), &ended.statistics)
-        .map_err(error)?;
-    output.finish()?;
+        Ok(done?)
+    })?;
     Ok(Exported {
-        rows: meta.frames,
+        rows: set.index - before,
         damage,
     })
 }
 
-/// How many of [`PARTS`] there are: fingertips that were hardly read are left out.
-fn parts(file: &SessionFile) -> usize {
-    match has_touch(file) {
-        true => PARTS.len(),
-        false => PARTS.len() - 1,
-    }
+/// Notes of persons in the stretch.
+fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
+    let within = source.stretch.from..=source.stretch.to;
+    let marks = source.file.overview().marks.iter();
+    let notes = marks.filter(|mark| mark.kind == EventKind::Note && within.contains(&mark.at));
+    notes
+        .map(|mark| (mark.at, mark.words.as_str().into()))
+        .collect()
+}
+
+/// One episode.
+struct Episode {
+    frames: u64,
+    /// The place of its task among all.
+    task: usize,
+    /// The place of its recording among all, and where in that it begins.
+    recording: usize,
+    from_s: f64,
+    read_back: u64,
 }
 
 /// The frames as they are written.
 struct DataSet {
-    to: SerializedFileWriter<BufWriter<File>>,
+    to: SerializedFileWriter<BufWriter<Sink>>,
     columns: Vec<ParquetColumn>,
-    parts: usize,
+    with_touch: bool,
     statistics: Statistics,
-    /// DatasetFrames of each episode.
-    episodes: Vec<u64>,
+    tasks: Vec<String>,
+    episodes: Vec<Episode>,
+    /// The place of the recording that is read.
+    recording: usize,
     index: u64,
     waiting: u64,
 }
 
 /// What was written.
 struct Ended {
-    data: BufWriter<File>,
+    data: BufWriter<Sink>,
     statistics: Statistics,
-    episodes: Vec<u64>,
+    tasks: Vec<String>,
+    episodes: Vec<Episode>,
     index: u64,
 }
 
+fn long(number: impl TryInto<i64>) -> ParquetCell {
+    ParquetCell::Long(number.try_into().unwrap_or(i64::MAX))
+}
+
 impl DataSet {
-    fn new(to: BufWriter<File>, parts: usize) -> Result<Self, ParquetError> {
-        let lists = PARTS.into_iter().zip(FRAME_WIDTHS).take(parts);
-        let lists =
-            lists.map(|(name, width)| ParquetColumn::new(name, "", Values::Floats(width, vec![])));
-        let mut columns: Vec<ParquetColumn> = lists.collect();
+    fn new(to: BufWriter<Sink>, with_touch: bool) -> Result<Self, ParquetError> {
+        let parts = frame_parts(with_touch);
+        let list = |(name, width): &(&str, usize)| {
+            ParquetColumn::new(*name, "", Values::Floats(*width, vec![]))
+        };
+        let mut columns: Vec<ParquetColumn> = parts.iter().map(list).collect();
         columns.push(ParquetColumn::new(
             "timestamp",
             "",
@@ -146,44 +225,73 @@ impl DataSet {
         Ok(Self {
             to: writer(to, &columns, Vec::new())?,
             columns,
-            statistics: Statistics::new(PARTS.into_iter().zip(FRAME_WIDTHS).take(parts)),
-            parts,
+            statistics: Statistics::new(parts.into_iter()),
+            with_touch,
+            tasks: Vec::new(),
             episodes: Vec::new(),
+            recording: 0,
             index: 0,
             waiting: 0,
         })
     }
 
-    fn frame(&mut self, frame: &DatasetFrame) -> Result<(), ParquetError> {
+    /// Adds a frame of a recording that began so.
+    fn frame(
+        &mut self,
+        frame: &DatasetFrame,
+        began: Moment,
+        plan: &LeRobotPlan,
+    ) -> Result<(), ParquetError> {
         if frame.number == 0 {
             self.put()?;
-            self.episodes.push(0);
+            let note = frame.note.as_deref().filter(|note| !note.trim().is_empty());
+            let task = plan.task.as_deref().or(note).unwrap_or(TASK);
+            let task = self.task(task);
+            self.episodes.push(Episode {
+                frames: 0,
+                task,
+                recording: self.recording,
+                from_s: frame.at.since(began).as_secs_f64(),
+                read_back: 0,
+            });
         } else if self.waiting >= GROUP_FRAMES {
             self.put()?;
         }
-        let episode = self.episodes.len().saturating_sub(1);
-        let long = |number: u64| ParquetCell::Long(i64::try_from(number).unwrap_or(i64::MAX));
+        let number = self.episodes.len().saturating_sub(1);
+        let mut task = 0;
+        if let Some(episode) = self.episodes.last_mut() {
+            episode.frames += 1;
+            episode.read_back += u64::from(frame.is_read_back);
+            task = episode.task;
+        }
         let scalars = [
             ParquetCell::Float(frame.time_s),
             long(frame.number),
-            ParquetCell::Long(i64::try_from(episode).unwrap_or(i64::MAX)),
+            long(number),
             long(self.index),
-            ParquetCell::Long(0),
+            long(task),
         ];
-        let (lists, rest) = self.columns.split_at_mut(self.parts);
-        for (column, values) in lists.iter_mut().zip(frame.parts()) {
+        let parts = frame.parts(self.with_touch);
+        let (lists, rest) = self.columns.split_at_mut(parts.len());
+        for (column, values) in lists.iter_mut().zip(&parts) {
             column.push_list(values);
         }
         for (column, cell) in rest.iter_mut().zip(scalars) {
             column.push(cell);
         }
-        self.statistics.take(&frame.parts());
+        self.statistics.take(&parts);
         self.index += 1;
         self.waiting += 1;
-        if let Some(length) = self.episodes.last_mut() {
-            *length += 1;
-        }
         Ok(())
+    }
+
+    /// The place of a task among all.
+    fn task(&mut self, words: &str) -> usize {
+        let known = self.tasks.iter().position(|task| task == words);
+        known.unwrap_or_else(|| {
+            self.tasks.push(words.to_owned());
+            self.tasks.len() - 1
+        })
     }
 
     fn put(&mut self) -> Result<(), ParquetError> {
@@ -200,17 +308,18 @@ impl DataSet {
         Ok(Ended {
             data: self.to.into_inner()?,
             statistics: self.statistics,
+            tasks: self.tasks,
             episodes: self.episodes,
             index: self.index,
         })
     }
 }
 
-fn writer(
-    to: BufWriter<File>,
+fn writer<W: Write + Send>(
+    to: W,
     columns: &[ParquetColumn],
     metadata: Vec<KeyValue>,
-) -> Result<SerializedFileWriter<BufWriter<File>>, ParquetError> {
+) -> Result<SerializedFileWriter<W>, ParquetError> {
     let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
     let schema = Type::group_type_builder("schema").with_fields(fields?);
     let properties = WriterProperties::builder()
@@ -221,20 +330,21 @@ fn writer(
 
 /// What stands beside the frames.
 struct Meta<'a> {
-    file: &'a SessionFile,
+    sources: &'a [Source<'a>],
+    side: Side,
+    with_touch: bool,
     plan: &'a LeRobotPlan,
-    frames: u64,
-    episodes: &'a [u64],
+    ended: &'a Ended,
 }
 
 impl Meta<'_> {
-    fn write(&self, folder: &Path, statistics: &Statistics) -> io::Result<()> {
+    fn write(&self, folder: &Path) -> io::Result<()> {
         let json = |name: &str, value: &Value| {
             let text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
             fs::write(folder.join(name), text)
         };
         json("info.json", &self.info())?;
-        json("stats.json", &statistics.json())?;
+        json("stats.json", &self.ended.statistics.json())?;
         let place = folder.join("episodes").join(FILE);
         let file = BufWriter::new(File::create_new(place)?);
         self.episodes(file).map_err(io::Error::other)?;
@@ -243,14 +353,13 @@ impl Meta<'_> {
     }
 
     fn info(&self) -> Value {
-        let episodes = self.episodes.len();
-        let opening = self.file.opening();
+        let episodes = self.ended.episodes.len();
         json!({
             "codebase_version": "v3.0",
             "robot_type": "ftp_tactile_hand",
             "total_episodes": episodes,
-            "total_frames": self.frames,
-            "total_tasks": 1,
+            "total_frames": self.ended.index,
+            "total_tasks": self.ended.tasks.len(),
             "chunks_size": 1000,
             "data_files_size_in_mb": 100,
             "video_files_size_in_mb": 200,
@@ -259,19 +368,48 @@ impl Meta<'_> {
             "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
             "video_path": null,
             "features": self.features(),
-            "handscope": {
-                "hand": opening.hand,
-                "simulated": opening.simulated,
-                "version": opening.version,
-                "resampling": "each frame holds the newest reading received before its time",
-                "gaps": "a silence of more than 0.5 s is not filled; it ends the episode",
-                "action": "ANGLE_SET as sent or read back; the angle itself for a joint that is left alone",
-            },
+            "handscope": self.origin(),
         })
     }
 
+    /// How the set was made, and of what.
+    fn origin(&self) -> Value {
+        let recording = |file: &SessionFile| {
+            let opening = file.opening();
+            json!({
+                "file": file.path().file_name().unwrap_or_default().to_string_lossy(),
+                "hand": opening.hand,
+                "simulated": opening.simulated,
+                "version": opening.version,
+            })
+        };
+        let recordings = self.sources.iter().map(|source| recording(source.file));
+        let episodes = &self.ended.episodes;
+        let read_back: u64 = episodes.iter().map(|episode| episode.read_back).sum();
+        let mut origin = json!({
+            "resampling": "each frame holds the newest reading received before its time",
+            "gaps": "a silence of more than 0.5 s, or a value outside the manual's ranges, is not filled; it ends the episode",
+            "action": "the newest target sent to each joint, stops and other programs' writes included; before the first, what the hand held (ANGLE_SET); the angle itself for a joint that was only ever left alone",
+            "action_read_back_frames": read_back,
+            "action_warning": (read_back > 0).then_some(READ_BACK),
+            "recordings": recordings.collect::<Vec<Value>>(),
+            "episodes": episodes.iter().map(|episode| json!({
+                "recording": episode.recording,
+                "from_s": episode.from_s,
+                "action_read_back_frames": episode.read_back,
+            })).collect::<Vec<Value>>(),
+        });
+        if let (Some(first), Some(origin)) = (self.sources.first(), origin.as_object_mut())
+            && let Value::Object(mut first) = recording(first.file)
+        {
+            first.remove("file");
+            origin.append(&mut first);
+        }
+        origin
+    }
+
     fn features(&self) -> Value {
-        let side = match self.file.opening().side {
+        let side = match self.side {
             Side::Left => "kLeftHand",
             Side::Right => "kRightHand",
         };
@@ -287,12 +425,22 @@ impl Meta<'_> {
         let tips = ["Pinky", "Ring", "Middle", "Index", "Thumb"];
         let tip = |what: &str| tips.map(|tip| format!("{side}{tip}{what}"));
         let touch = [tip("Normal"), tip("Tangential")].concat();
-        let names = [joints.to_vec(), joints.to_vec(), joints.to_vec(), touch];
+        let mut environment = joints
+            .each_ref()
+            .map(|joint| format!("{joint}Force"))
+            .to_vec();
+        if self.with_touch {
+            environment.extend(touch.iter().cloned());
+        }
         let mut features = Map::new();
-        let parts = PARTS.iter().zip(FRAME_WIDTHS).take(parts(self.file));
-        for ((part, width), names) in parts.zip(names) {
+        for (part, width) in frame_parts(self.with_touch) {
+            let names = match part {
+                "observation.environment_state" => environment.as_slice(),
+                "observation.touch" => touch.as_slice(),
+                _ => joints.as_slice(),
+            };
             let feature = json!({ "dtype": "float32", "shape": [width], "names": names });
-            features.insert((*part).to_owned(), feature);
+            features.insert(part.to_owned(), feature);
         }
         for (name, kind) in [
             ("timestamp", "float32"),
@@ -308,35 +456,33 @@ impl Meta<'_> {
     }
 
     fn episodes(&self, to: BufWriter<File>) -> Result<(), ParquetError> {
-        let long = |name: &str| ParquetColumn::new(name, "", Values::Long(Vec::new()));
-        let mut columns = vec![ParquetColumn::new("tasks", "", Values::Texts(Vec::new()))];
-        columns.extend(
-            [
-                "episode_index",
-                "length",
-                "dataset_from_index",
-                "dataset_to_index",
-                "data/chunk_index",
-                "data/file_index",
-                "meta/episodes/chunk_index",
-                "meta/episodes/file_index",
-            ]
-            .map(long),
-        );
+        let column = |name: &str| ParquetColumn::new(name, "", Values::Long(Vec::new()));
+        let mut words = ParquetColumn::new("tasks", "", Values::Texts(Vec::new()));
+        let mut columns = [
+            "episode_index",
+            "length",
+            "dataset_from_index",
+            "dataset_to_index",
+            "data/chunk_index",
+            "data/file_index",
+            "meta/episodes/chunk_index",
+            "meta/episodes/file_index",
+        ]
+        .map(column);
         let mut from = 0;
-        for (number, length) in (0..).zip(self.episodes) {
-            let length = i64::try_from(*length).unwrap_or(i64::MAX);
-            let row = [number, length, from, from + length, 0, 0, 0, 0];
-            from += length;
-            let (tasks, numbers) = columns.split_at_mut(1);
-            tasks
-                .iter_mut()
-                .for_each(|column| column.push_text(&self.plan.task));
-            for (column, value) in numbers.iter_mut().zip(row) {
-                column.push(ParquetCell::Long(value));
+        for (number, episode) in (0_u64..).zip(&self.ended.episodes) {
+            let to = from + episode.frames;
+            let row = [number, episode.frames, from, to, 0, 0, 0, 0];
+            from = to;
+            let task = self.ended.tasks.get(episode.task);
+            words.push_text(task.map_or("", String::as_str));
+            for (column, value) in columns.iter_mut().zip(row) {
+                column.push(long(value));
             }
         }
-        finish(writer(to, &columns, Vec::new())?, columns)
+        let mut all = vec![words];
+        all.extend(columns);
+        finish(writer(to, &all, Vec::new())?, all)
     }
 
     /// pandas takes the words for the index of the table only where the file says so.
@@ -353,11 +499,13 @@ impl Meta<'_> {
             "creator": { "library": "handscope", "version": env!("CARGO_PKG_VERSION") },
             "pandas_version": "2.2.0",
         });
-        let mut number = ParquetColumn::new("task_index", "", Values::Long(Vec::new()));
-        number.push(ParquetCell::Long(0));
+        let mut numbers = ParquetColumn::new("task_index", "", Values::Long(Vec::new()));
         let mut words = ParquetColumn::new(INDEX, "", Values::Text(Vec::new()));
-        words.push_text(&self.plan.task);
-        let columns = vec![number, words];
+        for (number, task) in self.ended.tasks.iter().enumerate() {
+            numbers.push(long(number));
+            words.push_text(task);
+        }
+        let columns = vec![numbers, words];
         let pandas = KeyValue::new("pandas".to_owned(), pandas.to_string());
         finish(writer(to, &columns, vec![pandas])?, columns)
     }

@@ -1,8 +1,10 @@
-//! A file or folder that takes its place only when it is whole, and is gone if it does not become whole.
+//! Where an export goes: a file or folder that takes its place only when it is whole, and is gone if it does not become whole; or
+//! standard output.
 
 use crate::record::file::reader::Damage;
+use parquet::errors::ParquetError;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Why nothing was exported.
@@ -31,10 +33,24 @@ pub enum ExportError {
     /// There is nothing of this kind in the stretch.
     #[error("there is no reading of the joints in this stretch")]
     Empty,
+    /// Episodes begin at notes, and there is none.
+    #[error("there is no note of a person in this stretch, at which an episode could begin")]
+    NoNotes,
+    /// A left and a right hand in one data set.
+    #[error(
+        "a left and a right hand cannot be in one data set, because their joints have other names"
+    )]
+    BothSides,
+    /// A person broke it off.
+    #[error("interrupted")]
+    Interrupted,
+    /// Whoever read standard output does not read on.
+    #[error("the reader of the output went away")]
+    ReaderGone,
 }
 
 /// What was exported.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Exported {
     /// Rows of a table, or messages.
     pub rows: u64,
@@ -42,44 +58,108 @@ pub struct Exported {
     pub damage: Damage,
 }
 
+/// Where an export goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Destination {
+    /// A file or folder, which must not exist yet.
+    Path(PathBuf),
+    /// Standard output.
+    Stdout,
+}
+
+impl From<&Path> for Destination {
+    fn from(path: &Path) -> Self {
+        Self::Path(path.to_owned())
+    }
+}
+
+/// What takes the bytes of an export.
+#[derive(Debug)]
+pub(crate) enum Sink {
+    File(File),
+    Stdout(io::Stdout),
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.write(bytes),
+            Self::Stdout(out) => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::File(file) => file.flush(),
+            Self::Stdout(out) => out.flush(),
+        }
+    }
+}
+
 /// Something that is being written.
 #[derive(Debug)]
 pub(crate) struct Unfinished {
-    wanted: PathBuf,
+    wanted: Destination,
     beside: PathBuf,
 }
 
 impl Unfinished {
     /// For this place, which must be free.
-    pub(crate) fn new(wanted: &Path) -> Result<Self, ExportError> {
-        if wanted.symlink_metadata().is_ok() {
-            return Err(ExportError::Exists {
-                path: wanted.to_owned(),
-            });
+    pub(crate) fn new(wanted: &Destination) -> Result<Self, ExportError> {
+        let mut beside = PathBuf::new();
+        if let Destination::Path(path) = wanted {
+            if path.symlink_metadata().is_ok() {
+                return Err(ExportError::Exists { path: path.clone() });
+            }
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            beside = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
         }
-        let name = wanted.file_name().unwrap_or_default().to_string_lossy();
-        let beside = format!(".{name}.{}.part", std::process::id());
         Ok(Self {
-            beside: wanted.with_file_name(beside),
-            wanted: wanted.to_owned(),
+            wanted: wanted.clone(),
+            beside,
         })
     }
 
-    /// The place, for errors.
+    /// What the system said of writing it.
     pub(crate) fn error(&self, error: &io::Error) -> ExportError {
-        ExportError::Unwritable {
-            path: self.wanted.clone(),
-            message: error.to_string(),
+        match &self.wanted {
+            Destination::Stdout if error.kind() == io::ErrorKind::BrokenPipe => {
+                ExportError::ReaderGone
+            }
+            Destination::Stdout => ExportError::Unwritable {
+                path: "standard output".into(),
+                message: error.to_string(),
+            },
+            Destination::Path(path) => ExportError::Unwritable {
+                path: path.clone(),
+                message: error.to_string(),
+            },
         }
     }
 
+    /// The same of a table, whose errors wrap the system's.
+    pub(crate) fn parquet_error(&self, error: ParquetError) -> ExportError {
+        let error = match error {
+            ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+                Ok(error) => *error,
+                Err(other) => io::Error::other(other),
+            },
+            error => io::Error::other(error),
+        };
+        self.error(&error)
+    }
+
     /// The file, in its temporary place.
-    pub(crate) fn file(&self) -> Result<BufWriter<File>, ExportError> {
-        let made = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&self.beside);
-        made.map(BufWriter::new).map_err(|error| self.error(&error))
+    pub(crate) fn file(&self) -> Result<BufWriter<Sink>, ExportError> {
+        let sink = match self.wanted {
+            Destination::Stdout => Sink::Stdout(io::stdout()),
+            Destination::Path(_) => {
+                let mut new = OpenOptions::new();
+                let made = new.write(true).create_new(true).open(&self.beside);
+                Sink::File(made.map_err(|error| self.error(&error))?)
+            }
+        };
+        Ok(BufWriter::new(sink))
     }
 
     /// The folder, in its temporary place.
@@ -90,25 +170,31 @@ impl Unfinished {
     }
 
     /// A file that is written in full goes to the disk.
-    pub(crate) fn sync(&self, file: BufWriter<File>) -> Result<(), ExportError> {
-        let file = file.into_inner().map_err(io::IntoInnerError::into_error);
-        file.and_then(|file| file.sync_all())
-            .map_err(|error| self.error(&error))
+    pub(crate) fn sync(&self, mut file: BufWriter<Sink>) -> Result<(), ExportError> {
+        let synced = file.flush().and_then(|()| match file.get_ref() {
+            Sink::File(file) => file.sync_all(),
+            Sink::Stdout(_) => Ok(()),
+        });
+        synced.map_err(|error| self.error(&error))
     }
 
     /// Takes the place.
     pub(crate) fn finish(self) -> Result<(), ExportError> {
-        if self.wanted.symlink_metadata().is_ok() {
-            return Err(ExportError::Exists {
-                path: self.wanted.clone(),
-            });
+        let Destination::Path(path) = &self.wanted else {
+            return Ok(());
+        };
+        if path.symlink_metadata().is_ok() {
+            return Err(ExportError::Exists { path: path.clone() });
         }
-        fs::rename(&self.beside, &self.wanted).map_err(|error| self.error(&error))
+        fs::rename(&self.beside, path).map_err(|error| self.error(&error))
     }
 }
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
+        if self.wanted == Destination::Stdout {
+            return;
+        }
         // One that took its place is not here any more; what cannot be removed stays beside, under a name that tells.
         let _gone = match self.beside.is_dir() {
             true => fs::remove_dir_all(&self.beside),
@@ -117,9 +203,32 @@ impl Drop for Unfinished {
     }
 }
 
-/// The session cannot be read on.
-pub(crate) fn unreadable(error: &io::Error) -> ExportError {
-    ExportError::Unreadable {
-        message: error.to_string(),
+/// A folder of several exports, which takes its place only when it is whole.
+#[derive(Debug)]
+pub struct Folder(Unfinished);
+
+impl Folder {
+    /// For this place, which must be free.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn new(wanted: &Path) -> Result<Self, ExportError> {
+        let folder = Unfinished::new(&Destination::from(wanted))?;
+        folder.folder()?;
+        Ok(Self(folder))
+    }
+
+    /// Where it is until it is whole.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0.beside
+    }
+
+    /// Takes the place.
+    ///
+    /// # Errors
+    /// [`ExportError`]; then there is no folder.
+    pub fn finish(self) -> Result<(), ExportError> {
+        self.0.finish()
     }
 }

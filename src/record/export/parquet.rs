@@ -4,11 +4,12 @@
 use crate::hand::column::{channel_column, joint_column, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, TactileBlock};
 use crate::hand::{Timed, Touch};
+use crate::record::export::arrow_schema::{ARROW_SCHEMA, arrow_schema};
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
-use crate::record::export::output::{ExportError, Exported, Unfinished, unreadable};
-use crate::record::file::SessionFile;
+use crate::record::export::csv::UNDOCUMENTED;
+use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
+use crate::record::export::source::Source;
 use crate::record::file::opening::nanos_of;
-use crate::record::file::reader::Stretch;
 use crate::record::{Entry, Record};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -17,10 +18,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use serde_json::{Map, json};
-use std::fs::File;
-use std::io::{self, BufWriter};
-use std::ops::ControlFlow;
-use std::path::Path;
+use std::io::BufWriter;
 use std::sync::Arc;
 
 /// Rows written at once: 6 MB.
@@ -32,46 +30,34 @@ const CHANNELS: u8 = 8;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(file: &SessionFile, stretch: Stretch, path: &Path) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(path)?;
-    let error = |error: ParquetError| output.error(&io::Error::other(error));
-    let mut table = ParquetTable::new(file, stretch, output.file()?).map_err(error)?;
-    let mut done = Ok(());
-    let no_wire = Stretch {
-        wire: false,
-        ..stretch
-    };
-    let damage = file.entries(no_wire, |entry| {
+pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+    let output = Unfinished::new(to)?;
+    let error = |error: ParquetError| output.parquet_error(error);
+    let mut table = ParquetTable::new(source, output.file()?).map_err(error)?;
+    let damage = source.without_wire().entries(|entry| {
         if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
-            done = table.reading(entry.at(), sample, *fresh);
+            table.reading(entry.at(), sample, *fresh)?;
         }
-        match done {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
+        Ok(())
     });
-    let damage = damage.map_err(|error| unreadable(&error))?;
-    let ended = done.and_then(|()| table.end());
-    let (rows, to) = ended.map_err(error)?;
+    let damage = damage.map_err(|error| error.of(&output))?;
+    let (rows, to) = table.end().map_err(error)?;
     output.sync(to)?;
     output.finish()?;
     Ok(Exported { rows, damage })
 }
 
 struct ParquetTable {
+    /// The last names values outside the manual's ranges.
     columns: Vec<ParquetColumn>,
-    to: SerializedFileWriter<BufWriter<File>>,
+    to: SerializedFileWriter<BufWriter<Sink>>,
     start: Moment,
     base_nanos: u64,
     rows: u64,
 }
 
 impl ParquetTable {
-    fn new(
-        file: &SessionFile,
-        stretch: Stretch,
-        to: BufWriter<File>,
-    ) -> Result<Self, ParquetError> {
+    fn new(source: Source<'_>, to: BufWriter<Sink>) -> Result<Self, ParquetError> {
         let columns = all_columns();
         let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
         let schema = Type::group_type_builder("reading").with_fields(fields?);
@@ -79,14 +65,14 @@ impl ParquetTable {
             .set_compression(Compression::SNAPPY)
             .set_statistics_enabled(EnabledStatistics::Chunk)
             .set_created_by(format!("handscope {}", env!("CARGO_PKG_VERSION")))
-            .set_key_value_metadata(Some(metadata(file, stretch, &columns)));
+            .set_key_value_metadata(Some(metadata(source, &columns)));
         let to =
             SerializedFileWriter::new(to, Arc::new(schema.build()?), Arc::new(properties.build()))?;
         Ok(Self {
             columns,
             to,
-            start: file.first(),
-            base_nanos: file.opening().base_nanos,
+            start: source.file.first(),
+            base_nanos: source.file.opening().base_nanos,
             rows: 0,
         })
     }
@@ -112,8 +98,18 @@ impl ParquetTable {
             asked.map_or(ParquetCell::Null, nanos),
         ];
         let cells = head.into_iter().chain(cells(sample, fresh));
-        for (column, cell) in self.columns.iter_mut().zip(cells) {
-            column.push(cell);
+        if let Some((last, columns)) = self.columns.split_last_mut() {
+            for (column, cell) in columns.iter_mut().zip(cells) {
+                column.push(cell);
+            }
+            let words: Vec<String> = sample
+                .undocumented(fresh)
+                .map(|one| one.to_string())
+                .collect();
+            match words.is_empty() {
+                true => last.push(ParquetCell::Null),
+                false => last.push_text(&words.join(" ")),
+            }
         }
         self.rows += 1;
         match self.rows.is_multiple_of(GROUP_ROWS) {
@@ -127,7 +123,7 @@ impl ParquetTable {
         columns::put(&mut self.columns, group)
     }
 
-    fn end(mut self) -> Result<(u64, BufWriter<File>), ParquetError> {
+    fn end(mut self) -> Result<(u64, BufWriter<Sink>), ParquetError> {
         if !self.rows.is_multiple_of(GROUP_ROWS) {
             self.put()?;
         }
@@ -136,7 +132,8 @@ impl ParquetTable {
 }
 
 /// What stands beside the rows: the unit of each column that has one, the session, what happened.
-fn metadata(file: &SessionFile, stretch: Stretch, columns: &[ParquetColumn]) -> Vec<KeyValue> {
+fn metadata(source: Source<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
+    let Source { file, stretch, .. } = source;
     let opening = file.opening();
     let units: Map<String, serde_json::Value> = columns
         .iter()
@@ -154,13 +151,16 @@ fn metadata(file: &SessionFile, stretch: Stretch, columns: &[ParquetColumn]) -> 
         "simulated": opening.simulated,
         "version": opening.version,
     });
-    [
-        ("units", json!(units)),
-        ("session", session),
-        ("events", events.collect()),
-    ]
-    .map(|(key, value)| KeyValue::new(key.to_owned(), value.to_string()))
-    .to_vec()
+    let mut all = vec![
+        ("units", json!(units).to_string()),
+        ("session", session.to_string()),
+        ("events", events.collect::<serde_json::Value>().to_string()),
+    ];
+    let schema = arrow_schema(columns, &all);
+    all.push((ARROW_SCHEMA, schema));
+    let all = all.into_iter();
+    all.map(|(key, value)| KeyValue::new(key.to_owned(), value))
+        .collect()
 }
 
 fn all_columns() -> Vec<ParquetColumn> {
@@ -208,10 +208,15 @@ fn all_columns() -> Vec<ParquetColumn> {
         let channels = (0..CHANNELS).map(|channel| channel_column(channel, finger));
         all.extend(channels.map(|name| ParquetColumn::new(name, "", Values::Long(Vec::new()))));
     }
+    all.push(ParquetColumn::new(
+        UNDOCUMENTED,
+        "",
+        Values::Text(Vec::new()),
+    ));
     all
 }
 
-/// The cells of a row after its times, in the order of the columns.
+/// The cells of a row between its times and its last, in the order of the columns.
 fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell> {
     let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);
@@ -228,7 +233,7 @@ fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell
     let others = [
         six_cells(force, |force| Some(i32::from(force?.get()))),
         six_cells(speed, |speed| Some(i32::from(speed?.get()))),
-        six_cells(position, |position| Some(i32::from(position.raw()))),
+        six_cells(position, |position| position.documented().map(i32::from)),
         six_cells(faults, |faults| Some(i32::from(faults.raw()))),
         six_cells(status, |status| Some(i32::from(status.raw()))),
     ];

@@ -1,8 +1,12 @@
 //! Where session files are put: the system's disk, or one that fails on purpose.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, Seek as _, SeekFrom, Write as _};
-use std::path::Path;
+use std::fs::{DirBuilder, File, Metadata, OpenOptions};
+use std::io::{self, ErrorKind, Seek as _, SeekFrom, Write as _};
+use std::os::fd::AsRawFd as _;
+use std::os::unix::fs::MetadataExt as _;
+#[cfg(unix)]
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
+use std::path::{Path, PathBuf};
 
 /// A place for files.
 pub trait Disk: Send + Sync {
@@ -11,9 +15,6 @@ pub trait Disk: Send + Sync {
     /// # Errors
     /// What the system says; `AlreadyExists` if something has that name.
     fn create(&self, path: &Path) -> io::Result<Box<dyn DiskFile>>;
-
-    /// True unless it is certain that nothing has that name any more.
-    fn is_there(&self, path: &Path) -> bool;
 
     /// Removes a file into which nothing could be written.
     ///
@@ -35,23 +36,40 @@ pub trait DiskFile: Send {
     /// # Errors
     /// What the system says.
     fn sync(&mut self) -> io::Result<()>;
+
+    /// Where the file is now that was made at this path.
+    fn place(&self, path: &Path) -> FilePlace;
 }
 
-/// The system's disk.
+/// Where an open file is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FilePlace {
+    /// Where it was made, as far as the system tells.
+    There,
+    /// It has another name now, or its folder has; `None` if the system does not say which. What is written goes on reaching it.
+    Moved(Option<PathBuf>),
+    /// It has no name any more: what is written is lost as soon as it is closed.
+    Removed,
+}
+
+/// The system's disk. Nobody but the person who records can read the files, or enter the folders that are made for them.
 #[derive(Debug, Clone, Copy)]
 pub struct SystemDisk;
 
 impl Disk for SystemDisk {
     fn create(&self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
+            let mut made = DirBuilder::new();
+            made.recursive(true);
+            #[cfg(unix)]
+            made.mode(0o700);
+            made.create(folder)?;
         }
-        let file = OpenOptions::new().write(true).create_new(true).open(path)?;
-        Ok(Box::new(file))
-    }
-
-    fn is_there(&self, path: &Path) -> bool {
-        path.try_exists().unwrap_or(true)
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        options.mode(0o600);
+        Ok(Box::new(options.open(path)?))
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
@@ -67,5 +85,23 @@ impl DiskFile for File {
 
     fn sync(&mut self) -> io::Result<()> {
         self.sync_data()
+    }
+
+    fn place(&self, path: &Path) -> FilePlace {
+        let Ok(own) = self.metadata() else {
+            return FilePlace::There;
+        };
+        if own.nlink() == 0 {
+            return FilePlace::Removed;
+        }
+        let is_own = |there: Metadata| (there.dev(), there.ino()) == (own.dev(), own.ino());
+        match std::fs::metadata(path).map(is_own) {
+            Ok(true) => FilePlace::There,
+            Err(error) if error.kind() != ErrorKind::NotFound => FilePlace::There,
+            _ => {
+                let link = format!("/proc/self/fd/{}", self.as_raw_fd());
+                FilePlace::Moved(std::fs::read_link(link).ok())
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Entries as messages.
 
 use crate::hand::kinematics::{joint_names, joint_radians};
-use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, register};
+use crate::hand::{Finger, Group, Groups, HandSample, Moment, Quantity, register};
 use crate::record::file::cdr;
 use crate::record::file::message::{
     CommandFate, CommandMessage, EventMessage, Header, JointState, LinkMessage, StateMessage, Time,
@@ -217,16 +217,7 @@ impl EntryEncoder {
             let memory = sample.memory(group).filter(|_| fresh.contains(group));
             memory.unwrap_or_default()
         };
-        let mut undocumented = Vec::new();
-        for quantity in Quantity::MEASURED {
-            let known = quantity.documented(sample);
-            if let Some(known) = known.filter(|_| fresh.contains(quantity.group())) {
-                let unknown = PerDof::iter(&known.value).filter(|(_, value)| value.is_none());
-                let place =
-                    |(dof, _): (Dof, _)| format!("{}[{}]", quantity.row().name, dof.index());
-                undocumented.extend(unknown.map(place));
-            }
-        }
+        let undocumented = sample.undocumented(fresh).map(|value| value.name());
         StateMessage {
             asked: self.time(times.0),
             received: self.time(times.1),
@@ -240,7 +231,7 @@ impl EntryEncoder {
             faults: bytes(Group::Faults),
             status: bytes(Group::Status),
             temperature: bytes(Group::Temperature),
-            undocumented,
+            undocumented: undocumented.collect(),
         }
     }
 }

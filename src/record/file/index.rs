@@ -195,7 +195,24 @@ impl Iterator for FileEnd {
     }
 }
 
+/// How much there is in a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Counted {
+    /// Messages of each channel.
+    pub(crate) messages: BTreeMap<u16, u64>,
+    /// Times of the first and the last message, nanoseconds since 1970.
+    pub(crate) times: Option<(u64, u64)>,
+}
+
 impl FileEnd {
+    /// How much there is in the file.
+    pub(crate) fn counted(&self) -> Counted {
+        Counted {
+            messages: self.index.messages.clone(),
+            times: self.index.times,
+        }
+    }
+
     fn put(&mut self, op: u8, record: &RecordBytes, piece: &mut Vec<u8>) {
         let begin = piece.len();
         piece.push(op);

@@ -3,11 +3,16 @@
 //! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
 //! `writer` makes bytes of entries, `index` those of the file's end, `chunk_list` what it and each
 //! minute say of their chunks, `tail` puts them on the disk, `recording` decides when and into which file, `recorder` is the
-//! thread that does it; `walk` finds the pieces of a file that may be damaged, `reader` reads its entries, `overview` is what a
-//! file tells without being read whole.
+//! thread that does it; `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader` reads its
+//! entries, `by_time` those of a file that another program wrote, `damage` is what was missing, `contents` what can be read, `overview` is what a file tells
+//! without being read whole.
 
+mod by_time;
 pub mod cdr;
+mod channels;
 mod chunk_list;
+mod contents;
+mod damage;
 pub mod decode;
 pub mod disk;
 pub mod encode;
@@ -25,9 +30,14 @@ pub mod topic;
 pub mod walk;
 pub mod writer;
 
-pub use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
+pub use crate::record::file::channels::{SkipReason, SkippedTopic};
+pub use crate::record::file::contents::Contents;
+pub use crate::record::file::damage::{Damage, Gap, Remark};
+pub use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
 pub use crate::record::file::opening::Opening;
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
 pub use crate::record::file::recorder::{Recorder, RecordingPlan};
-pub use crate::record::file::recording::{FLUSH_EACH, RecorderStatus};
+pub use crate::record::file::recording::{
+    FLUSH_EACH, GOES_ON_FROM, GOES_ON_IN, RecorderNotice, RecorderStatus,
+};

@@ -31,6 +31,27 @@ impl Opening {
     /// Ends the version of a session that was read from values.
     pub const IMPORTED: &'static str = "(imported)";
 
+    /// Of a file that says nothing of itself, whose first message is of this time: neither the hand nor its side is known.
+    pub(crate) const fn unknown(first_nanos: u64) -> Self {
+        Self {
+            base_nanos: first_nanos,
+            began: Moment::ZERO,
+            hand: String::new(),
+            simulated: false,
+            side: Side::Right,
+            version: String::new(),
+        }
+    }
+
+    /// Whether it is the built-in hand; `None` if nobody knows which hand it is.
+    #[must_use]
+    pub const fn is_simulated(&self) -> Option<bool> {
+        match self.hand.is_empty() {
+            true => None,
+            false => Some(self.simulated),
+        }
+    }
+
     /// True if the session was read from values: its events stand in it as they were written, and the day is not known.
     #[must_use]
     pub fn is_imported(&self) -> bool {

@@ -1,14 +1,20 @@
 //! Reads a session file: what it is at once, its entries by stretches of time, and what of it is missing.
 
 use crate::hand::Moment;
-use crate::record::Entry;
+use crate::record::file::by_time;
+use crate::record::file::channels::Definitions;
+pub use crate::record::file::damage::{Damage, Gap, Remark};
 use crate::record::file::decode::EntryDecoder;
 use crate::record::file::opening::{METADATA, Opening, moment_of, nanos_of};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::topic::Topic;
-use crate::record::file::walk::{self, ChunkPlace, Found, MAGIC, Place, messages};
+use crate::record::file::walk::{
+    self, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey, messages, records,
+};
 use crate::record::file::writer::OVERVIEW;
+use crate::record::{Entry, EventKind};
 use mcap::records::{Record as McapRecord, op};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::ops::{ControlFlow, RangeInclusive};
@@ -21,6 +27,14 @@ pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
 
 /// Entries before a stretch that are read along, so that what is read seldom is known in it.
 const WARM_UP: Duration = Duration::from_secs(6);
+
+/// The hand's parameters are recorded so soon; reading them may take ten seconds.
+const PARAMETERS_WITHIN: Duration = Duration::from_secs(60);
+
+/// Of the beginning of a file, so much is looked at: the header, what is said of the recording, and the definitions.
+const BEGINNING: u64 = 64 * 1024;
+/// What our files begin with.
+const LIBRARY: &str = "handscope ";
 
 /// Why a file cannot be opened as a session.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -40,6 +54,12 @@ pub enum OpenError {
     /// MCAP of another program.
     #[error("it is an MCAP file of another program: none of its topics is Handscope's")]
     Foreign,
+    /// Recordings of several hands were put together.
+    #[error("it holds recordings of several hands, whose values cannot be told apart: {hands}")]
+    SeveralHands {
+        /// Which.
+        hands: String,
+    },
     /// Nothing that could be read.
     #[error("nothing in it can be read: it holds no whole piece of a recording")]
     Empty,
@@ -59,18 +79,24 @@ pub struct SessionFile {
     path: PathBuf,
     file: Mutex<File>,
     found: Found,
+    /// Which topic the messages of a channel are about.
+    topics: BTreeMap<u16, Topic>,
+    order: Order,
+    /// What is missing as far as opening the file has shown.
+    damage: Damage,
+    remarks: Vec<Remark>,
     opening: Opening,
     overview: Overview,
     last: Moment,
 }
 
-/// What of a file is missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Damage {
-    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_EACH`](crate::record::file::FLUSH_EACH).
-    pub chunks: u64,
-    /// Bytes in which no record was found.
-    pub bytes: u64,
+/// How the messages of a file follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Order {
+    /// As Handscope wrote them: each has a number that is one more than that before, and they stand nearly in the order of time.
+    Numbered,
+    /// In any order.
+    Any,
 }
 
 /// What to read of the entries.
@@ -102,24 +128,90 @@ impl SessionFile {
         if !std::fs::metadata(path)?.is_file() {
             return Err(OpenError::NotAFile);
         }
-        let mut file = File::open(path)?;
+        Self::of(File::open(path)?, path)
+    }
+
+    /// The same of a file that is open; the path is for those who ask where it lies.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn of(mut file: File, path: &Path) -> Result<Self, OpenError> {
+        file.rewind()?;
         let mut magic = [0; MAGIC.len()];
         if file.read_exact(&mut magic).is_err() || magic != MAGIC {
             return Err(OpenError::NotMcap);
         }
-        let mut found = walk::walk(&mut file)?;
+        let mut session = match own(&mut file)? {
+            Some(found) => Self::numbered(path, file, found),
+            None => {
+                let survey = walk::survey(&mut file)?;
+                Self::surveyed(path, file, survey)?
+            }
+        };
+        session.find_opening()?;
+        session.find_overview()?;
+        Ok(session)
+    }
+
+    /// As Handscope wrote it.
+    fn numbered(path: &Path, file: File, mut found: Found) -> Self {
         found.chunks.retain(|chunk| chunk.last_nanos > 0);
-        let opening = opening(&mut file, &found)?;
-        let overview = overview(&mut file, &found, &opening)?;
-        let last_nanos = found.chunks.iter().map(|chunk| chunk.last_nanos).max();
-        let last = moment_of(opening.base_nanos, last_nanos.unwrap_or_default());
+        let topics = Topic::all().map(|topic| (topic.channel(), topic));
+        Self {
+            path: path.to_owned(),
+            file: Mutex::new(file),
+            topics: topics.collect(),
+            order: Order::Numbered,
+            damage: Damage {
+                bytes: found.skipped,
+                ..Damage::default()
+            },
+            remarks: Vec::from_iter(found.stale_index.then_some(Remark::StaleIndex)),
+            found,
+            opening: Opening::unknown(0),
+            overview: Overview::default(),
+            last: Moment::ZERO,
+        }
+    }
+
+    /// As another program wrote or changed it.
+    fn surveyed(path: &Path, file: File, survey: Survey) -> Result<Self, OpenError> {
+        let (topics, skipped) = survey.definitions.topics();
+        let counted = survey.definitions.messages();
+        let mut found = survey.found;
+        if topics.is_empty() {
+            return Err(match survey.definitions.is_empty() {
+                true => OpenError::Empty,
+                false => OpenError::Foreign,
+            });
+        }
+        found.chunks.sort_by_key(|chunk| chunk.first_nanos);
+        let remarks = [
+            (true, Remark::Rewritten),
+            (found.stale_index, Remark::StaleIndex),
+            (survey.sum_differs, Remark::SumDiffers),
+        ];
+        let remarks = remarks
+            .into_iter()
+            .filter_map(|(is, one)| is.then_some(one));
+        let skipped = skipped.into_iter().map(Remark::Skipped);
+        let told = found.messages.unwrap_or_default();
         Ok(Self {
             path: path.to_owned(),
-            last: last.max(opening.began),
             file: Mutex::new(file),
+            topics,
+            order: Order::Any,
+            damage: Damage {
+                chunks: survey.damaged,
+                bytes: found.skipped,
+                messages: told.saturating_sub(counted),
+                gaps: Vec::new(),
+            },
+            remarks: remarks.chain(skipped).collect(),
             found,
-            opening,
-            overview,
+            opening: Opening::unknown(0),
+            overview: Overview::default(),
+            last: Moment::ZERO,
         })
     }
 
@@ -159,14 +251,26 @@ impl SessionFile {
         self.found.closed
     }
 
-    /// Bytes in which no record was found.
+    /// True if opening the file has shown that something of it is missing.
     #[must_use]
-    pub const fn skipped(&self) -> u64 {
-        self.found.skipped
+    pub fn is_damaged(&self) -> bool {
+        self.damage != Damage::default()
     }
 
-    /// Gives each entry of a stretch of time to `take`, in the order of the file, until it breaks off. A reading holds the newest of
-    /// everything, as far as it was read in the seconds before the stretch.
+    /// What is to be said of how it was found.
+    #[must_use]
+    pub fn remarks(&self) -> &[Remark] {
+        &self.remarks
+    }
+
+    /// How many messages were written, where the file says so.
+    #[must_use]
+    pub const fn messages_written(&self) -> Option<u64> {
+        self.found.messages
+    }
+
+    /// Gives each entry of a stretch of time to `take`, in the order of the file, until it breaks off; in the order of time where
+    /// another program wrote it. A reading holds the newest of everything, as far as it was read in the seconds before the stretch.
     ///
     /// # Errors
     /// What the system says.
@@ -178,29 +282,17 @@ impl SessionFile {
         let warm = stretch.from.since(Moment::ZERO).saturating_sub(WARM_UP);
         let warm = Moment::from_duration(warm);
         let mut decoder = EntryDecoder::of(&self.opening);
-        let mut damage = Damage {
-            chunks: 0,
-            bytes: self.found.skipped,
-        };
-        for chunk in self.chunks(warm, stretch.to) {
-            let bytes = self.read(chunk.place)?;
-            let mut flow = ControlFlow::Continue(());
-            let whole = messages(&bytes, |topic, _, message| {
-                if topic == Topic::Wire && !stretch.wire || flow.is_break() {
-                    return;
-                }
-                let entry = decoder.decode(topic, message);
-                let inside = |entry: &Entry| (stretch.from..=stretch.to).contains(&entry.at());
-                if let Some(entry) = entry.filter(inside) {
-                    flow = take(entry);
-                }
-            });
-            damage.chunks += u64::from(!whole);
-            if flow.is_break() {
-                break;
+        self.each(warm, stretch.to, |topic, message| {
+            if topic == Topic::Wire && !stretch.wire {
+                return ControlFlow::Continue(());
             }
-        }
-        Ok(damage)
+            let entry = decoder.decode(topic, message.data);
+            let inside = |entry: &Entry| (stretch.from..=stretch.to).contains(&entry.at());
+            match entry.filter(inside) {
+                Some(entry) => take(entry),
+                None => ControlFlow::Continue(()),
+            }
+        })
     }
 
     /// Gives each message of the file as it stands, in its order: topic, times in nanoseconds since 1970 (received, asked), bytes.
@@ -213,19 +305,80 @@ impl SessionFile {
         to: Moment,
         mut take: impl FnMut(Topic, (u64, u64), &[u8]),
     ) -> io::Result<Damage> {
-        let mut damage = Damage {
-            chunks: 0,
-            bytes: self.found.skipped,
-        };
         let within = self.nanos(from, to);
-        for chunk in self.chunks(from, to) {
-            let bytes = self.read(chunk.place)?;
-            let whole = messages(&bytes, |topic, times, message| {
-                if within.contains(&times.0) {
-                    take(topic, times, message);
+        self.each(from, to, |topic, message| {
+            if within.contains(&message.times.0) {
+                take(topic, message.times, message.data);
+            }
+            ControlFlow::Continue(())
+        })
+    }
+
+    /// Gives each message that is read of the chunks that reach into a stretch.
+    fn each(
+        &self,
+        from: Moment,
+        to: Moment,
+        mut take: impl FnMut(Topic, &ChunkMessage<'_>) -> ControlFlow<()>,
+    ) -> io::Result<Damage> {
+        let known = |message: &ChunkMessage<'_>| match self.topics.get(&message.channel) {
+            Some(topic) => take(*topic, message),
+            None => ControlFlow::Continue(()),
+        };
+        match self.order {
+            Order::Numbered => self.each_numbered(from, to, known),
+            Order::Any => {
+                let read = |place| self.read(place);
+                by_time::each(&self.found.chunks, self.nanos(from, to), read, known)?;
+                Ok(self.damage.clone())
+            }
+        }
+    }
+
+    /// The same in the order of the file, holding the messages' numbers against each other.
+    fn each_numbered(
+        &self,
+        from: Moment,
+        to: Moment,
+        mut take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
+    ) -> io::Result<Damage> {
+        let mut damage = self.damage.clone();
+        let mut numbers = Numbers::default();
+        let at = |nanos| moment_of(self.opening.base_nanos, nanos);
+        for (place, chunk) in self.reaching(from, to) {
+            let mut bytes = self.read(chunk.place)?;
+            let mut flow = ControlFlow::Continue(());
+            numbers.chunk(place, nanos_of(self.opening.base_nanos, self.opening.began));
+            let is_whole = messages(&mut bytes, chunk.kind, |message| {
+                if let Some((from, missing)) = numbers.message(message.sequence, message.times.0) {
+                    damage.gap(Gap {
+                        from: at(from),
+                        to: at(message.times.0),
+                        messages: missing,
+                    });
+                }
+                if flow.is_continue() {
+                    flow = take(&message);
                 }
             });
-            damage.chunks += u64::from(!whole);
+            damage.chunks += u64::from(!is_whole);
+            if flow.is_break() {
+                return Ok(damage);
+            }
+        }
+        // What is missing at the end has nothing after it that would show it.
+        let last = self.found.chunks.last();
+        if let Some(last) = last.filter(|_| numbers.next_chunk == self.found.chunks.len()) {
+            let (number, nanos) = numbers.last.unwrap_or((0, last.first_nanos));
+            let written = self.found.messages.unwrap_or_default();
+            let messages = written.saturating_sub(u64::from(number));
+            if messages > 0 || numbers.is_open() {
+                damage.gap(Gap {
+                    from: at(nanos),
+                    to: at(last.last_nanos).max(at(nanos)),
+                    messages,
+                });
+            }
         }
         Ok(damage)
     }
@@ -236,19 +389,18 @@ impl SessionFile {
         nanos_of(base, from)..=nanos_of(base, to).saturating_add(999)
     }
 
-    fn chunks(&self, from: Moment, to: Moment) -> impl Iterator<Item = &ChunkPlace> {
+    /// The chunks that reach into a stretch, and which they are.
+    fn reaching(&self, from: Moment, to: Moment) -> impl Iterator<Item = (usize, &ChunkPlace)> {
         let (from, to) = self.nanos(from, to).into_inner();
         let all = self.found.chunks.as_slice();
         // The times in a chunk's head may be damaged: it reaches at least from the chunk before it to the one after.
         let before = std::iter::once(0).chain(all.iter().map(|chunk| chunk.last_nanos));
         let after = all.iter().skip(1).map(|chunk| chunk.first_nanos);
         let around = before.zip(after.chain([u64::MAX]));
-        let reaching = all
-            .iter()
-            .zip(around)
-            .filter(move |(chunk, (before, after))| {
-                chunk.last_nanos.max(*after) >= from && chunk.first_nanos.min(*before) <= to
-            });
+        let reaching = all.iter().enumerate().zip(around);
+        let reaching = reaching.filter(move |((_, chunk), (before, after))| {
+            chunk.last_nanos.max(*after) >= from && chunk.first_nanos.min(*before) <= to
+        });
         reaching.map(|(chunk, _)| chunk)
     }
 
@@ -256,36 +408,196 @@ impl SessionFile {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         walk::whole(&mut *file, place)
     }
+
+    /// What the file says of itself. Where that is lost, what can be known without it.
+    fn find_opening(&mut self) -> Result<(), OpenError> {
+        let first = self
+            .found
+            .chunks
+            .iter()
+            .map(|chunk| chunk.first_nanos)
+            .min();
+        let last = self.found.chunks.iter().map(|chunk| chunk.last_nanos).max();
+        let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let told = openings(file, &self.found.metadata)?;
+        let hands: BTreeSet<&str> = told.iter().map(|opening| opening.hand.as_str()).collect();
+        if hands.len() > 1 {
+            let hands = Vec::from_iter(hands).join(", ");
+            return Err(OpenError::SeveralHands { hands });
+        }
+        // Of recordings of one hand that were put together, the first.
+        let opening = told.into_iter().min_by_key(Opening::began_since_1970);
+        match opening {
+            Some(opening) => self.opening = opening,
+            None => {
+                self.opening = Opening::unknown(first.ok_or(OpenError::Empty)?);
+                self.remarks.push(Remark::OpeningLost);
+            }
+        }
+        let last = moment_of(self.opening.base_nanos, last.unwrap_or_default());
+        self.last = last.max(self.opening.began);
+        if self.opening.hand.is_empty() {
+            self.find_hand()?;
+        }
+        Ok(())
+    }
+
+    /// The hand as its parameters name it, which are recorded soon after the beginning.
+    fn find_hand(&mut self) -> io::Result<()> {
+        let mut hand = None;
+        let stretch = Stretch {
+            from: Moment::ZERO,
+            to: Moment::ZERO.plus(PARAMETERS_WITHIN),
+            wire: false,
+        };
+        self.entries(stretch, |entry| {
+            if let Entry::Event(event) = entry
+                && event.kind == EventKind::Parameters
+                && let Ok(table) = event.words.parse::<toml::Table>()
+                && let Some(named) = table.get("hand").and_then(toml::Value::as_str)
+            {
+                hand = Some(named.to_owned());
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        })?;
+        if let Some(hand) = hand {
+            self.opening.simulated = hand.starts_with("sim:");
+            self.opening.hand = hand;
+        }
+        Ok(())
+    }
+
+    fn find_overview(&mut self) -> Result<(), OpenError> {
+        let overview = match self.order {
+            Order::Numbered => {
+                let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
+                overview(file, &self.found, &self.opening)?
+            }
+            Order::Any => {
+                let mut overview = Overview::default();
+                let stretch = Stretch {
+                    wire: false,
+                    ..Stretch::WHOLE
+                };
+                self.entries(stretch, |entry| {
+                    overview.take(&entry);
+                    ControlFlow::Continue(())
+                })?;
+                overview.sort();
+                overview
+            }
+        };
+        debug_assert!(overview.rows.len() <= SECONDS_MAX);
+        self.overview = overview;
+        Ok(())
+    }
 }
 
-/// What the file says of itself. Where that is lost, what can be known without it.
-fn opening(file: &mut File, found: &Found) -> Result<Opening, OpenError> {
-    for place in &found.metadata {
-        let content = walk::content(file, *place)?;
-        if let Ok(McapRecord::Metadata(read)) = mcap::parse_record(op::METADATA, &content)
-            && read.name == METADATA
-            && let Some(opening) = Opening::of_metadata(&read.metadata)
-        {
-            return Ok(opening);
+/// Messages' numbers, chunk after chunk.
+#[derive(Debug, Default)]
+struct Numbers {
+    /// The last message: its number and time.
+    last: Option<(u32, u64)>,
+    /// The chunk after the last one.
+    next_chunk: usize,
+    /// Whether a chunk brought no message since the last that did.
+    empty_chunks: bool,
+}
+
+impl Numbers {
+    /// Another chunk begins. What was left out between two is not missing.
+    fn chunk(&mut self, place: usize, began_nanos: u64) {
+        if place != self.next_chunk {
+            self.last = None;
         }
+        if place == 0 {
+            self.last = Some((0, began_nanos));
+        }
+        self.next_chunk = place + 1;
+        self.empty_chunks = true;
     }
-    let first = found.chunks.iter().map(|chunk| chunk.first_nanos).min();
-    let first = first.ok_or(OpenError::Empty)?;
+
+    /// The time before, and how many messages are missing before this one.
+    fn message(&mut self, number: u32, nanos: u64) -> Option<(u64, u64)> {
+        self.empty_chunks = false;
+        let (last, at) = self.last.replace((number, nanos))?;
+        let missing = number.wrapping_sub(last).wrapping_sub(1);
+        (missing > 0).then_some((at, u64::from(missing)))
+    }
+
+    const fn is_open(&self) -> bool {
+        self.empty_chunks
+    }
+}
+
+/// The records of a file that Handscope wrote and nobody changed; `None` for any other. It begins with a header that says so, what is
+/// known of the recording, and a chunk that holds nothing but our own definitions.
+fn own(file: &mut File) -> io::Result<Option<Found>> {
     let mut begin = Vec::new();
-    file.seek(SeekFrom::Start(0))?;
-    file.take(64 * 1024).read_to_end(&mut begin)?;
-    let ours = b"handscope";
-    if !begin.windows(ours.len()).any(|bytes| bytes == ours) {
-        return Err(OpenError::Foreign);
+    file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
+    file.take(BEGINNING).read_to_end(&mut begin)?;
+    let Some((op::HEADER, header, rest)) = walk::record(&begin) else {
+        return Ok(None);
+    };
+    let is_ours = matches!(
+        mcap::parse_record(op::HEADER, header),
+        Ok(McapRecord::Header(header)) if header.library.starts_with(LIBRARY)
+    );
+    let Some((_, _, rest)) = walk::record(rest).filter(|_| is_ours) else {
+        return Ok(None);
+    };
+    let mut definitions = Definitions::default();
+    let mut has_messages = false;
+    let mut is_whole = false;
+    if walk::is_chunk(rest) {
+        let place = Place {
+            offset: MAGIC.len() as u64 + (begin.len() - rest.len()) as u64,
+            len: walk::record_len(rest),
+        };
+        // One that reaches beyond the end of the file is cut.
+        if let Ok(mut chunk) = walk::whole(file, place) {
+            is_whole = records(&mut chunk, walk::ChunkKind::Chunk, |record| match record {
+                ChunkRecord::Definition(code, content) => definitions.take(code, content),
+                ChunkRecord::Message(_) => has_messages = true,
+            });
+        }
+    } else if rest.first() != Some(&op::CHUNK) {
+        return Ok(None);
     }
-    Ok(Opening {
-        base_nanos: first,
-        began: Moment::ZERO,
-        hand: String::new(),
-        simulated: false,
-        side: crate::hand::kinematics::Side::Right,
-        version: String::new(),
-    })
+    if has_messages || is_whole && !definitions.are_own() {
+        return Ok(None);
+    }
+    walk::walk(file).map(Some)
+}
+
+/// What the file says of itself; several times if recordings were put together.
+fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
+    let mut all = Vec::new();
+    for place in places {
+        let content = walk::content(file, *place)?;
+        all.extend(opening(&content));
+    }
+    if all.is_empty() {
+        // Perhaps its record cannot be found, but stands where it always does: behind the header.
+        let mut begin = Vec::new();
+        file.seek(SeekFrom::Start(0))?;
+        file.take(BEGINNING).read_to_end(&mut begin)?;
+        let name = [&[9, 0, 0, 0], METADATA.as_bytes()].concat();
+        let places = begin.windows(name.len()).enumerate();
+        let place = places.filter(|(_, bytes)| *bytes == name).map(|(at, _)| at);
+        all.extend(place.filter_map(|at| opening(begin.get(at..)?)).next());
+    }
+    Ok(all)
+}
+
+fn opening(content: &[u8]) -> Option<Opening> {
+    match mcap::parse_record(op::METADATA, content) {
+        Ok(McapRecord::Metadata(read)) if read.name == METADATA => {
+            Opening::of_metadata(&read.metadata)
+        }
+        _ => None,
+    }
 }
 
 /// The blocks of the file, and what they miss made anew.
@@ -315,17 +627,17 @@ fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overvie
         if is_covered(chunk.place.offset) {
             continue;
         }
-        let bytes = walk::whole(file, chunk.place)?;
-        messages(&bytes, |topic, _, message| {
-            if topic != Topic::Wire
-                && let Some(entry) = decoder.decode(topic, message)
+        let mut bytes = walk::whole(file, chunk.place)?;
+        messages(&mut bytes, chunk.kind, |message| {
+            if let Some(topic) = Topic::by_channel(message.channel)
+                && topic != Topic::Wire
+                && let Some(entry) = decoder.decode(topic, message.data)
             {
                 overview.take(&entry);
             }
         });
     }
     overview.sort();
-    debug_assert!(overview.rows.len() <= SECONDS_MAX);
     Ok(overview)
 }
 

@@ -1,7 +1,7 @@
 //! One recording, step by step: what is taken, when it goes to the disk, and when another file is begun. Times are arguments.
 
 use crate::hand::Moment;
-use crate::record::file::disk::Disk;
+use crate::record::file::disk::{Disk, FilePlace};
 use crate::record::file::opening::Opening;
 use crate::record::file::tail::{Content, FileTail};
 use crate::record::file::writer::SessionWriter;
@@ -15,14 +15,71 @@ use std::time::Duration;
 pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
 /// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
 pub const FLUSH_EACH: Duration = Duration::from_millis(125);
+/// What a file says of the next part of the same recording, whose name follows.
+pub const GOES_ON_IN: &str = "the recording goes on in ";
+/// The same of the file before.
+pub const GOES_ON_FROM: &str = "this file goes on after ";
 /// How often it is looked whether the file is still there and the computer's clock was set.
 pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
 /// A clock that differs by more was set, or the computer slept.
 pub(crate) const CLOCK_SET: Duration = Duration::from_secs(1);
 /// A file that cannot be ended in this time is left as it is; a reader can do without its end.
 pub(crate) const END_WITHIN: Duration = Duration::from_secs(2);
+/// Notices of one recording; what comes after them says nothing new.
+const NOTICES_MAX: usize = 20;
 /// Files begun because one took nothing any more; a disk that spoils more of them is broken.
 const REPLACED_MAX: u32 = 20;
+
+/// Something that a person must know of a recording under way.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RecorderNotice {
+    /// Its file or a folder above has another name now. It is written on.
+    Moved {
+        /// Where it was.
+        from: PathBuf,
+        /// Where it is; `None` if the system does not tell.
+        to: Option<PathBuf>,
+    },
+    /// Its file was removed, with so many entries. What comes now goes into a new one.
+    Removed {
+        /// Where it was.
+        path: PathBuf,
+        /// Entries that are gone.
+        entries: u64,
+    },
+    /// The computer's clock was set, or it slept. What comes now goes into another file.
+    ClockSet {
+        /// The name of that file.
+        next: String,
+    },
+}
+
+impl std::fmt::Display for RecorderNotice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moved { from, to: None } => write!(
+                f,
+                "{} was renamed while it is recorded; it is written on under its new name, and nothing is lost",
+                from.display()
+            ),
+            Self::Moved { from, to: Some(to) } => write!(
+                f,
+                "{} was renamed while it is recorded; it is written on as {}, and nothing is lost",
+                from.display(),
+                to.display()
+            ),
+            Self::Removed { path, entries } => write!(
+                f,
+                "{} was removed while it was recorded: {entries} entries are gone with it; the recording goes on in a new file",
+                path.display()
+            ),
+            Self::ClockSet { next } => write!(
+                f,
+                "the computer's clock was set or it slept: the recording goes on in {next}"
+            ),
+        }
+    }
+}
 
 /// How a recording goes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -39,6 +96,8 @@ pub struct RecorderStatus {
     pub missing: u64,
     /// Why nothing can be written now, in the system's words.
     pub trouble: Option<String>,
+    /// What happened to its files so far, in order.
+    pub notices: Vec<RecorderNotice>,
     /// Since when it records.
     pub since: Duration,
     /// The recording is over; whole, if nothing is missing and there is no trouble.
@@ -85,6 +144,7 @@ pub(crate) struct SessionRecording {
     untold: u64,
     entries: u64,
     missing: u64,
+    notices: Vec<RecorderNotice>,
     replaced: u32,
     earlier_bytes: u64,
     newest: Moment,
@@ -120,6 +180,7 @@ impl SessionRecording {
             untold: 0,
             entries: 0,
             missing: 0,
+            notices: Vec::new(),
             replaced: 0,
             earlier_bytes: 0,
             link: None,
@@ -213,6 +274,7 @@ impl SessionRecording {
                 .as_ref()
                 .and_then(FileTail::trouble)
                 .or_else(|| self.tail.trouble()),
+            notices: self.notices.clone(),
             since,
             ended: self.ended,
         }
@@ -316,24 +378,42 @@ impl SessionRecording {
 
     /// Looks whether the files are still there and take bytes, and whether the clock goes on as before.
     fn look(&mut self, now: Now) {
-        if let Some(ending) = self.ending.take() {
-            match (ending.is_gone(), ending.is_dead(now.since)) {
-                (true, _) => self.take_back(ending.everything()),
+        if let Some(mut ending) = self.ending.take() {
+            match (ending.look(), ending.is_dead(now.since)) {
+                (FilePlace::Removed, _) => self.take_back(ending.everything()),
                 (_, true) => self.take_back(ending.waiting()),
                 _ => self.ending = Some(ending),
             }
         }
         let drift = self.drift(now);
-        if self.tail.is_gone() {
+        let from = self.tail.path().map(ToOwned::to_owned).unwrap_or_default();
+        let place = self.tail.look();
+        if place == FilePlace::Removed {
             self.flush();
-            self.take_back(self.tail.everything());
-            self.begin_next(now, drift);
+            let gone = self.tail.everything();
+            self.tell(RecorderNotice::Removed {
+                path: from,
+                entries: gone.entries,
+            });
+            self.take_back(gone);
+            self.begin_next(now, drift, self.tail.again());
             let words = "this file goes on where another was removed while it was written";
             self.note(self.newest, words.into());
-        } else if drift.unsigned_abs() > CLOCK_SET.as_nanos() && self.ending.is_none() {
+            return;
+        }
+        if let FilePlace::Moved(to) = place {
+            self.tell(RecorderNotice::Moved { from, to });
+        }
+        if drift.unsigned_abs() > CLOCK_SET.as_nanos() && self.ending.is_none() {
             self.follow_clock(now, drift);
         } else if self.tail.is_dead(now.since) {
             self.replace(now);
+        }
+    }
+
+    fn tell(&mut self, notice: RecorderNotice) {
+        if self.notices.len() < NOTICES_MAX {
+            self.notices.push(notice);
         }
     }
 
@@ -352,18 +432,15 @@ impl SessionRecording {
             true => format!("the computer's clock was set back by {seconds}"),
             false => format!("the computer slept or its clock was set forward: {seconds}"),
         };
+        let next = self.tail.next();
+        let (name, own) = (next.name(), self.tail.name());
         self.tell_missing(self.newest);
-        self.note(
-            self.newest,
-            format!("the recording goes on in another file: {what}"),
-        );
+        self.note(self.newest, format!("{GOES_ON_IN}{name}: {what}"));
         self.finish();
-        let old = self.begin_next(now, drift);
+        let old = self.begin_next(now, drift, next);
         self.ending = Some(old);
-        self.note(
-            self.newest,
-            format!("this file goes on where another ended: {what}"),
-        );
+        self.note(self.newest, format!("{GOES_ON_FROM}{own}: {what}"));
+        self.tell(RecorderNotice::ClockSet { next: name });
     }
 
     /// Tries another file in place of one that takes nothing any more; what waits for the old one is lost if that goes.
@@ -385,22 +462,23 @@ impl SessionRecording {
             self.flush();
             self.take_back(self.tail.waiting());
             let drift = self.drift(now);
-            let old = self.begin_next(now, drift);
+            let next = self.tail.next();
+            let old = self.begin_next(now, drift, next);
             self.earlier_bytes += old.written();
-            let words = "this file goes on where another could not be written any more";
-            self.note(self.newest, words.into());
+            let name = old.name();
+            let words = format!("{GOES_ON_FROM}{name}: that could not be written any more");
+            self.note(self.newest, words);
         }
     }
 
     /// Begins another file, and gives back the one before.
-    fn begin_next(&mut self, now: Now, drift: i128) -> FileTail {
+    fn begin_next(&mut self, now: Now, drift: i128, next: FileTail) -> FileTail {
         if drift.unsigned_abs() > CLOCK_SET.as_nanos() {
             let drift = i64::try_from(drift).unwrap_or_default();
             self.opening.base_nanos = self.opening.base_nanos.saturating_add_signed(drift);
             self.clock = now;
         }
         self.opening.began = self.newest;
-        let next = self.tail.next();
         let old = std::mem::replace(&mut self.tail, next);
         if let Ok(writer) = SessionWriter::new(&self.opening) {
             self.writer = writer;

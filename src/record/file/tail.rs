@@ -1,6 +1,6 @@
 //! The end of a file that is being written: bytes that wait for the disk, and bytes that the disk has and may still lose.
 
-use crate::record::file::disk::{Disk, DiskFile};
+use crate::record::file::disk::{Disk, DiskFile, FilePlace};
 use crate::record::file::index::FileEnd;
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
@@ -50,7 +50,11 @@ struct Portion {
 pub(crate) struct FileTail {
     disk: Arc<dyn Disk>,
     asked: PathBuf,
+    /// The number that is put to the name; 1 is the name itself.
+    number: u32,
     path: Option<PathBuf>,
+    /// The file has a name that nobody knows.
+    is_lost: bool,
     file: Option<Box<dyn DiskFile>>,
     /// Bytes that the system took.
     written: u64,
@@ -75,7 +79,9 @@ impl FileTail {
         Self {
             disk,
             asked,
+            number: 1,
             path: None,
+            is_lost: false,
             file: None,
             written: 0,
             content: Content::default(),
@@ -90,9 +96,28 @@ impl FileTail {
         }
     }
 
-    /// Another file of the same name.
+    /// Another file in its place, of the same name.
+    pub(crate) fn again(&self) -> Self {
+        Self {
+            number: self.number,
+            ..Self::new(Arc::clone(&self.disk), self.asked.clone())
+        }
+    }
+
+    /// Another file beside it, of the next number.
     pub(crate) fn next(&self) -> Self {
-        Self::new(Arc::clone(&self.disk), self.asked.clone())
+        Self {
+            number: self.number + u32::from(self.path.is_some()),
+            ..self.again()
+        }
+    }
+
+    /// Its name, as far as that can be told before it is made.
+    pub(crate) fn name(&self) -> String {
+        let path = self.path.clone();
+        let path = path.unwrap_or_else(|| numbered(&self.asked, self.number));
+        let name = path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
     }
 
     pub(crate) fn add(&mut self, mut bytes: Vec<u8>, content: Content) {
@@ -129,10 +154,23 @@ impl FileTail {
         self.pending.is_empty() && self.unsynced.is_empty() && self.end.is_none()
     }
 
-    /// True if somebody removed the file.
-    pub(crate) fn is_gone(&self) -> bool {
-        let path = self.path.as_deref();
-        path.is_some_and(|path| !self.disk.is_there(path))
+    /// Where the file is, if that is not where it was at the last look.
+    pub(crate) fn look(&mut self) -> FilePlace {
+        let (Some(path), Some(file)) = (&self.path, &self.file) else {
+            return FilePlace::There;
+        };
+        let place = file.place(path);
+        match &place {
+            FilePlace::Moved(Some(to)) => {
+                self.path = Some(to.clone());
+                self.is_lost = false;
+            }
+            FilePlace::Moved(None) if std::mem::replace(&mut self.is_lost, true) => {
+                return FilePlace::There;
+            }
+            _ => {}
+        }
+        place
     }
 
     /// True if the file fails for so long that another one should be tried. A full disk is no reason for that.
@@ -228,8 +266,9 @@ impl FileTail {
             return Ok(());
         }
         if self.file.is_none() {
-            let (file, path) = create(self.disk.as_ref(), &self.asked)?;
-            (self.file, self.path) = (Some(file), Some(path));
+            let (file, number) = create(self.disk.as_ref(), &self.asked, self.number)?;
+            self.path = Some(numbered(&self.asked, number));
+            (self.file, self.number) = (Some(file), number);
         }
         let Some(file) = &mut self.file else {
             return Ok(());
@@ -283,14 +322,21 @@ fn is_unknown(error: &io::Error) -> bool {
     )
 }
 
-/// A new file of this name, or of the name with a number.
-fn create(disk: &dyn Disk, asked: &Path) -> io::Result<(Box<dyn DiskFile>, PathBuf)> {
+/// The name with a number.
+fn numbered(asked: &Path, number: u32) -> PathBuf {
     let stem = asked.file_stem().unwrap_or_default().to_string_lossy();
-    let numbered = (2..NAMES_MAX).map(|n| asked.with_file_name(format!("{stem}-{n}.mcap")));
+    match number {
+        0 | 1 => asked.to_owned(),
+        number => asked.with_file_name(format!("{stem}-{number}.mcap")),
+    }
+}
+
+/// A new file of this name with this number or the next that is free, and the number.
+fn create(disk: &dyn Disk, asked: &Path, from: u32) -> io::Result<(Box<dyn DiskFile>, u32)> {
     let mut last = io::Error::from(ErrorKind::AlreadyExists);
-    for path in std::iter::once(asked.to_owned()).chain(numbered) {
-        match disk.create(&path) {
-            Ok(file) => return Ok((file, path)),
+    for number in from..from.saturating_add(NAMES_MAX) {
+        match disk.create(&numbered(asked, number)) {
+            Ok(file) => return Ok((file, number)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => last = error,
             Err(error) => return Err(error),
         }

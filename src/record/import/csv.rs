@@ -6,23 +6,29 @@ use crate::hand::kinematics::Side;
 use crate::hand::sample::SET_OUT_OF_RANGE;
 use crate::hand::tactile::{BLOCK_LEN, TactileBlock};
 use crate::hand::{
-    Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Quantity, Reply, Touch,
+    Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Quantity, Reply, Target,
+    Touch, Undocumented,
 };
-use crate::record::export::cut::{CopyError, SessionCopy};
-use crate::record::export::output::{ExportError, Unfinished};
+use crate::record::export::csv::UNDOCUMENTED;
+use crate::record::export::cut::SessionCopy;
+use crate::record::export::output::{Destination, ExportError, Unfinished};
+use crate::record::export::source::Broken;
 use crate::record::file::Opening;
 use crate::record::import::lines::{CsvLines, LineError, LineFault};
 use crate::record::{Entry, Event, EventKind, LinkState, Record};
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader};
-use std::path::Path;
+use std::io::{self, BufRead};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Channels of a fingertip.
 const CHANNELS: usize = 8;
 /// Ten years. Nobody recorded longer.
 const SECONDS_MAX: f64 = 10.0 * 366.0 * 86_400.0;
+/// Lines between two looks at whether to go on: some milliseconds.
+const LOOK_EACH: u64 = 256;
+/// Whole numbers up to here are exact as numbers with a point.
+const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 /// Names and cells are told this far.
 const TOLD_MAX: usize = 40;
 /// Unknown columns that are named.
@@ -101,15 +107,18 @@ pub struct Imported {
     pub incomplete_tips: u64,
 }
 
-/// Reads a file, and writes what it says as a session file.
+/// Reads values, and writes what they say as a session file, as long as it is to go on.
 ///
 /// # Errors
 /// [`ImportError`]; then there is no session file.
-pub fn import(csv: &Path, session: &Path) -> Result<Imported, ImportError> {
-    let from = File::open(csv).map_err(|error| unreadable(&error))?;
-    let mut values = CsvValues::new(BufReader::new(from))?;
-    let output = Unfinished::new(session)?;
-    let written = |error: CopyError| error.of(&output);
+pub fn import(
+    csv: impl BufRead,
+    to: &Destination,
+    watch: &dyn Fn() -> ControlFlow<()>,
+) -> Result<Imported, ImportError> {
+    let mut values = CsvValues::new(csv)?;
+    let output = Unfinished::new(to)?;
+    let written = |error: Broken| error.of(&output);
     let opening = Opening::imported();
     let mut copy = SessionCopy::new(&opening, output.file()?).map_err(written)?;
     let monitoring = Entry::Heard(Record::State {
@@ -118,12 +127,15 @@ pub fn import(csv: &Path, session: &Path) -> Result<Imported, ImportError> {
     });
     copy.push(&monitoring).map_err(written)?;
     while let Some(entries) = values.next_row()? {
+        if values.imported.rows.is_multiple_of(LOOK_EACH) && watch().is_break() {
+            return Err(ExportError::Interrupted.into());
+        }
         for entry in entries {
             copy.push(&entry).map_err(written)?;
         }
     }
-    let (_, to) = copy.end().map_err(written)?;
-    output.sync(to)?;
+    let copied = copy.end().map_err(written)?;
+    output.sync(copied.to)?;
     output.finish()?;
     Ok(values.imported)
 }
@@ -222,6 +234,7 @@ enum CsvColumn {
     Joint(Quantity, Dof),
     Tip(Touch, Finger),
     Channel(usize, Finger),
+    Undocumented,
     Event,
     Unknown,
 }
@@ -242,6 +255,8 @@ impl CsvColumns {
             let column = column.unwrap_or(CsvColumn::Unknown);
             let is_there = |(_, other): &(String, CsvColumn)| *other == column;
             match column {
+                // pandas writes its index without a name.
+                CsvColumn::Unknown if name.is_empty() => unknown.push("(no name)".into()),
                 CsvColumn::Unknown if unknown.len() < UNKNOWN_MAX => unknown.push(told(name)),
                 CsvColumn::Unknown => {}
                 _ if all.iter().any(is_there) => return Err(CsvFault::Twice { name: told(name) }),
@@ -269,7 +284,9 @@ impl CsvColumns {
         let mut row = CsvRow::default();
         for ((name, column), cell) in self.all.iter().zip(cells) {
             let is_needed = *column == CsvColumn::Time;
-            if cell.is_empty() && !is_needed {
+            let is_text = *column == CsvColumn::Event;
+            row.tells_undocumented |= *column == CsvColumn::Undocumented;
+            if (cell.is_empty() || is_no_number(cell) && !is_text) && !is_needed {
                 continue;
             }
             if row.take(*column, cell).is_none() {
@@ -287,6 +304,7 @@ impl CsvColumns {
 fn known() -> BTreeMap<String, CsvColumn> {
     let mut known = BTreeMap::new();
     known.insert("time_s".to_owned(), CsvColumn::Time);
+    known.insert(UNDOCUMENTED.to_owned(), CsvColumn::Undocumented);
     known.insert("event".to_owned(), CsvColumn::Event);
     for quantity in Quantity::ALL {
         for dof in Dof::ALL {
@@ -351,6 +369,10 @@ impl TipCells {
 struct CsvRow {
     at: Moment,
     joints: [PerDof<Option<i16>>; Quantity::ALL.len()],
+    /// Values outside the manual's ranges, as they were sent.
+    undocumented: Vec<Undocumented>,
+    /// Whether there is a column for those.
+    tells_undocumented: bool,
     tips: PerFinger<TipCells>,
     event: Option<(EventKind, String)>,
 }
@@ -362,8 +384,12 @@ impl CsvRow {
             CsvColumn::Unknown => {}
             CsvColumn::Time => self.at = moment(cell)?,
             CsvColumn::Event => self.event = Some(event(cell)),
+            CsvColumn::Undocumented => {
+                let names = cell.split_whitespace().map(Undocumented::parse);
+                self.undocumented = names.collect::<Option<_>>()?;
+            }
             CsvColumn::Joint(quantity, dof) => {
-                let value = cell.parse().ok()?;
+                let value = whole(cell)?.try_into().ok()?;
                 let six = self.joints.get_mut(quantity as usize)?;
                 six[dof] = Some(value);
                 // Only what the manual knows is written, so nothing else is read.
@@ -376,11 +402,33 @@ impl CsvRow {
                 (*force)?;
             }
             CsvColumn::Channel(channel, finger) => {
-                let count = cell.parse().ok()?;
+                let count = whole(cell)?.try_into().ok()?;
                 *self.tips[finger].channels.get_mut(channel)? = Some(count);
             }
         }
         Some(())
+    }
+
+    /// The six values, and where there is none what the hand sent outside of the range.
+    fn as_sent(&self, quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i16>> {
+        let mut six = *six;
+        let of_it = |one: &&Undocumented| one.group == quantity.group();
+        for one in self.undocumented.iter().filter(of_it) {
+            let raw = one.raw.unwrap_or(SET_OUT_OF_RANGE);
+            if six[one.dof].is_none() {
+                let mut alone = PerDof::splat(None);
+                alone[one.dof] = Some(raw);
+                // A name alone makes no value of what is in the range.
+                let is_known = documented(quantity, &alone)[one.dof].is_some();
+                six[one.dof] = Some(raw).filter(|_| !is_known);
+            }
+        }
+        // A target that is neither there nor named is -1: the joint is left alone.
+        let is_left = self.tells_undocumented && quantity == Quantity::TargetAngle;
+        if is_left && six.iter().any(|(_, value)| value.is_some()) {
+            six = six.map(|value| value.or(Some(Target::Leave.raw())));
+        }
+        six
     }
 
     fn incomplete_tips(&self) -> u64 {
@@ -393,6 +441,7 @@ impl CsvRow {
     fn entries(self, sample: &mut HandSample) -> Vec<Entry> {
         let mut fresh = Groups::NONE;
         for (quantity, six) in Quantity::ALL.into_iter().zip(&self.joints) {
+            let six = &self.as_sent(quantity, six);
             if six.iter().any(|(_, value)| value.is_some()) {
                 let bytes = memory(quantity, six);
                 fresh = fresh.and(sample.take(&reply(quantity.group(), &bytes, self.at)));
@@ -449,6 +498,24 @@ fn documented(quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i1
     ));
     let read = quantity.documented(&sample);
     read.map_or_else(|| PerDof::splat(None), |read| read.value)
+}
+
+/// What tables of others write where there is nothing.
+fn is_no_number(cell: &str) -> bool {
+    ["nan", "na", "n/a", "null", "none"]
+        .iter()
+        .any(|word| cell.eq_ignore_ascii_case(word))
+}
+
+/// A whole number, also as pandas writes it in a column with holes: `316.0`.
+fn whole(cell: &str) -> Option<i64> {
+    let exact = cell.parse().ok();
+    exact.or_else(|| {
+        let number: f64 = cell.parse().ok()?;
+        let is_whole = number.fract() == 0.0 && number.abs() < EXACT_MAX;
+        #[expect(clippy::cast_possible_truncation, reason = "whole, and exact")]
+        is_whole.then_some(number as i64)
+    })
 }
 
 /// Seconds from the session's start, to the microsecond.

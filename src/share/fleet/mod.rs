@@ -2,6 +2,7 @@
 //! there DDS finds out; a hand's link does nothing for it.
 
 mod book;
+mod followers;
 mod list;
 mod notice;
 mod teller;
@@ -9,6 +10,7 @@ mod teller;
 mod tests;
 
 pub use book::{FleetBook, HANDS_MAX};
+pub use followers::OtherFollowers;
 pub use list::FleetList;
 pub use notice::{FleetCard, FleetHand, NOTICE_BYTES_MAX, reachable, topic};
 pub use teller::{FleetTeller, host};

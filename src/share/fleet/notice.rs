@@ -29,6 +29,9 @@ pub struct FleetCard {
     pub at: Option<SocketAddr>,
     /// Whether the first client that writes may move it, without a person there who lets it.
     pub first_may_move: bool,
+    /// Whether it follows what programs send here to a hand of its side.
+    #[serde(default)]
+    pub follows: bool,
 }
 
 /// A hand that a Handscope shares.

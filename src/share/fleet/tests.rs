@@ -19,6 +19,7 @@ fn hand(name: &str, at: &str) -> FleetHand {
             side: Side::Left,
             at: at.parse().ok(),
             first_may_move: true,
+            follows: false,
         },
         state: LinkState::Armed,
         owner: None,

@@ -4,6 +4,7 @@ use crate::hand::{HandCommand, Moment};
 use crate::link::session::motion::SETPOINT_HZ_MAX;
 use crate::link::{Lease, LeaseRefusal};
 use crate::share::gateway::refusal::WriteRefusal;
+use std::collections::VecDeque;
 use std::mem::Discriminant;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,6 +18,8 @@ pub const CLIENTS_MAX: usize = 16;
 const WRITE_EACH: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
 /// Requests are counted over this time.
 const RATE_OVER: Duration = Duration::from_secs(1);
+/// Changes of who may move the hand that are kept for whoever tells them: clients come and go between two looks.
+const EVENTS_MAX: usize = 256;
 
 /// One connection to a gateway. None is ever given twice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -56,6 +59,26 @@ pub enum ClientLease {
     Ended(LeaseRefusal),
 }
 
+/// Something that changed about who may move the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MoverEvent {
+    /// Which client.
+    pub client: SocketAddr,
+    /// What.
+    pub change: MoverChange,
+}
+
+/// How the right of a client to move the hand changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MoverChange {
+    /// It may from now on.
+    Began,
+    /// It may no more, for this reason.
+    Ended(LeaseRefusal),
+    /// It disconnected, and the hand is stopped.
+    Left,
+}
+
 /// The clients of one gateway, for all who serve them. Locks last for one call.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SharedBoard(Arc<Mutex<Board>>);
@@ -75,6 +98,8 @@ pub(crate) struct Board {
     pub(crate) turned_away: u64,
     /// Who is about to get the right to move the hand.
     taking: Option<ClientId>,
+    /// Who got and lost the right to move the hand, until that is told.
+    events: VecDeque<MoverEvent>,
     /// When each kind of command went out last.
     turns: Vec<(Discriminant<HandCommand>, Instant)>,
 }
@@ -158,6 +183,22 @@ impl Board {
             granted: Arc::default(),
         });
         Some(id)
+    }
+
+    /// The right of this client to move the hand changed so.
+    pub(crate) fn mover(&mut self, id: ClientId, change: MoverChange) {
+        let Some(client) = self.row(id).map(|row| row.shown.address) else {
+            return;
+        };
+        if self.events.len() >= EVENTS_MAX {
+            self.events.pop_front();
+        }
+        self.events.push_back(MoverEvent { client, change });
+    }
+
+    /// What changed since the last call, in order.
+    pub(crate) fn take_events(&mut self) -> Vec<MoverEvent> {
+        self.events.drain(..).collect()
     }
 
     /// A client is gone.

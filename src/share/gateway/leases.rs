@@ -5,7 +5,7 @@ use crate::hand::register::{FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Force, HandCommand, OutOfRange, PerDof, Speed};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
-use crate::share::gateway::board::{ClientId, ClientLease, Holder, SharedBoard};
+use crate::share::gateway::board::{ClientId, ClientLease, Holder, MoverChange, SharedBoard};
 use crate::share::gateway::refusal::WriteRefusal;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout};
@@ -60,8 +60,8 @@ impl ClientLeases {
     ) -> Result<(), WriteRefusal> {
         let lease = match self.lease(client) {
             ClientLease::Held(lease) => lease,
-            // Moves nothing, and a fault has ended every lease before.
-            _ if command == HandCommand::ClearErrors && self.is_free() => {
+            // A fault has ended every lease, and nobody can get one before it is cleared. It gives no right to move.
+            _ if command == HandCommand::ClearErrors && self.is_free() && self.is_shut() => {
                 return Ok(self.link.write(command).await?);
             }
             ClientLease::Never => self.take(client, Claim::Wrote).await?,
@@ -96,6 +96,12 @@ impl ClientLeases {
     /// Ends a lease for this reason, unless it ended before for another. The hand is stopped, but not one that another moves
     /// now, nor one that was stopped already.
     fn end(&self, holder: Holder, why: Disarmed) {
+        let end = self.end_lease(holder, why);
+        self.board
+            .with(|board| board.mover(holder.client, MoverChange::Ended(end)));
+    }
+
+    fn end_lease(&self, holder: Holder, why: Disarmed) -> LeaseRefusal {
         let end = match self.link.give_back(holder.lease, why) {
             Ok(()) => LeaseRefusal::Ended(why),
             Err(end) => end,
@@ -108,22 +114,25 @@ impl ClientLeases {
             self.link.stop();
         }
         self.mark(holder.client, ClientLease::Ended(end));
+        end
     }
 
     /// A client is gone.
     pub(crate) fn disconnect(&self, client: ClientId) {
-        self.let_go(|holder| holder == client);
+        let holder = self.board.with(|board| board.holder());
+        if let Some(holder) = holder.filter(|holder| holder.client == client) {
+            let change = match self.end_lease(holder, Disarmed::Released) {
+                LeaseRefusal::Ended(Disarmed::Released) => MoverChange::Left,
+                other => MoverChange::Ended(other),
+            };
+            self.board.with(|board| board.mover(client, change));
+        }
         self.board.with(|board| board.disconnect(client));
     }
 
     /// The gateway closes.
     pub(crate) fn close(&self) {
-        self.let_go(|_| true);
-    }
-
-    fn let_go(&self, is_meant: impl Fn(ClientId) -> bool) {
-        let holder = self.board.with(|board| board.holder());
-        if let Some(holder) = holder.filter(|holder| is_meant(holder.client)) {
+        if let Some(holder) = self.board.with(|board| board.holder()) {
             self.end(holder, Disarmed::Released);
         }
     }
@@ -146,6 +155,14 @@ impl ClientLeases {
     /// Whether a client may take the right by writing.
     fn is_free(&self) -> bool {
         self.writers == Writers::First && self.link.status().holder.is_none()
+    }
+
+    /// Whether nobody can get the right now: a drive reports a fault, or the stop that it caused goes on.
+    fn is_shut(&self) -> bool {
+        matches!(
+            self.link.status().state,
+            LinkState::Fault | LinkState::Holding
+        )
     }
 
     async fn take(&self, client: ClientId, claim: Claim) -> Result<Lease, WriteRefusal> {
@@ -185,6 +202,8 @@ impl ClientLeases {
         if let Some(before) = self.board.with(|board| board.holder()) {
             let taken = LeaseRefusal::Taken(owner);
             self.mark(before.client, ClientLease::Ended(taken));
+            self.board
+                .with(|board| board.mover(before.client, MoverChange::Ended(taken)));
         }
         let observer = self.link.observe();
         let lease = self.link.grant(owner);
@@ -202,6 +221,8 @@ impl ClientLeases {
             self.mark(client, ClientLease::Never);
             return Err(WriteRefusal::NotArmed(reason));
         }
+        self.board
+            .with(|board| board.mover(client, MoverChange::Began));
         Ok(lease)
     }
 

@@ -8,11 +8,12 @@ pub mod leases;
 pub mod refusal;
 mod service;
 
-pub use board::{CLIENTS_MAX, ClientId, ClientLease, GatewayClient};
+pub use board::{CLIENTS_MAX, ClientId, ClientLease, GatewayClient, MoverChange, MoverEvent};
 pub use leases::Writers;
 pub use refusal::WriteRefusal;
 
 use crate::link::LinkHandle;
+use crate::share::gateway::board::Board;
 use crate::share::gateway::client::Connection;
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::service::Service;
@@ -85,6 +86,12 @@ impl Gateway {
     pub fn clients(&self) -> Vec<GatewayClient> {
         let now = self.leases.link.clock().now();
         self.leases.board.with(|board| board.shown(now))
+    }
+
+    /// Who got and lost the right to move the hand since the last call, each one, in order.
+    #[must_use]
+    pub fn movers(&self) -> Vec<MoverEvent> {
+        self.leases.board.with(Board::take_events)
     }
 
     /// Connections that were refused because there were [`CLIENTS_MAX`].

@@ -2,6 +2,7 @@
 
 pub(crate) mod card;
 pub(crate) mod dialog;
+pub(crate) mod ending;
 pub(crate) mod failure;
 pub(crate) mod file_manager;
 pub(crate) mod gl;

@@ -9,9 +9,10 @@ use crate::app::notices::NoticeKind;
 use crate::app::program::App;
 use crate::app::sessions::SessionAction;
 use crate::hand::Moment;
-use crate::link::Clock;
+use crate::link::{Clock, guard};
 use crate::shell::Cockpit;
 use crate::shell::desktop::dialog::NativeDialog;
+use crate::shell::desktop::ending::{ENDS_WITHIN, Ending};
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
@@ -44,6 +45,8 @@ pub(crate) struct Services {
     pub(crate) runtime: tokio::runtime::Handle,
     /// The one clock.
     pub(crate) clock: Clock,
+    /// How the window is told that the program is to end.
+    pub(crate) ending: Arc<Ending>,
 }
 
 /// What becomes the program once there is a window to show it.
@@ -88,11 +91,25 @@ pub(crate) struct Program {
     /// How it fills its screen, while it should.
     fills: Option<Filling>,
     closing: bool,
+    ending: Arc<Ending>,
+}
+
+impl Drop for Program {
+    /// However the window ends, with a panic too: each hand that may move is held, and gets time to rest.
+    fn drop(&mut self) {
+        self.ending.ended();
+        guard::hold_all_within(ENDS_WITHIN);
+    }
 }
 
 impl Program {
     fn new(ctx: &egui::Context, start: DesktopStart, services: Services) -> Self {
-        let Services { runtime, clock } = services;
+        let Services {
+            runtime,
+            clock,
+            ending,
+        } = services;
+        ending.wakes(ctx);
         let repaint = ctx.clone();
         let frame_within_ms = Arc::new(AtomicU64::new(0));
         let within = Arc::clone(&frame_within_ms);
@@ -141,12 +158,14 @@ impl Program {
             fits: false,
             fills: None,
             closing: false,
+            ending,
         }
     }
 
     /// Takes in what happened. To be called before each frame, and [`REPAINT_AT_LEAST`] often while nothing is drawn.
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
+        self.ending.lives(now);
         self.cockpit.logic(now);
         let within = self.cockpit.frame_within();
         let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
@@ -194,6 +213,7 @@ impl Program {
                 self.fills = None;
                 vec![
                     ViewportCommand::Fullscreen(false),
+                    ViewportCommand::MinInnerSize(WINDOW_LEAST.into()),
                     ViewportCommand::Decorations(true),
                     level(WindowLevel::Normal),
                 ]
@@ -206,6 +226,8 @@ impl Program {
                 }
                 let mut commands = vec![
                     ViewportCommand::Minimized(false),
+                    // A screen may be smaller than the window ever is.
+                    ViewportCommand::MinInnerSize(Vec2::ZERO),
                     ViewportCommand::Decorations(false),
                     ViewportCommand::Fullscreen(true),
                     level(WindowLevel::AlwaysOnTop),
@@ -261,6 +283,8 @@ impl Program {
 
     /// A moving hand is held before the window goes.
     fn close(&mut self, ctx: &egui::Context, now: Moment) {
+        // Nobody is asked whom the system ends.
+        self.closing |= self.ending.is_wanted();
         if !self.closing {
             let asked = ctx.input(|input| input.viewport().close_requested());
             let app = self.cockpit.app();
@@ -292,22 +316,23 @@ struct Filling {
 }
 
 impl Filling {
-    /// Whether the window is to be told now: at first, and later where it does not fill its screen.
+    /// Whether the window is to be told now: at first, and later where it has not the size of its screen, both ways.
     fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
         let waits = |told| now.since(told) < FILL_EACH;
         if self.told.is_some_and(waits) {
             return false;
         }
         let sizes = view.monitor_size.zip(view.inner_rect);
-        let is_small =
-            sizes.is_some_and(|(screen, inner)| (screen - inner.size()).max_elem() > 1.0);
+        let differs =
+            |(screen, inner): (Vec2, egui::Rect)| (screen - inner.size()).abs().max_elem() > 1.0;
+        let is_other = sizes.is_some_and(differs);
         let was_told = self.told.is_some();
-        self.by_hand |= was_told && is_small && view.fullscreen == Some(true);
+        self.by_hand |= was_told && is_other && view.fullscreen == Some(true);
         let is_moved = view
             .inner_rect
             .is_some_and(|inner| inner.min != egui::Pos2::ZERO);
         let is_hidden = view.fullscreen == Some(false) || view.minimized == Some(true);
-        let is_due = !was_told || is_small || is_hidden || self.by_hand && is_moved;
+        let is_due = !was_told || is_other || is_hidden || self.by_hand && is_moved;
         if is_due {
             self.told = Some(now);
         }
@@ -336,6 +361,97 @@ mod tests {
         assert_eq!(fitting(first, framed, small), Some(vec2(1364.0, 731.0)));
         let large = vec2(2560.0, 1440.0);
         assert_eq!(fitting(first, framed, large), None);
+    }
+
+    /// Draws frames until this is so.
+    fn until(
+        ctx: &egui::Context,
+        program: &mut Program,
+        what: &str,
+        is_so: impl Fn(&Program) -> bool,
+    ) {
+        let begun = std::time::Instant::now();
+        while !is_so(program) {
+            assert!(begun.elapsed() < Duration::from_secs(30), "{what}");
+            let mut drawn = ctx.run_ui(egui::RawInput::default(), |ui| program.logic(ui.ctx()));
+            drawn.textures_delta.clear();
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    #[test]
+    fn a_panic_in_the_window_holds_the_hand_before_it_ends() {
+        use crate::app::hand::joint::Preset;
+        use crate::hand::Dof;
+        use crate::sim::serve::modbus_tcp;
+        use crate::sim::{SharedHand, SimConfig, SimHand};
+        let mut builder = tokio::runtime::Builder::new_multi_thread();
+        let runtime = builder.worker_threads(1).enable_all().build().unwrap();
+        let _inside = runtime.enter();
+        let hand = SharedHand::new(
+            SimHand::new(SimConfig::default()),
+            tokio::time::Instant::now(),
+        );
+        let socket = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        socket.set_nonblocking(true).unwrap();
+        let endpoint = format!("tcp:{}", socket.local_addr().unwrap());
+        let listener = tokio::net::TcpListener::from_std(socket).unwrap();
+        runtime.spawn(modbus_tcp::serve(hand.clone(), listener));
+        let start = DesktopStart {
+            endpoints: vec![endpoint.parse().unwrap()],
+            drawing: Drawing::Software,
+            loaded: crate::app::files::settings_file::Loaded::default(),
+            settings_path: None,
+            snap: crate::shell::headless::snap::snap,
+            records: false,
+            exhibit: None,
+            replay: None,
+        };
+        let clock = Clock::start();
+        let services = Services {
+            runtime: runtime.handle().clone(),
+            clock,
+            ending: Ending::new(clock),
+        };
+        let ctx = egui::Context::default();
+        let mut program = Program::new(&ctx, start, services);
+        let angle = |program: &Program| {
+            let angle = program.cockpit.state().hand().sample.angle;
+            angle.map_or(1000, |angle| angle.value[Dof::Index].raw())
+        };
+        let is_armed = |program: &Program| program.cockpit.state().hand().link.armed.is_some();
+        until(&ctx, &mut program, "it answers", |program| {
+            let hand = program.cockpit.state().hand();
+            hand.link.state.is_live() && hand.sample.faults.is_some()
+        });
+        let now = clock.now();
+        program.cockpit.app().act(Action::Arm, now);
+        until(&ctx, &mut program, "it is armed", is_armed);
+        program
+            .cockpit
+            .app()
+            .act(Action::Preset(Preset::Close), now);
+        until(&ctx, &mut program, "it moves", |program| {
+            angle(program) < 900
+        });
+        let died = hand.now();
+        let ended = std::panic::catch_unwind(std::panic::AssertUnwindSafe(move || {
+            let _program = program;
+            panic!("as if something were broken");
+        }));
+        assert!(ended.is_err());
+        // The window is gone, and the hand was held before it went.
+        let set = hand.with(|hand, _| {
+            let later = hand.journal().iter().filter(|entry| entry.at > died);
+            let angles = later.filter(|entry| entry.address == 1486 && entry.bytes.len() == 12);
+            let index = |bytes: &[u8]| i16::from_le_bytes([bytes[6], bytes[7]]);
+            angles.map(|entry| index(&entry.bytes)).collect::<Vec<_>>()
+        });
+        let held = set.last().copied().unwrap_or_default();
+        assert!(held > 100, "{set:?}");
+        let rests = hand.with(|hand, now| hand.read(crate::hand::Span::new(1546 + 6, 2), now));
+        let rests = i16::from_le_bytes(rests.unwrap().try_into().unwrap());
+        assert!(rests.abs_diff(held) < 20, "{rests} {set:?}");
     }
 
     #[test]

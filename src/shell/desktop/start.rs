@@ -1,6 +1,7 @@
 //! Which of the two windows opens, and the one thread that all links run on. Opens none itself.
 
 use crate::link::Clock;
+use crate::shell::desktop::ending::{Ending, on_signals};
 use crate::shell::desktop::failure::{DesktopError, panic_words};
 use crate::shell::desktop::gl::run as run_opengl;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
@@ -26,9 +27,14 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
         .map_err(|error| DesktopError::Runtime {
             cause: error.to_string(),
         })?;
+    let clock = Clock::start();
+    let ending = Ending::new(clock);
+    // Listens before there is a window.
+    runtime.spawn(on_signals(Arc::clone(&ending)));
     let services = Services {
         runtime: runtime.handle().clone(),
-        clock: Clock::start(),
+        clock,
+        ending,
     };
     let drawing = start.drawing.clone();
     let stands = Arc::new(AtomicBool::new(false));

@@ -211,6 +211,8 @@ impl Driver {
         let now = self.now();
         let _inside = self.runtime.enter();
         self.cockpit.logic(now);
+        // What would be drawn between two pictures.
+        self.cockpit.app().drawn(now);
     }
 
     /// Lets time pass until the hand answers.

@@ -8,6 +8,7 @@ use crate::sim::serve::usbcan;
 use crate::transport::{LinePace, PtyLink, TransportError, paced};
 use std::future::Future;
 use std::path::Path;
+use std::time::Duration;
 
 /// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
 /// dropping the future removes the link. With a pace it takes the time of a line, else none.
@@ -56,7 +57,15 @@ fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> 
     })
 }
 
-/// As [`serve_rs485`], with the hand behind a serial CAN adapter, which has no pace.
+/// From a request on the bus to the reply. The manual names no time for CAN; it is short of what was seen on RS485.
+const ON_BUS: Duration = Duration::from_micros(300);
+/// A CAN adapter on USB: the bytes that stand for a frame take no less than its bits on a bus of 1 Mbit/s (manual 2.3).
+const ADAPTER: LinePace = LinePace {
+    baud: 1_000_000,
+    turnaround: ON_BUS,
+};
+
+/// As [`serve_rs485`], with the hand behind a serial CAN adapter, in the time that adapter, bus and hand take.
 ///
 /// # Errors
 /// As [`serve_rs485`].
@@ -65,7 +74,8 @@ pub fn serve_slcan(
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
-    Ok(slcan::serve(hands.into(), link))
+    let hands = hands.into();
+    Ok(paced(link, ADAPTER, |wire| slcan::serve(hands, wire)))
 }
 
 /// As [`serve_slcan`], with the maker's own adapter.
@@ -77,5 +87,6 @@ pub fn serve_usbcan(
     path: &Path,
 ) -> Result<impl Future<Output = ()> + Send + 'static, TransportError> {
     let link = PtyLink::create(path)?;
-    Ok(usbcan::serve(hands.into(), link))
+    let hands = hands.into();
+    Ok(paced(link, ADAPTER, |wire| usbcan::serve(hands, wire)))
 }

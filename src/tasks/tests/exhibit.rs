@@ -10,9 +10,10 @@ use crate::hand::{
     Angle, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target, TemperatureReading,
     Timed,
 };
+use crate::link::Clock;
 use crate::link::LinkStatus;
 use crate::record::{Disarmed, LinkState};
-use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, exhibit};
+use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, PageDrawn, exhibit};
 use crate::tasks::tests::booth::BoothHand;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -37,6 +38,18 @@ struct Booth {
     view: Arc<Mutex<ExhibitView>>,
     events: Arc<Mutex<BTreeMap<String, u64>>>,
     task: JoinHandle<()>,
+    /// What draws the page.
+    window: JoinHandle<()>,
+}
+
+/// A window that draws the page all the time.
+fn draws(clock: Clock, page: Arc<PageDrawn>) -> JoinHandle<()> {
+    tokio::spawn(async move {
+        loop {
+            page.mark(clock.now());
+            sleep(Duration::from_millis(250)).await;
+        }
+    })
 }
 
 impl Booth {
@@ -54,7 +67,9 @@ impl Booth {
             locked,
             seen: HandSample::default(),
             clock: hand.clock,
+            drawn: Arc::default(),
         };
+        let window = draws(hand.clock, Arc::clone(&start.drawn));
         let (shown, counted, at) = (Arc::clone(&view), Arc::clone(&events), hand.clone());
         let task = tokio::spawn(async move {
             let tell = |step| match step {
@@ -76,6 +91,7 @@ impl Booth {
             view,
             events,
             task,
+            window,
         }
     }
 
@@ -505,6 +521,7 @@ fn order(
         status: &status,
         sample: &sample,
         ended: None,
+        drawn: at(second),
     };
     run.tick(seen, at(second))
 }
@@ -790,4 +807,24 @@ async fn hold_a_tile(booth: &Booth, chance: &mut fastrand::Rng) {
     }
     sleep(Duration::from_millis(chance.u64(100..3000))).await;
     booth.wish(ExhibitWish::Release);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_window_that_hangs_ends_the_motion_within_a_second_and_only_staff_begin_again() {
+    let booth = Booth::armed(plan()).await;
+    booth.press(1).await;
+    sleep(Duration::from_millis(300)).await;
+    assert!(booth.is_armed());
+    booth.window.abort();
+    sleep(Duration::from_millis(700)).await;
+    assert!(booth.is_armed(), "a slow frame is none that hangs");
+    sleep(Duration::from_millis(700)).await;
+    assert!(!booth.is_armed());
+    let halted = ExhibitStage::Halted(HaltReason::NotShown);
+    assert_eq!(booth.stage(), halted);
+    let moves = booth.moves();
+    booth.press(1).await;
+    sleep(Duration::from_secs(5)).await;
+    assert_eq!((booth.stage(), booth.moves()), (halted, moves));
+    booth.all_well();
 }

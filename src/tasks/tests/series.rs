@@ -289,7 +289,7 @@ async fn a_lost_link_and_another_arming_end_it() {
 async fn readings_that_stay_away_end_it() {
     let bench = Bench::running().await;
     let end = bench.end().await;
-    assert!(matches!(end.aborted, Some(Abort::Blind { .. })));
+    assert!(matches!(end.aborted, Some(Abort::NotRead { .. })));
 }
 
 #[tokio::test(start_paused = true)]

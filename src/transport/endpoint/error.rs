@@ -57,6 +57,12 @@ pub enum EndpointError {
         /// The keys it has.
         known: &'static str,
     },
+    /// A key that is given twice: which of both is meant, nobody knows.
+    #[error("'{key}' stands there twice; write it once")]
+    Twice {
+        /// The key.
+        key: String,
+    },
     /// A value that does not fit its key.
     #[error("{key}={value} is not possible: {key} is {want}")]
     Value {

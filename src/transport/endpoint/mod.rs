@@ -19,6 +19,19 @@ pub const DEFAULT_BITRATE: u32 = 1_000_000;
 pub const DEFAULT_ID: u8 = 1;
 /// Scenario of the built-in hand when none is named.
 pub const DEFAULT_SCENARIO: &str = "idle";
+/// What the built-in hand may be found doing.
+pub const SCENARIOS: [&str; 9] = [
+    DEFAULT_SCENARIO,
+    "free",
+    "rigid",
+    "fragile",
+    "grasp",
+    "touched",
+    "faults",
+    "extremes",
+    "frozen",
+];
+
 /// Where a hand is and how it is spoken to. The spelling is that of [`fmt::Display`] and `FromStr`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Endpoint {
@@ -289,6 +302,19 @@ mod tests {
             ("usbcan:/dev/x?bitrate=500000", "is not a setting"),
             ("usbcan:/dev/x?baud=9", "300 to 4000000"),
             ("sim:?seed=-1", "whole number"),
+            ("sim:?scenario=nope", "idle, free, rigid"),
+            ("sim:?scenario=", "idle, free, rigid"),
+            ("sim:?seed=1&seed=1", "'seed' stands there twice"),
+            (
+                "sim:?scenario=idle&seed=1&scenario=free",
+                "'scenario' stands",
+            ),
+            ("rs485:/dev/x?id=1&baud=9600&id=2", "'id' stands"),
+            ("rtu:/dev/x?packing=low&packing=low", "'packing' stands"),
+            ("tcp:host?unit=1&unit=2", "'unit' stands"),
+            ("can:can0?id=1&id=2", "'id' stands"),
+            ("slcan:/dev/x?bitrate=500000&bitrate=500000", "'bitrate'"),
+            ("usbcan:/dev/x?baud=9600&baud=9600", "'baud' stands"),
         ] {
             let error = text.parse::<Endpoint>().unwrap_err().to_string();
             assert!(error.contains(part), "{text}: {error}");

@@ -4,7 +4,7 @@ use crate::hand::register::BytePacking;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
-    Endpoint, SerialLine,
+    Endpoint, SCENARIOS, SerialLine,
 };
 use std::str::FromStr;
 
@@ -15,6 +15,9 @@ const SLCAN_BITRATES: [u32; 9] = [
 /// The same in words.
 const SLCAN_WANT: Want =
     Want::OneOf("10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000");
+/// [`SCENARIOS`] in words.
+const SCENARIO_WANT: Want =
+    Want::OneOf("idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen");
 /// Largest id on a CAN bus (manual 2.3).
 const CAN_ID_MAX: u16 = 16_383;
 
@@ -30,6 +33,7 @@ impl FromStr for Endpoint {
             place,
             pairs: query,
         };
+        keys.are_single()?;
         match kind {
             "sim" => keys.sim(),
             "rs485" => Ok(Endpoint::Rs485(keys.serial("rs485", "rs485:/dev/ttyUSB0")?)),
@@ -58,6 +62,16 @@ impl Query<'_> {
             .map(|pair| pair.split_once('=').unwrap_or((pair, "")))
     }
 
+    /// No key may stand there twice.
+    fn are_single(&self) -> Result<(), EndpointError> {
+        let earlier = |nth: usize, key: &str| self.pairs().take(nth).any(|(own, _)| own == key);
+        let mut all = self.pairs().enumerate();
+        match all.find(|(nth, (key, _))| earlier(*nth, key)) {
+            Some((_, (key, _))) => Err(EndpointError::Twice { key: key.into() }),
+            None => Ok(()),
+        }
+    }
+
     fn place(&self, kind: &'static str, example: &'static str) -> Result<String, EndpointError> {
         if self.place.is_empty() {
             return Err(EndpointError::Place {
@@ -74,7 +88,8 @@ impl Query<'_> {
         for (key, value) in self.pairs() {
             match key {
                 "seed" => seed = number(key, value, Want::Whole)?,
-                "scenario" if !value.is_empty() => value.clone_into(&mut scenario),
+                "scenario" if SCENARIOS.contains(&value) => value.clone_into(&mut scenario),
+                "scenario" => return Err(wrong_value(key, value, SCENARIO_WANT)),
                 _ => return Err(unknown_key(key, "sim", "seed and scenario")),
             }
         }

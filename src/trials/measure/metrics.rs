@@ -13,7 +13,7 @@
 //! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most;
 //! * temperatures are whole degrees, read some times a second.
 
-use crate::hand::{Dof, Status};
+use crate::hand::{Angle, Dof, Status};
 use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
 use crate::trials::measure::detect::{RestLevel, begins, median, passes, rest};
 use crate::trials::measure::slip::{SlipEvent, slips};
@@ -23,6 +23,8 @@ use serde::{Deserialize, Serialize};
 
 /// How long before the command counts as rest.
 const REST_S: f64 = 0.45;
+/// What stands for the STATUS of a joint that never moved.
+pub const DEAD_DRIVE: &str = "dead_drive";
 /// Way that is motion, units of ANGLE_ACT: between two whole readings, where neither is favoured.
 const MOTION: f64 = 2.5;
 /// Least force that is contact, g, and how many times the noise.
@@ -82,8 +84,11 @@ pub struct JointMetrics {
     pub peak_current_ma: Option<f64>,
     /// Highest temperature during and after, above that before, °C.
     pub temperature_rise_c: Option<f64>,
-    /// STATUS at the end of the dwell, in a word.
+    /// STATUS at the end of the dwell, in a word; [`DEAD_DRIVE`] for a joint that never moved.
     pub end_status: Option<String>,
+    /// It was told to close, was free to, and never moved: nothing was measured of it, whatever its drive reports.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub dead_drive: bool,
     /// Slips during the dwell; `None` if touch told too little to know.
     pub slip_count: Option<usize>,
     /// Readings of the force a second.
@@ -111,9 +116,45 @@ pub fn measure(
     let end_s = end.map_or(0.0, |end| seconds(command, end));
     let threshold_g = f64::from(setting.force.get());
     let span = DwellSpan { end_s, threshold_g };
+    // What ended a trial early may have come before any motion.
+    let is_whole = recording.when(TrialEvent::Release).is_some();
     plan.joints()
-        .map(|dof| measure_joint(dof, &JointCurves::of(recording, dof), span))
+        .map(|dof| {
+            let curves = JointCurves::of(recording, dof);
+            let mut joint = measure_joint(dof, &curves, span);
+            let target = plan.close[dof].filter(|_| is_whole);
+            if target.is_some_and(|target| never_moved(&curves.angle, target, end_s))
+                && !is_held(joint.end_status.as_deref())
+            {
+                joint.dead_drive = true;
+                joint.end_status = Some(DEAD_DRIVE.into());
+            }
+            joint
+        })
         .collect()
+}
+
+/// True if a joint should have gone a good way, was looked at often enough, and stayed where it was.
+fn never_moved(angle: &TimeSeries, target: Angle, end: f64) -> bool {
+    let Some(still) = rest(angle, -REST_S, 0.0) else {
+        return false;
+    };
+    let stays = |point: CurvePoint| (point.v - still.level).abs() < MOTION;
+    let way = (still.level - f64::from(target.get())).abs();
+    way >= f64::from(Angle::ARRIVED_WITHIN)
+        && angle.between(0.0, end).count() >= STEADY_LEAST
+        && angle.between(0.0, end).all(stays)
+}
+
+/// True if the drive says what stopped it.
+fn is_held(end_status: Option<&str>) -> bool {
+    let held = [
+        Status::ForceReached,
+        Status::CurrentProtection,
+        Status::Stalled,
+        Status::DriveFault,
+    ];
+    held.iter().any(|status| end_status == Some(status.name()))
 }
 
 /// When the dwell ends, seconds from the command, and what the threshold was.
@@ -166,6 +207,7 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         peak_current_ma: highest(&curves.current, end),
         temperature_rise_c: temperature_rise(&curves.temperature),
         end_status: status_at(&curves.status, end),
+        dead_drive: false,
         slip_count: held.as_ref().map(Vec::len),
         rate_hz: rate(&force, end),
         longest_gap_s: longest_gap(&force, end),

@@ -30,7 +30,7 @@ impl TrialSessionWriter {
         head: SessionHead,
         criterion: Option<Criterion>,
     ) -> io::Result<Self> {
-        std::fs::create_dir_all(folder)?;
+        store::create_folder(folder)?;
         if std::fs::read_dir(folder)?.next().is_some() {
             let kind = io::ErrorKind::AlreadyExists;
             return Err(io::Error::new(kind, "the folder is not empty"));

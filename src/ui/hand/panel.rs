@@ -123,7 +123,7 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
         return None;
     };
     Some(match scenario.parse().ok()? {
-        Scenario::Free | Scenario::Touched => return None,
+        Scenario::Free | Scenario::Touched | Scenario::Frozen => return None,
         Scenario::Rigid => Held::Block,
         Scenario::Fragile => Held::Cup,
         Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => Held::Ball,

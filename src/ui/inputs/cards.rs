@@ -111,8 +111,11 @@ impl SourceCards {
             switch_ui(ui, pane, switch, (at, wrong));
             let sender = view.as_ref().and_then(|view| view.view.sender);
             let missing = silence(pane, sender.map(|(_, last)| last));
+            let other = view.as_ref().and_then(|view| view.other.as_ref());
+            let other =
+                other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
             let source = (look.say(inputs::DDS), InputAction::GrantDds);
-            grant_ui(ui, pane, source, missing);
+            grant_ui(ui, pane, source, other.as_deref().or(missing));
         });
         let Some(view) = view else { return };
         let refused: u64 = view.view.refused.values().sum();

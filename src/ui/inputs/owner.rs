@@ -121,7 +121,15 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
         Some(rate) => format!("{name} · {rate:.0} Hz"),
         None => name,
     };
-    match hand.inputs.follow.as_ref().and_then(|run| run.view) {
+    let view = hand.inputs.follow.as_ref().and_then(|run| run.view);
+    let words = match view.and_then(|view| view.heat) {
+        Some(heat) => {
+            let joint = look.say(words::dof(heat.dof));
+            format!("{words} · {joint} {} °C", heat.celsius)
+        }
+        None => words,
+    };
+    match view {
         Some(view) if view.phase != FollowPhase::Following => {
             format!("{words} · {}", look.say(phase(view.phase)))
         }

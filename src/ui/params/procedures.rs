@@ -14,7 +14,7 @@ use crate::tasks::TaskError;
 use crate::tasks::place::{
     KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
 };
-use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep};
+use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport, ResetStep};
 use crate::transport::Endpoint;
 use crate::ui::kit::{Card, Choice, Look, Manner};
 use crate::ui::params::calibration;
@@ -238,26 +238,35 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
         ProcedureStage::Doing(ResetStep::Looking(place), _) => {
             card.progress(0.7, (cards::LOOKING, places.endpoint(*place)))
         }
-        ProcedureStage::Over(Ok(report)) => reset_over(card, places, report),
+        ProcedureStage::Over(Ok(report)) => reset_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
     }
 }
 
-fn reset_over(card: Card, places: &PlacePair, report: &ResetReport) -> Card {
+fn reset_over(look: Look, card: Card, places: &PlacePair, report: &ResetReport) -> Card {
     let card = card.choice(close());
     let card = match &report.end {
         ResetEnd::NotSent(_) => return card.warning(cards::RESET_NOT_SENT),
         ResetEnd::Refused { reason } => {
             return card.warning(cards::RESET_REFUSED).note(reason.clone());
         }
-        ResetEnd::Found { at, left, .. } if left.is_empty() => {
-            card.words((cards::RESET_FOUND, places.endpoint(*at)))
-        }
-        ResetEnd::Found { at, left, .. } => {
+        ResetEnd::Found {
+            at, left, proof, ..
+        } => {
+            let at = places.endpoint(*at);
             let names: Vec<String> = left.iter().map(|id| id.name()).collect();
-            ways(card, places)
-                .words((cards::OVER_KEPT, places.endpoint(*at)))
-                .warning((cards::RESET_LEFT, names.join(", ")))
+            let answers = |card| ways(card, places).words((cards::OVER_KEPT, at));
+            match proof {
+                ResetProof::Done if left.is_empty() => card.words((cards::RESET_FOUND, at)),
+                ResetProof::Done => answers(card).warning((cards::RESET_LEFT, names.join(", "))),
+                ResetProof::Ignored => {
+                    answers(card).warning((cards::RESET_IGNORED, names.join(", ")))
+                }
+                ResetProof::Unchanged => answers(card).warning(cards::RESET_UNCHANGED),
+                ResetProof::NotRead(why) => answers(card)
+                    .warning(cards::RESET_NOT_READ)
+                    .note(errors::request(look, why)),
+            }
         }
         ResetEnd::Nowhere => ways(card, places).warning(cards::RESET_NOWHERE),
     };

@@ -54,6 +54,9 @@ texts! {
     RESET_SENDING: "The hand returns to the factory's parameters", "灵巧手正在恢复出厂参数";
     RESET_FOUND: "The hand holds the factory's parameters and answers here:", "灵巧手已恢复出厂参数，并在此应答：";
     RESET_LEFT: "The hand was reset and these are not as at delivery; some act after power off and on:", "已恢复出厂，以下参数与出厂值不同，部分要重新上电后生效：";
+    RESET_IGNORED: "The hand ignored the reset, as a whole or in part. These are still not as at delivery:", "灵巧手没有执行或没有完全执行恢复出厂，以下参数仍与出厂值不同：";
+    RESET_UNCHANGED: "The hand holds what it held before: either that is what the factory set, or it ignored the reset. The manual prints no factory speeds and forces.", "灵巧手的参数与之前相同：要么原本就是出厂值，要么没有执行恢复出厂。手册未给出出厂的速度与力。";
+    RESET_NOT_READ: "The reset was sent. What the hand holds now is not known, because it could not be read:", "已发送恢复出厂。由于读取失败，灵巧手现在的参数未知：";
     RESET_REFUSED: "The hand refused it. Nothing was changed.", "灵巧手拒绝，未作任何更改。";
     RESET_NOT_SENT: "It was not sent. Nothing was changed.", "未发送，未作任何更改。";
     RESET_NOWHERE: "It was sent, and no hand answers at the factory's place or at the former one. Switch the hand off and on, then connect or look for it in the Connection view: id 1, 115200 baud, address 192.168.11.210.", "已发送，但出厂位置和原位置都没有应答。请断电再上电，然后连接，或在连接视图中扫描：ID 1，波特率 115200，地址 192.168.11.210。";

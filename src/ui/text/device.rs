@@ -65,6 +65,7 @@ texts! {
     APPLIED: "applied, read back", "已应用并读回";
     NOT_TAKEN: "refused", "被拒绝";
     DROPPED: "refused in silence: the hand keeps what it held", "未采用：灵巧手保持原值";
+    PUT_BACK: "put back, because other rows were not taken; wanted", "其他行未被采用，已写回原值；想要";
     ALTERED: "the hand took another value than", "灵巧手采用了别的值，而非";
     UNVERIFIED: "unverified", "未核实";
     NOT_WRITTEN: "not written", "未写入";
@@ -210,6 +211,7 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
         ),
         RowVerdict::Dropped => format!("{} ({} {})", say(DROPPED), say(WANTED), end.wanted),
         RowVerdict::Altered => format!("{} {}", say(ALTERED), end.wanted),
+        RowVerdict::PutBack => format!("{} {}", say(PUT_BACK), end.wanted),
         RowVerdict::Unverified(doubt) => {
             let why = match doubt {
                 Doubt::NotReadBack => DOUBT_NOT_READ,

@@ -106,6 +106,7 @@ chinese! {
         EndpointError::Place { example, .. } => "缺少端口或地址：例如 {}。", bare(example);
         EndpointError::Kind { text } => "{text} 没有说明连接方式。";
         EndpointError::Key { key, kind, .. } => "{kind}: 没有 {key} 这一项。";
+        EndpointError::Twice { key } => "{key} 出现了两次，请只写一次。";
         EndpointError::Value { key, value, want } => "{key}={value} 无效：应为{}。", want_zh(want);
     }
 
@@ -171,6 +172,8 @@ chinese! {
         FileCause::Twice { name } => "名称“{name}”使用了两次";
         FileCause::Absent { name } => "文件中没有“{name}”";
         FileCause::TooMany { got, limit } => "{got} 个过多：最多 {limit} 个";
+        FileCause::NotPrivate { path } => "其他用户可以读取此文件，请运行 chmod 600 {path}";
+        FileCause::Outside { got } => "{got} 不在此文件所在的文件夹内";
         FileCause::Empty => "文件中没有内容";
         FileCause::Unreadable(message) => "{}", system_zh(message);
     }
@@ -576,6 +579,7 @@ mod tests {
     #[test]
     fn every_error_of_what_is_typed_or_read_is_whole_in_chinese() {
         let spelled = [
+            "can:can0?id=1&id=2",
             "x",
             "rs485:",
             "rs485:COM3?speed=1",
@@ -617,6 +621,8 @@ mod tests {
             FileCause::Twice { name: name() },
             FileCause::Absent { name: name() },
             FileCause::TooMany { got: 9, limit: 1 },
+            FileCause::NotPrivate { path: name() },
+            FileCause::Outside { got: name() },
             FileCause::Empty,
             FileCause::Unreadable(denied()),
         ];

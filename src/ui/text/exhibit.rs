@@ -67,5 +67,6 @@ texts! {
         HaltReason::Fault => "Staff: a drive reports a fault. Check the hand, then unlock and arm.", "工作人员：驱动器报告故障。检查灵巧手后，解锁并使能。";
         HaltReason::OtherController => "Staff: another program talks to the hand. Close it, then unlock and arm.", "工作人员：另有程序正在控制灵巧手。关闭后解锁并使能。";
         HaltReason::Slept => "Staff: this computer slept. Check the hand, then unlock and arm.", "工作人员：电脑曾进入睡眠。检查灵巧手后，解锁并使能。";
+        HaltReason::NotShown => "Staff: this page was not shown for a while. Check the hand, then unlock and arm.", "工作人员：此页面曾一段时间未能显示。检查灵巧手后，解锁并使能。";
     }
 }

@@ -65,6 +65,7 @@ texts! {
     DELAY: "Input to wire, 99 %", "输入到线路（99 %）";
     LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先关节的量（满程 1000）：";
     FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
+    OTHER_FOLLOWS: "At {}, {} follows this sender already: one sender must not move two hands.", "{} 上的 {} 已在跟随此来源：一个来源不可同时控制两只手。";
     PHASE_WAITING: "arming", "使能中";
     PHASE_FOLLOWING: "follows", "跟随中";
     PHASE_FROZEN: "tracking frozen?", "追踪已停止？";

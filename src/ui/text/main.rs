@@ -38,7 +38,8 @@ texts! {
     REFUSED_LET_GO: "Hold the H key: hold to run is on.", "请按住 H 键：已开启“按住运行”。";
     REFUSED_AFAR: "The hand refused its speed and force limits. If another Handscope shares it, a person there has to let you.", "灵巧手拒绝了速度与力阈值设置。若由其他 Handscope 共享，需由对方的人允许。";
     REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力阈值设置。";
-    REFUSED_POSE: "The angle of a joint is unknown or old:", "有自由度的角度未知或已过时：";
+    REFUSED_NOT_READ: "Angles and faults are not known yet, or are old.", "角度与故障尚未读取或已过时。";
+    REFUSED_POSE: "The angle of a joint makes no sense:", "有自由度的角度不合理：";
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";
     LOCKED: "This joint is locked.", "该自由度已锁定。";
 
@@ -50,7 +51,13 @@ texts! {
     LOST_TRYING: "Trying, attempt", "正在重试，第";
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
     ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认", "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
+    DOUBT_TITLE: "FEEDBACK IN DOUBT", "反馈可疑", "Motion was asked for, and nothing that the hand tells changed: its values may be frozen, and no stop can be confirmed. Each joint is held where it must be by its speed and the time. Look at the hand, and cut the 24 V supply if it moves.", "已发出运动指令，但灵巧手的反馈毫无变化：数值可能已冻结，无法确认停止。各自由度按速度与时间推算的位置保持。请查看灵巧手，若仍在运动请切断 24 V 电源。";
     OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
+    OTHER_WROTE: "It wrote {}.", "它写入了 {}。";
+    NOT_TAKEN_TITLE: "SETPOINT NOT TAKEN", "设置值未生效", "The hand holds another setpoint than it was given, and nobody else was seen to write: it ignores or limits it.", "灵巧手保持的设置值与发送的不同，且未发现其他写入：它忽略或限制了该值。";
+    SETPOINT_WROTE: "{} {}: {}, we wrote {}", "{} {}：{}，我方写入 {}";
+    SETPOINT: "{} {}: {}", "{} {}：{}";
+    SETPOINT_OUTSIDE: "out of range", "超出范围";
     FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
     LIST_END: ". ", "。";

@@ -5,7 +5,7 @@ use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::Words;
 use crate::record::Disarmed;
-use crate::record::file::OpenError;
+use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::phrase::Text;
@@ -35,9 +35,11 @@ fn disarmed(look: Look, why: Disarmed) -> &'static str {
         Disarmed::LinkLost => panels::DISARMED_LOST,
         Disarmed::Stale => panels::DISARMED_STALE,
         Disarmed::OtherController => panels::DISARMED_OTHER_CONTROLLER,
+        Disarmed::FrozenFeedback => panels::DISARMED_FROZEN,
         Disarmed::Resume => panels::DISARMED_RESUME,
         Disarmed::Released => panels::DISARMED_RELEASED,
         Disarmed::Silent => panels::DISARMED_SILENT,
+        Disarmed::Hot => panels::DISARMED_HOT,
     })
 }
 
@@ -95,6 +97,10 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             }
         }
         NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
+        NoticeKind::DisarmedByOther(conflict) => {
+            let what = words::setpoint(look, conflict);
+            look.fill(panels::DISARMED_BY_OTHER, &[&what])
+        }
         NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
@@ -126,6 +132,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         // The words of the graphics driver help whoever mends it.
+        NoticeKind::Unguarded { why } => told(panels::NOTICE_UNGUARDED, why),
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
             Language::Zh => said(panels::NOTICE_WITHOUT_OPENGL),
@@ -191,6 +198,7 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
             sessions::REFUSED,
             &[&path.display(), &not_opened(look, why)],
         ),
+        NoticeKind::Recording(notice) => recording(look, notice),
         NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
         NoticeKind::SessionsPlanned {
@@ -208,6 +216,22 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
     }
 }
 
+/// What happened to the file of a recording under way.
+fn recording(look: Look, notice: &RecorderNotice) -> String {
+    match notice {
+        RecorderNotice::Moved { from, to: Some(to) } => {
+            look.fill(sessions::FILE_MOVED, &[&from.display(), &to.display()])
+        }
+        RecorderNotice::Moved { from, to: None } => {
+            look.fill(sessions::FILE_RENAMED, &[&from.display()])
+        }
+        RecorderNotice::Removed { path, entries } => {
+            look.fill(sessions::FILE_REMOVED, &[&path.display(), entries])
+        }
+        RecorderNotice::ClockSet { next } => look.fill(sessions::CLOCK_SET, &[next]),
+    }
+}
+
 /// Why a recorded session was not opened.
 fn not_opened(look: Look, why: &OpenError) -> String {
     let words = match why {
@@ -215,6 +239,7 @@ fn not_opened(look: Look, why: &OpenError) -> String {
         OpenError::NotAFile => sessions::NOT_A_FILE,
         OpenError::NotMcap => sessions::NOT_MCAP,
         OpenError::Foreign => sessions::FOREIGN,
+        OpenError::SeveralHands { hands } => return look.told(sessions::SEVERAL_HANDS, hands),
         OpenError::Empty => sessions::EMPTY,
     };
     look.say(words).to_owned()

@@ -85,6 +85,11 @@ texts! {
     NOT_MCAP: "it is not an MCAP file", "它不是 MCAP 文件";
     NOT_A_FILE: "it is no file, but a folder or a device", "它不是文件，而是文件夹或设备";
     FOREIGN: "it is an MCAP file of another program", "它是其他程序的 MCAP 文件";
+    FILE_MOVED: "{} was renamed while it is recorded. It is written on as {}; nothing is lost.", "正在录制的文件 {} 被改名，将继续写入 {}，没有丢失内容。";
+    FILE_RENAMED: "{} was renamed while it is recorded. It is written on under its new name; nothing is lost.", "正在录制的文件 {} 被改名，将以新名称继续写入，没有丢失内容。";
+    FILE_REMOVED: "{} was removed while it was recorded: {} entries are gone with it. The recording goes on in a new file.", "正在录制的文件 {} 被删除：其中 {} 条记录已丢失。录制将在新文件中继续。";
+    CLOCK_SET: "The computer's clock was set, or it slept: the recording goes on in {}.", "计算机时钟被调整或曾休眠：录制将在 {} 中继续。";
+    SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be told apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
     NOT_NOW: "Not replayed now: a series of trials or a question about the hand must be ended first.", "现在不能回放：请先结束抓取试验或完成关于灵巧手的询问。";

@@ -23,7 +23,8 @@ texts! {
     CEILING: "{} presses harder than the limit: {} g, limit {} g.", "{}的力超过上限：{} g，上限 {} g。";
     UNREACHED: "{} did not reach {} in time.", "{}未按时到达 {}。";
     LIMITS_REFUSED: "{} does not show the speed and force threshold that were set.", "{}没有显示已设置的速度与力阈值。";
-    BLIND: "{} cannot be watched: its {} is unknown or old.", "无法监视{}：{}读数未知或已过时。";
+    NOT_READ: "The hand cannot be watched: its {} is not known yet, or old.", "无法监视灵巧手：{}读数尚未获取或已过时。";
+    BLIND: "{} cannot be watched: its {} makes no sense.", "无法监视{}：{}读数不合理。";
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
     NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
     NO_CONTACT: "{} felt no contact that could be approached.", "{}没有感到接触，无法确定接触位置。";
@@ -122,6 +123,7 @@ texts! {
     COLUMN_SLIPS: "Slips", "滑动";
     COLUMN_CURRENT: "Peak, mA", "峰值 mA";
     COLUMN_HEAT: "Heat, °C", "温升 °C";
+    END_DEAD_DRIVE: "dead drive: it never moved", "驱动无动作：该自由度从未运动";
     COLUMN_END: "End", "结束";
     MAP: "Overshoot, g, by speed and threshold", "各速度与力阈值的超出量 g";
     BEST: "Best", "最佳", "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
@@ -240,6 +242,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         } => look.fill(CEILING, &[&joint(dof), &grams, &ceiling]),
         Abort::Unreached { dof, target } => look.fill(UNREACHED, &[&joint(dof), &target]),
         Abort::LimitsRefused { dof } => look.fill(LIMITS_REFUSED, &[&joint(dof)]),
+        Abort::NotRead { what } => look.fill(NOT_READ, &[&look.say(group(what))]),
         Abort::Blind { what, dof } => look.fill(BLIND, &[&joint(dof), &look.say(group(what))]),
         Abort::TooWarm {
             dof,

@@ -3,7 +3,7 @@
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::link::Owner;
-use crate::record::ArmRefusal;
+use crate::record::{ArmRefusal, SetpointConflict};
 use crate::ui::kit::Look;
 use crate::ui::text::phrase::Text;
 use crate::ui::text::{inputs, main};
@@ -38,9 +38,23 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::LetGo => look.say(main::REFUSED_LET_GO).into(),
         ArmRefusal::Refused => look.say(main::REFUSED_AFAR).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
+        ArmRefusal::NotRead => look.say(main::REFUSED_NOT_READ).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
             look.told(main::REFUSED_POSE, look.say(dof(joint)))
         }
+    }
+}
+
+/// A setpoint that the hand holds, and what was written here.
+pub(crate) fn setpoint(look: Look, conflict: &SetpointConflict) -> String {
+    let (register, joint) = (conflict.register.name(), look.say(dof(conflict.dof)));
+    let outside = || look.say(main::SETPOINT_OUTSIDE).to_owned();
+    let holds = conflict
+        .holds
+        .map_or_else(outside, |holds| holds.to_string());
+    match conflict.wrote {
+        Some(wrote) => look.fill(main::SETPOINT_WROTE, &[&register, &joint, &holds, &wrote]),
+        None => look.fill(main::SETPOINT, &[&register, &joint, &holds]),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::hand::Status;
 use crate::trials::TrialSetting;
 use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
+use crate::trials::measure::metrics::DEAD_DRIVE;
 use crate::ui::kit::{Look, format};
 use crate::ui::text::{Text, tune, words};
 use std::cmp::Ordering;
@@ -44,6 +45,9 @@ pub(crate) fn end_words(look: Look, name: Option<&str>) -> String {
     let Some(name) = name else {
         return format::UNKNOWN.to_owned();
     };
+    if name == DEAD_DRIVE {
+        return look.say(tune::END_DEAD_DRIVE).to_owned();
+    }
     let mut known = (0..=u8::MAX).map(Status::from_raw);
     known
         .find(|status| !matches!(status, Status::Unknown(_)) && status.name() == name)

@@ -96,6 +96,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
         lost_elsewhere(pane),
         faults(pane),
         other_controller(pane),
+        not_taken(pane),
         stale(pane),
         connecting(pane),
         empty(pane),
@@ -120,7 +121,11 @@ fn alarm(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.state.hand();
     let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
     let hand = hands.find(|hand| matches!(hand.link.hold, Hold::Alarm { .. }))?;
-    let alarm = Warning::new(pane, main::ALARM_TITLE, pane.look.palette.bad);
+    let title = match hand.link.feedback_in_doubt {
+        true => main::DOUBT_TITLE,
+        false => main::ALARM_TITLE,
+    };
+    let alarm = Warning::new(pane, title, pane.look.palette.bad);
     Some(match pane.state.hands.is_several() {
         true => alarm.of(pane, &hand.label.name),
         false => alarm,
@@ -177,7 +182,22 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
 fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.state.hand().link;
     let other = || Warning::new(pane, main::OTHER_CONTROLLER_TITLE, pane.look.palette.warn);
-    (link.state.is_live() && link.other_controller).then(other)
+    let warning = (link.state.is_live() && link.other_controller).then(other)?;
+    Some(match &link.foreign_setpoint {
+        Some(foreign) => {
+            let foreign = words::setpoint(pane.look, foreign);
+            warning.more(pane.look.fill(main::OTHER_WROTE, &[&foreign]))
+        }
+        None => warning,
+    })
+}
+
+/// A setpoint that the armed hand ignores or limits.
+fn not_taken(pane: &Pane<'_>) -> Option<Warning> {
+    let link = &pane.state.hand().link;
+    let conflict = link.setpoint_not_taken.filter(|_| link.armed.is_some())?;
+    let warning = Warning::new(pane, main::NOT_TAKEN_TITLE, pane.look.palette.warn);
+    Some(warning.more(words::setpoint(pane.look, &conflict)))
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {

@@ -13,6 +13,7 @@ use egui::{
     Color32, Event, PointerButton, Popup, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
     Ui, WidgetInfo, pos2, vec2,
 };
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// Height of the whole.
@@ -28,9 +29,6 @@ const PACES: [(f32, &str); 6] = [
     (5.0, "5x"),
     (10.0, "10x"),
 ];
-/// Marks in the list.
-const LISTED: usize = 400;
-
 /// Draws it.
 pub(crate) fn timeline_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     if line.runs || line.waits {
@@ -103,42 +101,71 @@ fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
     label.ui(ui).on_hover_text(line.path.display().to_string());
 }
 
-/// One entry of the list of marks.
-struct TimelineEntry {
+/// One entry of the list of marks. Its words are made where they are seen: a long session has a hundred thousand.
+#[derive(Clone, Copy)]
+struct TimelineEntry<'a> {
     at: Moment,
-    words: String,
+    kind: EventKind,
+    words: &'a str,
     color: Color32,
-    is_note: bool,
 }
 
-fn entries(look: Look, line: &Timeline) -> Vec<TimelineEntry> {
-    let marks = line
-        .marks
-        .iter()
-        .filter(|mark| mark.kind != EventKind::Note);
-    let marks = marks.filter_map(|mark| {
-        let (text, color) = shown(look, mark.kind)?;
-        let words = match mark.words.is_empty() {
-            true => look.say(text).to_owned(),
-            false => look.pair(look.say(text), &mark.words),
-        };
+impl TimelineEntry<'_> {
+    fn is_note(self) -> bool {
+        self.kind == EventKind::Note
+    }
+
+    fn say(self, look: Look) -> String {
+        match shown(look, self.kind).filter(|_| !self.is_note()) {
+            Some((text, _)) if self.words.is_empty() => look.say(text).to_owned(),
+            Some((text, _)) => look.pair(look.say(text), self.words),
+            None => self.words.to_owned(),
+        }
+    }
+}
+
+/// All marks, and the notes in force; not in the order of time.
+fn entries(look: Look, line: &Timeline) -> impl Iterator<Item = TimelineEntry<'_>> {
+    let marks = line.marks.iter();
+    let marks = marks.filter(|mark| mark.kind != EventKind::Note);
+    let marks = marks.filter_map(move |mark| {
+        let (_, color) = shown(look, mark.kind)?;
         Some(TimelineEntry {
             at: mark.at,
-            words,
+            kind: mark.kind,
+            words: &mark.words,
             color,
-            is_note: false,
         })
     });
-    let notes = line.notes.iter().map(|note| TimelineEntry {
+    let notes = line.notes.iter().map(move |note| TimelineEntry {
         at: note.at(),
-        words: note.words.clone(),
+        kind: EventKind::Note,
+        words: &note.words,
         color: look.palette.text,
-        is_note: true,
     });
-    let mut all: Vec<TimelineEntry> = marks.chain(notes).collect();
-    all.sort_by_key(|entry| entry.at);
-    all.truncate(LISTED);
-    all
+    marks.chain(notes)
+}
+
+/// The colour of each column of points that has a mark: of several in one, that of the first of the worst kind.
+fn columns(look: Look, place: Rect, line: &Timeline) -> BTreeMap<i32, (u8, Color32)> {
+    let rank = |kind| match kind {
+        EventKind::Fault | EventKind::LinkLost => 0,
+        EventKind::Stop | EventKind::Recording => 1,
+        EventKind::Note => 2,
+        _ => 3,
+    };
+    let mut columns = BTreeMap::new();
+    for entry in entries(look, line) {
+        let column = x_of(place, line, entry.at).round();
+        #[expect(clippy::cast_possible_truncation, reason = "a column of a screen")]
+        let there = columns.entry(column as i32);
+        let own = (rank(entry.kind), entry.color);
+        let kept = there.or_insert(own);
+        if own.0 < kept.0 {
+            *kept = own;
+        }
+    }
+    columns
 }
 
 fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
@@ -146,28 +173,35 @@ fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let button = Button::said(look, sessions::EVENTS).ui(ui, look);
     Popup::menu(&button).show(|ui| {
         ui.set_min_width(320.0);
-        let all = entries(look, line);
+        let mut all: Vec<_> = entries(look, line).collect();
+        all.sort_by_key(|entry| entry.at);
         if all.is_empty() {
             Label::muted(look, sessions::NO_EVENTS).ui(ui);
         }
-        ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-            for entry in all {
-                ui.horizontal(|ui| {
-                    kit::lamp_ui(ui, Some(entry.color));
-                    let words = format!("{}  {}", clock(entry.at.since(line.first)), entry.words);
-                    if ui.button(words).clicked() {
-                        session(pane, SessionAction::Seek(entry.at));
-                    }
-                    if entry.is_note {
-                        let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
-                        let none = SessionAction::EditNote(entry.at, String::new());
-                        delete
-                            .weight(Weight::Quiet)
-                            .sends(ui, pane, Action::Session(none));
-                    }
-                });
+        let height = ui.spacing().interact_size.y;
+        let area = ScrollArea::vertical().max_height(320.0);
+        area.show_rows(ui, height, all.len(), |ui, rows| {
+            for entry in all.get(rows).unwrap_or_default() {
+                entry_ui(ui, pane, line, *entry);
             }
         });
+    });
+}
+
+fn entry_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, entry: TimelineEntry<'_>) {
+    let look = pane.look;
+    ui.horizontal(|ui| {
+        kit::lamp_ui(ui, Some(entry.color));
+        let clock = clock(entry.at.since(line.first));
+        if ui.button(format!("{clock}  {}", entry.say(look))).clicked() {
+            session(pane, SessionAction::Seek(entry.at));
+        }
+        if entry.is_note() {
+            let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
+            let none = SessionAction::EditNote(entry.at, String::new());
+            let delete = delete.weight(Weight::Quiet);
+            delete.sends(ui, pane, Action::Session(none));
+        }
     });
 }
 
@@ -198,11 +232,14 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     paint(ui, look, place, line);
     if let Some(pointer) = response.hover_pos() {
         let here = moment(line, length, share(place, pointer.x));
-        let near = entries(look, line)
-            .into_iter()
-            .find(|entry| (x_of(place, line, entry.at) - pointer.x).abs() < theme::STEP);
+        let away = |entry: &TimelineEntry<'_>| (x_of(place, line, entry.at) - pointer.x).abs();
+        let near = entries(look, line).filter(|entry| away(entry) < theme::STEP);
+        let near = near.min_by(|one, other| away(one).total_cmp(&away(other)));
         let clock = clock(here.since(line.first));
-        let words = near.map_or_else(|| look.tip(sessions::LINE).to_owned(), |entry| entry.words);
+        let words = near.map_or_else(
+            || look.tip(sessions::LINE).to_owned(),
+            |entry| entry.say(look),
+        );
         response.on_hover_text(format!("{clock}\n{words}"));
     }
 }
@@ -240,10 +277,11 @@ fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {
         place.shrink2(vec2(0.0, theme::STEP)),
         &line.strip,
     );
-    for entry in entries(look, line) {
-        let x = x_of(place, line, entry.at);
-        painter.vline(x, place.y_range(), Stroke::new(1.0, entry.color));
-        painter.circle_filled(pos2(x, place.top() + theme::BAR), theme::BAR, entry.color);
+    for (column, (_, color)) in columns(look, place, line) {
+        #[expect(clippy::cast_precision_loss, reason = "a column of a screen")]
+        let x = column as f32;
+        painter.vline(x, place.y_range(), Stroke::new(1.0, color));
+        painter.circle_filled(pos2(x, place.top() + theme::BAR), theme::BAR, color);
     }
     let x = x_of(place, line, line.at);
     let color = if line.waits {
@@ -266,4 +304,53 @@ fn moment(line: &Timeline, length: Duration, share: f32) -> Moment {
 fn x_of(place: Rect, line: &Timeline, at: Moment) -> f32 {
     let length = line.last.since(line.first).as_secs_f32().max(1e-3);
     place.left() + at.since(line.first).as_secs_f32() / length * place.width()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::file::FileMark;
+    use std::path::PathBuf;
+    use std::sync::Arc;
+
+    #[test]
+    fn each_of_thousands_of_marks_is_drawn_and_no_column_twice() {
+        let look = Look::of(&crate::app::state::State::default());
+        let at = |second: u64| Moment::from_micros(second * 1_000_000);
+        let mark = |second, kind| FileMark {
+            at: at(second),
+            kind,
+            words: String::new(),
+        };
+        // Trials in the first half, and far behind them a fault at the same second as a trial.
+        let mut marks: Vec<FileMark> = (0..5000).map(|nth| mark(nth, EventKind::Trial)).collect();
+        marks.extend([mark(9000, EventKind::Trial), mark(9000, EventKind::Fault)]);
+        let line = Timeline {
+            path: PathBuf::new(),
+            title: String::new(),
+            began: String::new(),
+            hand: String::new(),
+            first: at(0),
+            last: at(10_000),
+            at: at(0),
+            runs: false,
+            pace: 1.0,
+            looped: None,
+            marks: Arc::new(marks),
+            notes: Arc::default(),
+            strip: Arc::default(),
+            waits: false,
+            damaged: false,
+            live_needs_eyes: false,
+        };
+        let place = Rect::from_min_size(pos2(100.0, 0.0), vec2(1000.0, LINE));
+        let drawn = columns(look, place, &line);
+        assert_eq!(
+            drawn.len(),
+            502,
+            "500 columns of the first half, its end, and the fault"
+        );
+        assert_eq!(drawn[&1000].1, look.palette.bad);
+        assert_eq!(entries(look, &line).count(), 5002);
+    }
 }

@@ -1,11 +1,12 @@
 //! `follow`: a hand that follows datagrams of another process, and what is told when it cannot.
 
-use crate::setup::process::{Running, listen, run, sim_on_tcp, start};
+use crate::setup::process::{Running, listen, run, sim_on_tcp, start, take_pipe};
 use crate::setup::skipped::skipped;
+use handscope::record::file::SessionFile;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::cell::RefCell;
-use std::io::{Read as _, Write as _};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{TcpStream, UdpSocket};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -22,29 +23,64 @@ fn following(hand: &str, more: &[&str]) -> (Running, String) {
     (running, place)
 }
 
-/// Closes the index slowly, a hundred lines a second, until it is told to end.
-fn sender(place: String, ended: Arc<AtomicBool>) -> JoinHandle<()> {
-    std::thread::spawn(move || {
-        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-        let mut seq = 0;
-        while !ended.load(Ordering::Relaxed) {
-            let index = 1.0 - f64::from(seq % 400) / 1000.0;
-            let line = format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#);
-            let _sent = socket.send_to(line.as_bytes(), &place);
-            seq += 1;
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    })
+/// Closes the index slowly, a hundred lines a second, until it is dropped.
+pub(super) struct Sender {
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
-fn phase(line: &str) -> Value {
+impl Sender {
+    pub(super) fn start(place: &str) -> Self {
+        Self::each(place, |seq| 1.0 - f64::from(seq % 400) / 1000.0)
+    }
+
+    /// Sends the index where this says.
+    fn each(place: &str, index: fn(u32) -> f64) -> Self {
+        let (place, ended) = (place.to_owned(), Arc::new(AtomicBool::new(false)));
+        let until = Arc::clone(&ended);
+        let send = move || {
+            let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+            for seq in 0.. {
+                if until.load(Ordering::Relaxed) {
+                    return;
+                }
+                let index = index(seq);
+                let line = format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#);
+                let _sent = socket.send_to(line.as_bytes(), &place);
+                std::thread::sleep(Duration::from_millis(10));
+            }
+        };
+        Self {
+            ended,
+            thread: Some(std::thread::spawn(send)),
+        }
+    }
+}
+
+impl Drop for Sender {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        self.thread.take().unwrap().join().unwrap();
+    }
+}
+
+pub(super) fn phase(line: &str) -> Value {
     serde_json::from_str::<Value>(line).unwrap()["phase"].take()
 }
 
-fn angle(hand: &str) -> i64 {
-    let read = run(&["read", "ANGLE_ACT", "--hand", hand, "--json"]).ok();
-    let values = &read.lines()[0]["ANGLE_ACT"];
+fn index(register: &str, hand: &str) -> i64 {
+    let read = run(&["read", register, "--hand", hand, "--json"]).ok();
+    let values = &read.lines()[0][register];
     values[3].as_i64().unwrap_or_else(|| panic!("{}", read.out))
+}
+
+fn angle(hand: &str) -> i64 {
+    index("ANGLE_ACT", hand)
+}
+
+/// Where the index was told to go.
+pub(super) fn setpoint(hand: &str) -> i64 {
+    index("ANGLE_SET", hand)
 }
 
 #[test]
@@ -52,8 +88,7 @@ fn a_hand_follows_another_program_and_is_stopped_when_that_is_killed() {
     let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
     let before = angle(&hand);
     let (mut running, place) = following(&hand, &["--arm"]);
-    let ended = Arc::new(AtomicBool::new(false));
-    let sends = sender(place, Arc::clone(&ended));
+    let sends = Sender::start(&place);
     running.until(|line| phase(line) == "following");
     let told = running.until(|line| {
         let told: Value = serde_json::from_str(line).unwrap();
@@ -61,8 +96,7 @@ fn a_hand_follows_another_program_and_is_stopped_when_that_is_killed() {
     });
     let told: Value = serde_json::from_str(&told).unwrap();
     assert!(told["delay_p99_ms"].as_f64().is_some(), "{told}");
-    ended.store(true, Ordering::Relaxed);
-    sends.join().unwrap();
+    drop(sends);
     running.until(|line| phase(line) == "silent");
     // Nobody can press Enter in a test.
     let said = running.end();
@@ -77,19 +111,126 @@ fn a_hand_follows_another_program_and_is_stopped_when_that_is_killed() {
 }
 
 #[test]
+fn nobody_says_that_a_hand_was_stopped_where_nothing_reached_it() {
+    let (sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let (mut running, place) = following(&hand, &["--arm"]);
+    let _sends = Sender::start(&place);
+    running.until(|line| phase(line) == "following");
+    sim.kill();
+    let said = running.end();
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    assert!(
+        said.err.contains("which may still finish its move"),
+        "{}",
+        said.err
+    );
+    assert!(!said.err.contains("was stopped"), "{}", said.err);
+}
+
+#[test]
+fn a_hand_is_held_when_nobody_reads_the_output_any_more() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let args = ["follow", "--hand", &hand, "--udp", "127.0.0.1:0", "--arm"];
+    // A slow hand with its target far ahead: unless it is held, it goes on for long.
+    let slow = ["--speed", "50", "--lead", "500", "--rate", "1700"];
+    let (mut child, out) = take_pipe(&[&args[..], &slow].concat());
+    let mut lines = BufReader::new(out).lines().map(Result::unwrap);
+    let ready = lines.next().unwrap();
+    let _sends = Sender::each(ready.strip_prefix("ready udp ").unwrap(), |seq| {
+        f64::from(seq % 2) / 100.0
+    });
+    lines.find(|line| line.starts_with("following")).unwrap();
+    // Until it moves: a drive needs its dead time.
+    while angle(&hand) > 960 {}
+    drop(lines);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    let mut said = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut said)
+        .unwrap();
+    assert!(
+        said.contains("nobody reads the output any more: the hand was stopped"),
+        "{said}"
+    );
+    let (told, at) = (setpoint(&hand), angle(&hand));
+    assert!(told > 100 && told.abs_diff(at) < 40, "told {told}, at {at}");
+}
+
+#[test]
+fn what_was_sent_stands_in_the_recording_and_a_disk_that_fails_holds_nothing_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("file"), "").unwrap();
+    for (name, is_kept) in [("moves.mcap", true), ("file/moves.mcap", false)] {
+        let record = path(name);
+        let (mut running, place) = following("sim:?scenario=free", &["--arm", "--record", &record]);
+        let _sends = Sender::start(&place);
+        let told = running.until(|line| {
+            let told: Value = serde_json::from_str(line).unwrap();
+            told["phase"] == "following" && told["taken"].as_u64() > Some(100)
+        });
+        running.signal(Signal::SIGINT);
+        let ended = running.end().ok();
+        let is_told = ended.err.contains("the recording cannot be written");
+        assert_eq!(is_told, !is_kept, "{told} {}", ended.err);
+        if is_kept {
+            let file = SessionFile::open(record.as_ref()).unwrap();
+            let writes = file.overview().counts.writes;
+            assert!(writes > 10, "{writes}: {}", ended.err);
+        }
+    }
+    let there = path("moves.mcap");
+    let args = ["--udp", "127.0.0.1:0", "--record", &there];
+    let ended = run(&[&["follow", "--hand", "sim:"], &args[..]].concat());
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.err.contains("already there"), "{}", ended.err);
+}
+
+#[test]
+fn a_second_hand_that_would_obey_the_same_sender_is_refused() {
+    let dds = |more: &[&str]| {
+        let args = ["follow", "--hand", "sim:", "--dds", "--domain", "47"];
+        start(&[&args[..], more].concat())
+    };
+    let mut first = dds(&["--arm", "--name", "egg"]);
+    assert_eq!(first.line(), "ready dds 127.0.0.1");
+    // Who only looks on, or is the other hand of a pair, is in nobody's way.
+    for others in [&[][..], &["--arm", "--side", "left"]] {
+        assert_eq!(dds(others).line(), "ready dds 127.0.0.1");
+    }
+    let ended = dds(&["--arm"]).end();
+    assert_eq!(
+        (ended.code, ended.out.as_str()),
+        (Some(1), ""),
+        "{}",
+        ended.err
+    );
+    assert!(
+        ended.err.contains("the right hand egg of "),
+        "{}",
+        ended.err
+    );
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    first.signal(Signal::SIGINT);
+    first.end().ok();
+    assert_eq!(dds(&["--arm"]).line(), "ready dds 127.0.0.1");
+}
+
+#[test]
 fn nothing_moves_without_a_person_who_lets_it() {
     let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
     let before = angle(&hand);
     let (mut running, place) = following(&hand, &[]);
-    let ended = Arc::new(AtomicBool::new(false));
-    let sends = sender(place, Arc::clone(&ended));
+    let sends = Sender::start(&place);
     let told = running.until(|line| {
         let told: Value = serde_json::from_str(line).unwrap();
         told["not_granted"].as_u64() > Some(50)
     });
     assert_eq!(phase(&told), "waiting");
-    ended.store(true, Ordering::Relaxed);
-    sends.join().unwrap();
+    drop(sends);
     running.signal(Signal::SIGINT);
     running.end().ok();
     assert_eq!(angle(&hand), before);
@@ -98,13 +239,11 @@ fn nothing_moves_without_a_person_who_lets_it() {
 #[test]
 fn ctrl_c_stops_the_hand_and_ends_well() {
     let (mut running, place) = following("sim:?scenario=free", &["--arm"]);
-    let ended = Arc::new(AtomicBool::new(false));
-    let sends = sender(place, Arc::clone(&ended));
+    let sends = Sender::start(&place);
     running.until(|line| phase(line) == "following");
     running.signal(Signal::SIGINT);
     running.end().ok();
-    ended.store(true, Ordering::Relaxed);
-    sends.join().unwrap();
+    drop(sends);
 }
 
 /// Follows another hand; told as JSON.
@@ -244,6 +383,48 @@ fn recorded_hand_tracking_is_retargeted_to_a_hand_that_holds_while_nobody_sees_i
 }
 
 #[test]
+fn a_landmark_that_is_not_known_leaves_its_joint_alone() {
+    let mut command = Command::new("python3");
+    let python = "import sys; sys.path.insert(0, 'assets'); import retarget; \
+        points = [[float(at), float(at * at % 7), 1.0] for at in range(21)]; \
+        points[8] = [float('nan')] * 3; print(retarget.bends(points)[2:4])";
+    command
+        .args(["-c", python])
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
+    command.env("PYTHONDONTWRITEBYTECODE", "1");
+    let Ok(output) = command.output() else {
+        return skipped("a sender in Python", "this machine has no python3");
+    };
+    let said = String::from_utf8(output.stdout).unwrap();
+    // The index is not known, and the middle finger is.
+    assert!(
+        said.starts_with('[') && said.ends_with(", None]\n"),
+        "{said}"
+    );
+    assert!(!said.starts_with("[None"), "{said}");
+}
+
+#[test]
+fn who_can_move_a_hand_from_beyond_this_computer_is_said_at_the_start() {
+    let any = "0.0.0.0:0";
+    for (args, can) in [
+        (&["follow", "--udp", any, "--arm"][..], "move this hand"),
+        (&["follow", "--tcp", any, "--arm"], "move this hand"),
+        (&["follow", "--udp", any], "send to this hand"),
+        (&["share", "--tcp", any, "--writers"], "move this hand"),
+        (&["share", "--tcp", any], "read this hand"),
+    ] {
+        let mut running = start(&[args, &["--hand", "sim:"]].concat());
+        let told = running.complaint();
+        let words = "warning: anyone in the network can reach 0.0.0.0:";
+        assert!(
+            told.contains(words) && told.contains(&format!("and {can};")),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn wrong_use_is_told_in_one_sentence() {
     for (args, code, words) in [
         (&["--hand", "sim:"][..], 2, "--udp"),
@@ -297,6 +478,23 @@ fn wrong_use_is_told_in_one_sentence() {
             &["--hand", "sim:", "--gamepad", "--map", "/none.toml"],
             1,
             "/none.toml",
+        ),
+        (
+            &["--hand", "sim:", "--gamepad", "--devices", "/nonexistent"],
+            1,
+            "no folder /nonexistent",
+        ),
+        (
+            &[
+                "--hand",
+                "sim:",
+                "--udp",
+                "127.0.0.1:0",
+                "--consent",
+                "stdin",
+            ],
+            2,
+            "--arm",
         ),
     ] {
         let ended = run(&[&["follow"], args].concat());

@@ -16,6 +16,9 @@ fn a_folder_without_a_gamepad_is_told_in_one_sentence() {
     let ended = run(&["inputs", "--devices", missing.to_str().unwrap()]);
     assert_eq!(ended.code, Some(1));
     assert!(ended.err.contains("cannot be listed"), "{}", ended.err);
+    let ended = run(&["inputs", "--watch", "--devices", missing.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.err.contains("there is no folder"), "{}", ended.err);
 }
 
 #[test]

@@ -2,11 +2,16 @@
 
 #[cfg(unix)]
 mod can;
+mod consent;
+#[cfg(unix)]
+mod cut_short;
 mod datagrams;
 #[cfg(unix)]
 mod doctor;
 #[cfg(unix)]
 mod doors;
+#[cfg(unix)]
+mod exports;
 #[cfg(target_os = "linux")]
 mod follow;
 mod inputs;
@@ -31,6 +36,7 @@ mod trial;
 mod tune;
 mod usage;
 #[cfg(unix)]
+mod web_page;
 mod wire;
 #[cfg(unix)]
 mod wires;

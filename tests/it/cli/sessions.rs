@@ -144,6 +144,48 @@ fn a_signal_closes_the_file_in_the_folder_of_the_day() {
 }
 
 #[test]
+fn a_renamed_file_is_told_and_written_on_and_one_that_cannot_be_written_still_has_its_statistics() {
+    let folder = tempfile::tempdir().unwrap();
+    let day = folder.path().join("day");
+    let (file, other) = (day.join("a.mcap"), folder.path().join("b.mcap"));
+    let mut running = start(&["record", "--hand", "sim:", "--out", text(&file)]);
+    running.complaint();
+    std::fs::rename(&file, &other).unwrap();
+    let told = running.complaint();
+    let words = format!(
+        "{} was renamed while it is recorded; it is written on as {}, and nothing is lost",
+        file.display(),
+        other.display()
+    );
+    assert!(told.contains(&words), "{told}");
+    running.signal(Signal::SIGINT);
+    let stats = running.end().ok().lines().remove(0);
+    assert_eq!(stats["file"], text(&other));
+    assert_eq!(
+        (&stats["missing"], &stats["closed"]),
+        (&0.into(), &true.into())
+    );
+    // Its folder is removed, and a file takes the folder's place: nothing can be written any more.
+    let mut running = start(&["record", "--hand", "sim:", "--out", text(&file)]);
+    running.complaint();
+    std::fs::remove_dir_all(&day).unwrap();
+    std::fs::write(&day, "").unwrap();
+    let told = running.complaint();
+    assert!(told.contains("was removed while it was recorded"), "{told}");
+    let told = running.complaint();
+    assert!(told.contains("cannot be written"), "{told}");
+    running.signal(Signal::SIGINT);
+    let ended = running.end();
+    assert_eq!(ended.code, Some(1), "{}", ended.err);
+    let stats = ended.lines().remove(0);
+    assert_eq!(
+        (&stats["states"], &stats["closed"]),
+        (&Value::Null, &false.into())
+    );
+    assert!(stats["missing"].as_u64().unwrap() > 0, "{stats}");
+}
+
+#[test]
 fn a_killed_recording_opens_says_that_it_was_not_closed_and_is_recovered() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("killed.mcap");

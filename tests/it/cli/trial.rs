@@ -1,10 +1,15 @@
 //! Grasp trials by script, on hands in other processes: over every wire, and what ends them.
 
 use crate::setup::process::{Running, run, sim_on_all, sim_on_tcp, start};
+use handscope::hand::Dof;
+use handscope::sim::serve::modbus_tcp;
+use handscope::sim::{SharedHand, SimConfig, SimHand};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::time::Instant;
 
 /// Runs of which one must be undisturbed: this machine has other work, and a peak lasts 30 ms.
 const RUNS: usize = 4;
@@ -267,4 +272,36 @@ fn a_hand_that_is_not_there_leaves_no_folder() {
     assert_eq!(ended.code, Some(1));
     assert!(ended.err.contains("no hand at"), "{}", ended.err);
     assert!(!place.exists());
+}
+
+#[test]
+fn a_dead_drive_is_a_result_of_its_own_and_no_success() {
+    let runtime = tokio::runtime::Runtime::new().unwrap();
+    let (address, _served) = runtime.block_on(async {
+        let mut hand = SimHand::new(SimConfig::default());
+        hand.set_dead(Dof::Index, true);
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let hand = SharedHand::new(hand, Instant::now());
+        (address, tokio::spawn(modbus_tcp::serve(hand, listener)))
+    });
+    let hand = format!("tcp:{address}");
+    let plan = ["--joint", "index", "--close", "300", "--dwell", "0.5"];
+    let line = [
+        &["trial", "--hand", &hand, "--arm", "--rest", "0"],
+        &plan[..],
+    ]
+    .concat();
+    let ended = run(&[&line[..], &["--json"]].concat());
+    assert_eq!(ended.code, Some(1), "{}", ended.err);
+    assert!(ended.err.contains("index never moved"), "{}", ended.err);
+    let joint = &ended.lines()[0]["trial"]["joints"][0];
+    assert_eq!(joint["end_status"], "dead_drive");
+    assert_eq!(joint["dead_drive"], true);
+    let words = run(&line);
+    assert!(
+        words.out.contains("dead drive: it never moved"),
+        "{}",
+        words.out
+    );
 }

@@ -477,7 +477,7 @@ fn exhibit_file(state: &mut State, bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let (folder, own) = (Path::new("booth"), PoseLibrary::default());
     let file = ExhibitFile::parse(&text, folder);
-    let read = file.and_then(|file| Ok((file.plan(&own)?, file.poses(), file.logo()?)));
+    let read = file.and_then(|file| Ok((file.plan(&own)?, file.poses()?, file.logo()?)));
     let (plan, poses, logo) = match read {
         Ok(read) => read,
         Err(why) => return assert!(!why.to_string().is_empty()),

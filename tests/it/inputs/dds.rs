@@ -81,6 +81,7 @@ fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
             assert!(phases.contains(&phase), "{phase:?}: {phases:?}");
         }
         assert_eq!(stage.link().status().disarmed, Some(Disarmed::Silent));
+        stage.pass(600).await;
         let moved = stage.index();
         assert!(moved.len() > 60, "{}", moved.len());
         // It moves nothing before a person lets it.

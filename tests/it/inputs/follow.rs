@@ -89,26 +89,27 @@ impl Stage {
         &self.seen
     }
 
+    fn beginning(&self, lease: Lease) -> FollowStart {
+        let terms = FollowTerms {
+            limits: LIMITS,
+            ..FollowTerms::default()
+        };
+        FollowStart {
+            lease,
+            terms: watch::Sender::new(terms).subscribe(),
+            arm: gentle(),
+            seen: self.sample(),
+            clock: self.clock,
+        }
+    }
+
     /// A person lets what is offered here move the hand.
     pub(super) fn follow(
         &self,
         lease: Lease,
         taken: mpsc::Receiver<Offer>,
     ) -> JoinHandle<(FollowEnd, Vec<FollowPhase>)> {
-        let terms = FollowTerms {
-            limits: LIMITS,
-            ..FollowTerms::default()
-        };
-        let (link, start) = (
-            self.link.clone(),
-            FollowStart {
-                lease,
-                terms: watch::Sender::new(terms).subscribe(),
-                arm: gentle(),
-                seen: self.sample(),
-                clock: self.clock,
-            },
-        );
+        let (link, start) = (self.link.clone(), self.beginning(lease));
         tokio::spawn(async move {
             let mut phases = Vec::new();
             let tell = |view: FollowView| {
@@ -241,6 +242,61 @@ fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         assert!(phases.contains(&FollowPhase::Silent), "{phases:?}");
         assert_eq!(stage.link.status().disarmed, Some(Disarmed::Silent));
         check(&stage.index());
+    });
+}
+
+#[test]
+fn a_warm_drive_is_told_and_a_hot_one_stops_the_hand_whoever_is_followed() {
+    in_virtual_time(async {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        let mut stage = Stage::at(hand.clone()).await;
+        let warm = |celsius| hand.with(|hand, _| hand.warm(Dof::Index, celsius));
+        warm(65.0);
+        let (offers, taken) = mpsc::channel(64);
+        let (link, start) = (
+            stage.link.clone(),
+            stage.beginning(stage.link.grant(Owner::Gamepad)),
+        );
+        let task = tokio::spawn(async move {
+            let mut heats = Vec::new();
+            let end = follow(&link, start, taken, |view| heats.push(view.heat)).await;
+            (end, heats)
+        });
+        let about = |n: u64| 500 + i16::try_from(n % 5).unwrap();
+        stage.send(&offers, about, 1000).await;
+        assert!(
+            stage.link.status().armed.is_some(),
+            "warm is no reason to stop"
+        );
+        warm(72.0);
+        stage.send(&offers, about, 1000).await;
+        let (end, heats) = task.await.unwrap();
+        let FollowEnd::Hot(heat) = end else {
+            panic!("{end:?}");
+        };
+        assert!(heat.dof == Dof::Index && heat.is_hot(), "{heat}");
+        let warmest = heats.iter().flatten().map(|heat| heat.celsius).max();
+        assert!(
+            warmest.is_some_and(|celsius| (60..70).contains(&celsius)),
+            "{warmest:?}"
+        );
+        let status = stage.link.status();
+        assert_eq!((status.armed, status.holder), (None, None));
+        assert_eq!(status.disarmed, Some(Disarmed::Hot));
+        let sent = stage.index();
+        assert_eq!(sent.last().unwrap().cause, WriteCause::Hold);
+        check(&sent);
+        // Let again while it is hot, it moves nothing.
+        stage.pass(1000).await;
+        let before = stage.index().len();
+        let (offers, task) = stage.start(stage.link.grant(Owner::Gamepad));
+        stage.send(&offers, about, 500).await;
+        assert!(matches!(task.await.unwrap().0, FollowEnd::Hot(_)));
+        let since = stage.index().split_off(before);
+        assert!(
+            since.iter().all(|sent| sent.cause == WriteCause::Hold),
+            "{since:?}"
+        );
     });
 }
 

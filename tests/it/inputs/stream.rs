@@ -5,6 +5,7 @@ use handscope::hand::kinematics::Side;
 use handscope::inputs::line::LineFault;
 use handscope::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use handscope::link::Clock;
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -78,7 +79,7 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
 async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out() {
     let source = open(StreamPlace::Tcp(free()), &Arc::default());
     let mut bad = TcpStream::connect(source.local()).unwrap();
-    bad.write_all(&[b'x'; 6000]).unwrap();
+    bad.write_all(&[b'{'; 6000]).unwrap();
     until(&source, |view| {
         view.intake.refused.contains_key(&LineFault::TooLong)
     })
@@ -100,6 +101,45 @@ async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out()
     .await;
     assert!(view.connections <= 8, "{}", view.connections);
     drop(idle);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn a_connection_ends_with_its_first_line_that_is_no_message_and_a_wrong_value_is_only_refused()
+ {
+    let good = r#"{"right":[1,1,1,1,1,1]}"#;
+    for (first, fault, taken) in [
+        ("\r\n", None, 1),
+        (
+            r#"{"right":[1,1,1,NaN,1,1]}"#,
+            Some(LineFault::NotFinite),
+            1,
+        ),
+        (r#"{"right":[1,1,1,7,1,1]}"#, Some(LineFault::Range), 1),
+        (r#"{"left":[1,1,1,1,1,1]}"#, Some(LineFault::OtherSide), 1),
+        ("hello", Some(LineFault::Malformed), 0),
+        (r#"{"right":"fist"}"#, Some(LineFault::Malformed), 0),
+        ("POST /NaN HTTP/1.1", Some(LineFault::Malformed), 0),
+        (
+            "GET / HTTP/1.1\r\nUpgrade: websocket\r\n",
+            Some(LineFault::Malformed),
+            0,
+        ),
+    ] {
+        let source = open(StreamPlace::Tcp(free()), &Arc::default());
+        let mut sender = TcpStream::connect(source.local()).unwrap();
+        sender
+            .write_all(format!("{first}\n{good}\n").as_bytes())
+            .unwrap();
+        let wanted: BTreeMap<_, _> = fault.into_iter().map(|fault| (fault, 1)).collect();
+        let view = until(&source, |view| {
+            view.intake.taken == taken && view.intake.refused == wanted
+        })
+        .await;
+        if taken == 0 {
+            until(&source, |view| view.connections == 0).await;
+        }
+        assert_eq!(view.intake.taken, taken, "{first}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]

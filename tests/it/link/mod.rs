@@ -5,6 +5,7 @@ mod can;
 #[cfg(target_os = "linux")]
 mod can_vm;
 mod faults;
+mod frozen;
 mod identify;
 mod others;
 mod packing;

@@ -8,12 +8,12 @@ use crate::setup::link::{self, ask, pass};
 use handscope::codec::can::{read_request, to_record};
 use handscope::hand::Setpoints;
 use handscope::hand::{
-    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, Span, Target, register,
+    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, Span, Speed, Target, register,
 };
 use handscope::link::{LinkStatus, RequestError};
-use handscope::record::{Disarmed, LinkState};
-use handscope::sim::SharedHand;
+use handscope::record::{Disarmed, LinkState, SetpointConflict, SetpointRegister};
 use handscope::sim::serve::{can, rs485};
+use handscope::sim::{SharedHand, SimConfig};
 use handscope::transport::{Dial, Endpoint, Pipe, pair};
 use std::sync::{Arc, Mutex};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -322,5 +322,132 @@ async fn what_we_do_ourselves_is_no_other_controller() {
             "{wire}: {status:?}"
         );
         assert_eq!(link.stats().foreign_requests, 0, "{wire}");
+    }
+}
+
+/// A hand on Modbus TCP that several connections reach; none hears the others.
+struct OnTcp {
+    hand: SharedHand,
+}
+
+impl OnTcp {
+    fn new() -> Self {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        Self { hand }
+    }
+
+    async fn armed(&self) -> Client {
+        let mut link = link::connect("tcp:127.0.0.1:6000", link::to_hand(self.hand.clone()));
+        arm(&mut link).await;
+        link
+    }
+
+    /// Another program writes these elements.
+    fn write(&self, at: u16, values: &[i16]) {
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        let written = self
+            .hand
+            .with(|hand, now| hand.write(at, &bytes, now).map(drop));
+        written.unwrap();
+    }
+}
+
+fn move_to(link: &Client, angle: i16) {
+    let Some(epoch) = link.status().armed else {
+        return;
+    };
+    let mut setpoints = Setpoints::none(epoch);
+    for (_, target) in setpoints.angle.iter_mut() {
+        *target = Some(Target::Go(Angle::nearest(angle)));
+    }
+    link.set(&setpoints);
+}
+
+fn conflict(link: &Client) -> Option<SetpointConflict> {
+    let status = link.status();
+    assert_eq!(
+        status.disarmed,
+        Some(Disarmed::OtherController),
+        "{status:?}"
+    );
+    status.foreign_setpoint
+}
+
+#[tokio::test(start_paused = true)]
+async fn another_programs_write_is_noticed_within_a_second_while_we_move_the_hand_over_tcp() {
+    let mut chance = fastrand::Rng::with_seed(26);
+    let (angle_set, force_set, speed_set) = (1486, 1498, 1522);
+    for nth in 0..56 {
+        let at = OnTcp::new();
+        let mut link = at.armed().await;
+        // Poses, each 700 ms, and the foreign write at any moment between.
+        let poses = 1 + chance.u64(..3);
+        for pose in 0..poses {
+            move_to(&link, 900 - 100 * i16::try_from(pose).unwrap());
+            pass(&mut link, Duration::from_millis(700)).await;
+        }
+        move_to(&link, 300);
+        pass(&mut link, Duration::from_millis(chance.u64(20..650))).await;
+        let (register, place, value) = match nth {
+            0..40 => (
+                SetpointRegister::AngleSet,
+                angle_set,
+                chance.i16(400..=1000),
+            ),
+            40..48 => (SetpointRegister::ForceSet, force_set, chance.i16(600..3000)),
+            _ => (SetpointRegister::SpeedSet, speed_set, chance.i16(300..1000)),
+        };
+        at.write(place, &[value; 6]);
+        let mut waited = 0;
+        while link.status().armed.is_some() {
+            pass(&mut link, Duration::from_millis(50)).await;
+            waited += 50;
+            assert!(
+                waited <= 1000,
+                "{nth}: {register:?} {value} {:?}",
+                link.status()
+            );
+        }
+        let seen = conflict(&link).unwrap();
+        assert_eq!((seen.register, seen.holds), (register, Some(value)));
+        let ours = [
+            Some(300),
+            Some(Force::GENTLE.get()),
+            Some(Speed::GENTLE.get()),
+        ];
+        assert!(ours.contains(&seen.wrote), "{seen:?}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn two_programs_that_stream_to_one_tcp_hand_do_not_fight_longer_than_two_seconds() {
+    for seed in 0..20 {
+        let mut chance = fastrand::Rng::with_seed(seed);
+        let at = OnTcp::new();
+        let (mut one, mut two) = (at.armed().await, at.armed().await);
+        let both = |one: &Client, two: &Client| {
+            one.status().armed.is_some() && two.status().armed.is_some()
+        };
+        let mut fought = 0;
+        for step in 0..i16::MAX {
+            move_to(&one, 1000 - (10 * step) % 900);
+            pass(&mut one, Duration::from_millis(chance.u64(1..20))).await;
+            move_to(&two, 100 + (10 * step) % 900);
+            let rest = chance.u64(1..20);
+            pass(&mut two, Duration::from_millis(rest)).await;
+            fought += 20;
+            if !both(&one, &two) {
+                break;
+            }
+            assert!(fought <= 2000, "{seed}: {:?}", one.status());
+        }
+        let loser = [&one, &two]
+            .into_iter()
+            .find(|link| link.status().armed.is_none());
+        let seen = conflict(loser.unwrap()).unwrap();
+        assert_eq!(seen.register, SetpointRegister::AngleSet);
     }
 }

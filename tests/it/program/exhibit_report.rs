@@ -22,6 +22,8 @@ impl Bench {
     /// Staff begin and arm, one visitor plays the second tile, and somebody presses STOP.
     async fn visit(&mut self) {
         self.exhibit(ExhibitAction::Enter);
+        // Nobody arms on a page that was not drawn.
+        self.run(100).await;
         self.exhibit(ExhibitAction::Pin("4711".into()));
         self.exhibit(ExhibitAction::Pin("4711".into()));
         self.exhibit(ExhibitAction::Wish(ExhibitWish::Arm));

@@ -76,14 +76,13 @@ async fn a_hand_that_cannot_be_reached_is_told_in_words() {
     };
     let env = env();
     let clock = env.clock;
-    let mut app = start(env, settings, Some("sim:?scenario=party"));
+    let mut app = start(env, settings, Some("rs485:/nowhere/hand"));
     run(&mut app, clock, 200).await;
     let unknown = |what: &NoticeKind| {
-        let io = matches!(
-            what,
-            NoticeKind::NoLink(LinkTrouble::Transport(TransportError::Io { .. }))
-        );
-        io
+        let gone = TransportError::Missing {
+            place: "/nowhere/hand".into(),
+        };
+        *what == NoticeKind::NoLink(LinkTrouble::Transport(gone))
     };
     assert!(told(&app).iter().any(unknown), "{:?}", told(&app));
     app.open(None, clock.now());

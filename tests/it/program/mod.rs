@@ -100,6 +100,8 @@ impl Bench {
         for _ in 0..millis / 10 {
             sleep(Duration::from_millis(10)).await;
             self.app.logic(self.clock.now());
+            // A window draws as often.
+            self.app.drawn(self.clock.now());
         }
     }
 

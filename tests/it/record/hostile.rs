@@ -241,7 +241,8 @@ fn more_chunks_than_any_recording_has_are_left_out() {
     chunk.extend([2_000_000_u64.to_le_bytes(); 2].concat());
     chunk.extend([0; 24]);
     bytes.extend(chunk.repeat(CHUNKS_MAX * 3 / 2));
-    assert_eq!(reads("tiny chunks", &bytes), "0 entries");
+    let words = reads("tiny chunks", &bytes);
+    assert!(words.contains("no whole piece"), "{words}");
 }
 
 #[test]

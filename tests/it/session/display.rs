@@ -1,6 +1,8 @@
 //! A display in memory with a mouse: starts Xvfb, moves and presses through xdotool, reads the pixels. Claims nothing.
 
 use crate::setup::skipped::skipped;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
@@ -28,22 +30,27 @@ pub(crate) struct Display {
 impl Display {
     /// None where it is skipped, as Xvfb or xdotool is not installed.
     pub(crate) fn start() -> Option<Self> {
-        Self::start_with(&[])
+        Self::start_with(SIZE, &[])
+    }
+
+    /// One with a screen of this size.
+    pub(crate) fn start_sized(size: (u32, u32)) -> Option<Self> {
+        Self::start_with(size, &[])
     }
 
     /// One that offers no OpenGL.
     pub(crate) fn start_without_opengl() -> Option<Self> {
-        Self::start_with(&["-extension", "GLX"])
+        Self::start_with(SIZE, &["-extension", "GLX"])
     }
 
-    fn start_with(more: &[&str]) -> Option<Self> {
+    fn start_with(size: (u32, u32), more: &[&str]) -> Option<Self> {
         let there = |program| Command::new(program).arg("-version").output().is_ok();
         if !there("Xvfb") || !there("xdotool") {
             skipped("the real window", "Xvfb or xdotool is not installed");
             return None;
         }
         let folder = tempfile::tempdir().unwrap();
-        let screen = format!("{}x{}x24", SIZE.0, SIZE.1);
+        let screen = format!("{}x{}x24", size.0, size.1);
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0"])
             .args([&screen, "-fbdir", folder.path().to_str().unwrap()])
@@ -118,6 +125,44 @@ impl Display {
     pub(crate) fn change(&self, how: &str, title: &str, [x, y]: [&str; 2]) {
         self.tool(&["search", "--onlyvisible", "--name", title, how, x, y]);
         sleep(FRAME);
+    }
+
+    /// Presses a key with Shift, in the time that a person takes.
+    pub(crate) fn shifted(&self, key: &str) {
+        self.tool(&["keydown", "shift"]);
+        sleep(2 * FRAME);
+        self.key(key);
+        sleep(FRAME);
+        self.tool(&["keyup", "shift"]);
+        sleep(FRAME);
+    }
+
+    /// Left, top, width and height of the window.
+    pub(crate) fn geometry(&self, title: &str) -> [i32; 4] {
+        let told = self.tool(&[
+            "search",
+            "--onlyvisible",
+            "--name",
+            title,
+            "getwindowgeometry",
+            "--shell",
+        ]);
+        ["X=", "Y=", "WIDTH=", "HEIGHT="].map(|name| {
+            let mut lines = told.lines();
+            let value = lines.find_map(|line| line.strip_prefix(name));
+            value.unwrap().parse().unwrap()
+        })
+    }
+
+    /// Waits until a window of this title is there.
+    pub(crate) fn waits_for(&self, title: &str) {
+        self.tool(&["search", "--sync", "--onlyvisible", "--name", title]);
+    }
+
+    /// Sends a signal to the server: it may be gone already.
+    pub(crate) fn signal(&self, signal: Signal) {
+        let id = i32::try_from(self.server.id()).unwrap();
+        let _sent = kill(Pid::from_raw(id), signal);
     }
 
     /// Gives the window the keyboard, as a window manager does.

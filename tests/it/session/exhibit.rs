@@ -7,6 +7,7 @@ use crate::session::twin::Twin;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::hand::Dof;
+use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -68,6 +69,13 @@ const KEYS: [&str; 24] = [
     "super",
 ];
 
+/// With a PIN in it, the file is for nobody else.
+fn write_booth(file: &Path) {
+    std::fs::write(file, FILE).unwrap();
+    let only_ours = std::os::unix::fs::PermissionsExt::from_mode(0o600);
+    std::fs::set_permissions(file, only_ours).unwrap();
+}
+
 #[test]
 fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
     let _alone = alone();
@@ -76,7 +84,7 @@ fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
     };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("booth.toml");
-    std::fs::write(&file, FILE).unwrap();
+    write_booth(&file);
     let (hand, other) = (Hand::start(), Hand::start());
     let before = hand.read("ANGLE_SET");
     let mut page = Twin::start(&other.endpoint);
@@ -147,4 +155,39 @@ fn unlock(display: &Display, page: &mut Twin) {
     display.enter("2468");
     act(page, ExhibitAction::Pin("2468".into()));
     sleep(Duration::from_secs(1));
+}
+
+#[test]
+fn the_page_has_the_size_of_its_screen_both_ways_also_without_a_window_manager() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("booth.toml");
+    write_booth(&file);
+    let hand = Hand::start();
+    for (width, height) in [(1024, 768), (800, 600), (1920, 1200)] {
+        let Some(display) = Display::start_sized((width, height)) else {
+            return;
+        };
+        let (width, height) = (
+            i32::try_from(width).unwrap(),
+            i32::try_from(height).unwrap(),
+        );
+        let _window = Window::exhibit(display.name(), &hand, &file);
+        display.waits_for("Handscope");
+        // Smaller and larger than the screen, as a window that lost its full screen.
+        for size in [None, Some(["500", "300"]), Some(["2000", "1500"])] {
+            if let Some(size) = size {
+                display.change("windowsize", "Handscope", size);
+            }
+            let begun = Instant::now();
+            while display.geometry("Handscope") != [0, 0, width, height] {
+                let is = display.geometry("Handscope");
+                assert!(
+                    begun.elapsed() < WITHIN,
+                    "{width}x{height}, {size:?}: {is:?}"
+                );
+                sleep(Duration::from_millis(100));
+            }
+        }
+    }
 }

@@ -2,6 +2,8 @@
 
 #[cfg(all(target_os = "linux", feature = "desktop"))]
 mod display;
+#[cfg(target_os = "linux")]
+mod ending;
 #[cfg(all(target_os = "linux", feature = "desktop"))]
 mod exhibit;
 #[cfg(all(target_os = "linux", feature = "desktop"))]

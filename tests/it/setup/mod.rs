@@ -1,6 +1,7 @@
 //! How a test puts up what it tries: simulated hands on wires, links, the program with its window, and the real program as a
 //! process. Claims nothing.
 
+pub(crate) mod between;
 pub(crate) mod body;
 pub(crate) mod client;
 pub(crate) mod device;

@@ -103,10 +103,31 @@ impl Program {
         self.logic();
     }
 
+    /// Time goes by, and the program does not look: its window is frozen, or hidden by another's dialog.
+    pub(crate) fn pass_unseen(&mut self, step: Duration) {
+        self.runtime
+            .block_on(async { tokio::time::sleep(step).await });
+    }
+
+    /// So much time is over at once, as after a sleep of the computer. In virtual time only.
+    pub(crate) fn skip(&mut self, length: Duration) {
+        self.runtime.block_on(tokio::time::advance(length));
+        self.logic();
+    }
+
+    /// The window is about to close. True once it may go.
+    pub(crate) fn close(&mut self) -> bool {
+        let _inside = self.runtime.enter();
+        self.cockpit.app().close(self.clock.now())
+    }
+
     /// The program looks at what came.
     pub(crate) fn logic(&mut self) {
         let _inside = self.runtime.enter();
-        self.cockpit.logic(self.clock.now());
+        let now = self.clock.now();
+        self.cockpit.logic(now);
+        // A window draws as often.
+        self.cockpit.app().drawn(now);
     }
 
     /// Draws the window.

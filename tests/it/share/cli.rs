@@ -2,9 +2,13 @@
 
 use crate::setup::process::{Running, listen, run, sim_on_link, sim_on_tcp, start};
 use crate::setup::skipped::skipped;
+use handscope::hand::{Angle, Dof};
+use handscope::record::file::reader::{SessionFile, Stretch};
+use handscope::record::{Entry, Record};
 use nix::sys::signal::Signal;
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
+use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
@@ -121,6 +125,52 @@ fn the_end_of_a_client_is_told_and_the_next_may() {
     assert!(share.complaint().contains("may move the hand"));
     drop(next);
     assert!(share.complaint().contains("is gone: the hand is stopped"));
+}
+
+#[test]
+fn clients_that_come_write_and_leave_between_two_looks_are_told_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("moves.mcap");
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let record_to = record.to_str().unwrap();
+    let (mut share, address) = share(&["--hand", &hand, "--writers", "--record", record_to]);
+    assert!(share.complaint().contains("recording "));
+    for nth in 0..3 {
+        let client = loop {
+            let mut client = TcpStream::connect(&address).unwrap();
+            if write(&mut client, INDEX, 900 - nth) != Some(BUSY) {
+                break client.local_addr().unwrap();
+            }
+        };
+        let began = share.complaint();
+        assert!(
+            began.contains(&format!("{client} may move the hand")),
+            "{began}"
+        );
+        let left = share.complaint();
+        let gone = format!("{client}, which could move the hand, is gone: the hand is stopped");
+        assert!(left.contains(&gone), "{left}");
+    }
+    share.signal(Signal::SIGINT);
+    share.end().ok();
+    // What clients wrote was recorded as it passed.
+    let file = SessionFile::open(&record).unwrap();
+    let mut told = Vec::new();
+    let all = Stretch {
+        from: file.first(),
+        to: file.last(),
+        wire: false,
+    };
+    let read = file.entries(all, |entry| {
+        if let Entry::Heard(Record::Sent { write, .. }) = &entry {
+            told.extend(write.angle_targets()[Dof::Index].map(Angle::get));
+        }
+        ControlFlow::Continue(())
+    });
+    read.unwrap();
+    for to in [900, 899, 898] {
+        assert!(told.contains(&to), "{told:?}");
+    }
 }
 
 #[test]

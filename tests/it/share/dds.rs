@@ -230,7 +230,7 @@ impl Meeting {
     fn follow(&self) -> (Running, PipeWriter) {
         let program = handscope().get_program().to_str().unwrap().to_owned();
         let words = ["follow", "--hand", "sim:?scenario=free", "--arm", "--json"];
-        let dds = ["--dds", "--domain", "45"];
+        let dds = ["--dds", "--domain", "45", "--consent", "stdin"];
         let mut command = self.command(&[&[program.as_str()], &words[..], &dds].concat());
         let (input, person) = std::io::pipe().unwrap();
         command.stdin(input);

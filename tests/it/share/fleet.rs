@@ -33,6 +33,7 @@ fn card(name: &str, place: &Place) -> FleetCard {
         side: Side::Left,
         at: Some(place.address()),
         first_may_move: false,
+        follows: false,
     }
 }
 

@@ -73,6 +73,30 @@ async fn what_is_not_read_in_turn_is_asked_for_once_for_all_who_wait() {
     }
 }
 
+#[tokio::test(start_paused = true)]
+async fn reads_here_and_there_cost_the_hand_a_few_requests_a_second_however_fast_it_answers() {
+    let place = share(MOTION, Duration::ZERO).await;
+    let polls = || (place.link.stats().state_reads, place.wires.reads());
+    let mut clients = JoinSet::new();
+    let (before, begun) = (polls(), tokio::time::Instant::now());
+    for nth in 0..4 {
+        let mut client = place.client().await;
+        clients.spawn(async move {
+            // Each stretch is another one, which nobody read before.
+            for at in 0..10 {
+                let _read = read(&mut client, 2000 + 200 * nth + 20 * at, 1).await;
+            }
+        });
+    }
+    clients.join_all().await;
+    let (after, took) = (polls(), begun.elapsed().as_secs_f64());
+    let by_itself = after.0 - before.0;
+    let asked = (after.1 - before.1) as u64 - by_itself;
+    let hz = asked as f64 / took;
+    println!("{asked} requests for 40 reads in {took} s, {hz} a second, beside {by_itself}");
+    assert!(asked >= 40 && hz <= 5.5, "{hz} a second");
+}
+
 #[tokio::test]
 async fn every_register_stands_where_the_hand_has_it_and_at_every_unit() {
     let place = share(PollRates::default(), Duration::ZERO).await;

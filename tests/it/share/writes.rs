@@ -237,6 +237,36 @@ async fn a_fault_ends_the_right_and_stops_the_hand() {
 }
 
 #[tokio::test]
+async fn to_clear_errors_takes_the_right_as_any_write_but_while_a_fault_keeps_it_from_everybody() {
+    let place = first_may().await;
+    let (mut first, mut other) = (place.client().await, place.client().await);
+    assert_eq!(put(&mut first, 1004, &[1]).await, Ok(()));
+    let owner = place.link.status().holder.map(|holder| holder.owner);
+    assert_eq!(
+        owner,
+        Some(Owner::Gateway(place.gateway.clients()[0].address))
+    );
+    assert_eq!(put(&mut other, 1004, &[1]).await, BUSY);
+    place
+        .hand
+        .with(|hand, _| hand.inject_fault(Dof::Ring, Fault::OverCurrent));
+    until(|| place.link.status().state == LinkState::Fault).await;
+    until(|| place.link.status().holder.is_none()).await;
+    assert_eq!(put(&mut other, INDEX, &[500]).await, BUSY);
+    assert_eq!(put(&mut other, 1004, &[1]).await, Ok(()));
+    until(|| place.link.status().state == LinkState::Monitoring).await;
+    assert_eq!(
+        place.link.status().holder,
+        None,
+        "to clear gave nobody a right"
+    );
+    // Once the stop is over.
+    while put(&mut other, INDEX, &[500]).await == BUSY {
+        sleep(Duration::from_millis(5)).await;
+    }
+}
+
+#[tokio::test]
 async fn a_lost_link_ends_the_right_and_nothing_goes_on_when_it_is_back() {
     let place = first_may().await;
     let mut client = mover(&place).await;

@@ -482,3 +482,34 @@ fn a_jammed_joint_stalls_alone() {
     assert_eq!(bytes(&mut hand, &ERROR, 2000), [0, 0, 1, 0, 0, 0]);
     assert_eq!(shorts(&mut hand, &ANGLE_ACT, 2000)[2], 700);
 }
+
+#[test]
+fn frozen_feedback_stands_still_while_the_joints_go_on_and_setpoints_are_read_back() {
+    let told = [ANGLE_ACT, FORCE_ACT, CURRENT, POS_ACT];
+    for by_scenario in [false, true] {
+        let scenario = match by_scenario {
+            true => Scenario::Frozen,
+            false => Scenario::Free,
+        };
+        let mut hand = hand(scenario, Personality::default());
+        put(&mut hand, SPEED_SET.address, &[500; 6], 0);
+        put(&mut hand, ANGLE_SET.address, &[0; 6], 0);
+        if !by_scenario {
+            hand.freeze_feedback(true, at(300));
+        }
+        let frozen = told.map(|row| shorts(&mut hand, &row, 400));
+        let tips = block(&mut hand, Finger::Index, 400);
+        let angle = frozen[0][Dof::Index.index()];
+        assert!(hand.is_frozen() && (500..990).contains(&angle), "{angle}");
+        assert_eq!(told.map(|row| shorts(&mut hand, &row, 3000)), frozen);
+        assert_eq!(block(&mut hand, Finger::Index, 3000), tips);
+        assert_eq!(shorts(&mut hand, &ANGLE_SET, 3000), [0; 6]);
+        assert_eq!(hand.true_angles()[Dof::Index], 0.0);
+        if by_scenario {
+            hand.power_cycle(at(3001));
+        } else {
+            hand.freeze_feedback(false, at(3001));
+        }
+        assert_eq!(shorts(&mut hand, &ANGLE_ACT, 3010), [0; 6]);
+    }
+}

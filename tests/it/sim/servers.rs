@@ -606,3 +606,54 @@ async fn one_program_after_another_opens_the_pseudo_terminal() {
     assert!(served.await.is_err());
     assert!(std::fs::symlink_metadata(&path).is_err());
 }
+
+#[cfg(unix)]
+#[tokio::test]
+async fn adapters_answer_in_the_lines_time_so_that_who_clears_the_buffer_after_writing_loses_nothing()
+ {
+    use std::io::{Read as _, Write as _};
+    use tokio::task::spawn_blocking;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let hand = shared(Personality::default());
+    tokio::spawn(pty::serve_slcan(hand.clone(), &at("slcan")).unwrap());
+    tokio::spawn(pty::serve_usbcan(hand, &at("usbcan")).unwrap());
+    let packets = packet(0x0184_0001, [2, 0, 0, 0, 0, 0, 0, 0], 1);
+    let reply = packet(0x0184_0001, [0xE8, 3, 0, 0, 0, 0, 0, 0], 2);
+    for (path, begin, asked, reply, bytes_us) in [
+        // A bus of 1 Mbit/s.
+        (at("usbcan"), vec![], packets.clone(), reply, 10),
+        (
+            at("slcan"),
+            b"S8\rO\r".to_vec(),
+            b"T01840001102\r".to_vec(),
+            b"Z\rT018400012E803\r".to_vec(),
+            10,
+        ),
+    ] {
+        spawn_blocking(move || {
+            let mut port = std::fs::OpenOptions::new();
+            let mut port = port.read(true).write(true).open(path).unwrap();
+            let mut raw = rustix::termios::tcgetattr(&port).unwrap();
+            raw.make_raw();
+            rustix::termios::tcsetattr(&port, rustix::termios::OptionalActions::Now, &raw).unwrap();
+            if !begin.is_empty() {
+                port.write_all(&begin).unwrap();
+                let mut done = [0; 2];
+                port.read_exact(&mut done).unwrap();
+                assert_eq!(done, *b"\r\r");
+            }
+            let begun = std::time::Instant::now();
+            port.write_all(&asked).unwrap();
+            let mut heard = vec![0; reply.len()];
+            port.read_exact(&mut heard).unwrap();
+            let took = begun.elapsed();
+            assert_eq!(heard, reply);
+            let line = bytes_us * (asked.len() + reply.len()) as u64;
+            let least = Duration::from_micros(300 + line);
+            assert!(took >= least, "{took:?} < {least:?}");
+        })
+        .await
+        .unwrap();
+    }
+}

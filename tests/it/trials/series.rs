@@ -397,3 +397,24 @@ async fn one_trial_records_from_before_the_command_to_after_the_release() {
     assert!(run.trials[0].summary.joints[0].rate_hz.unwrap() > 60.0);
     assert_eq!(recording.lost(), 0);
 }
+
+#[tokio::test(start_paused = true)]
+async fn a_joint_that_never_moves_is_a_dead_drive_and_one_that_moves_is_none() {
+    for dead in [true, false] {
+        let mut bench = Bench::new(Scenario::Free).await;
+        let mut plan = plan(&[250], &[500]);
+        plan.start[Dof::Index] = Some(Angle::MAX);
+        bench.hand.with(|hand, _| hand.set_dead(Dof::Index, dead));
+        let run = bench.run(plan, |_, _| ()).await;
+        assert_eq!(run.aborted, None);
+        let joint = &run.trials[0].summary.joints[0];
+        let end = joint.end_status.as_deref();
+        let wanted = if dead {
+            "dead_drive"
+        } else {
+            "position_reached"
+        };
+        assert_eq!((joint.dead_drive, end), (dead, Some(wanted)));
+        assert_eq!(joint.time_to_stop_s.is_none(), dead);
+    }
+}

@@ -347,6 +347,9 @@ fn without_a_backup_nothing_is_written() {
 #[test]
 fn a_factory_reset_wants_its_word_and_a_hand_at_rest_and_tells_where_the_hand_is() {
     let mut bench = on_a_line(Personality::default());
+    // What a reset did shows only where something was changed before.
+    let gentle = 100_i16.to_le_bytes().repeat(6);
+    bench.hand(|hand, now| hand.write(1032, &gentle, now).unwrap());
     bench.show(View::Device);
     bench.run(400);
     bench.click_button("Factory reset");

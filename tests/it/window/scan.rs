@@ -228,6 +228,7 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
             side: Side::Left,
             at: None,
             first_may_move: false,
+            follows: false,
         },
         state: LinkState::Fault,
         owner: Some(Owner::Gamepad),
@@ -264,6 +265,41 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
     bench.click_button("Look no more");
     bench.run(100);
     assert_eq!(bench.state().fleet.interface(), None);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hand_elsewhere_that_follows_on_dds_keeps_this_one_from_following_too() {
+    let mut bench = Bench::live();
+    let joined = InputAction::JoinDds(Some("127.0.0.1".into()));
+    bench.act(Action::Input(joined));
+    bench.show(View::Inputs);
+    bench.run(100);
+    let other = |bench: &Bench| {
+        let view = bench.state().hand().inputs.dds_view.as_ref();
+        view.and_then(|view| view.other.clone())
+    };
+    let (interface, domain) = ("127.0.0.1".into(), 0);
+    let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
+    let writer = node.writer(&fleet::topic()).unwrap();
+    let hand = FleetHand {
+        card: FleetCard {
+            host: "lab".into(),
+            name: "first".into(),
+            side: Side::Right,
+            at: None,
+            first_may_move: false,
+            follows: true,
+        },
+        state: LinkState::Armed,
+        owner: Some(Owner::Dds),
+    };
+    told_until(&mut bench, (&writer, &hand), |bench| other(bench).is_some());
+    assert_eq!(other(&bench).map(|card| card.name), Some("first".into()));
+    assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
+    bench.act(Action::Input(InputAction::GrantDds));
+    bench.run(200);
+    assert_eq!(bench.state().hand().outside_owner(), None);
 }
 
 #[cfg(target_os = "linux")]

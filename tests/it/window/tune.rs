@@ -334,7 +334,7 @@ fn a_lost_link_ends_it() {
     bench.wait(1500);
     let why = ended_by(&bench);
     assert!(
-        matches!(why, Abort::LinkLost | Abort::Blind { .. }),
+        matches!(why, Abort::LinkLost | Abort::NotRead { .. }),
         "{why:?}"
     );
     assert!(bench.is_disabled(Role::Button, "Start trials"));

@@ -122,9 +122,8 @@ fn sliders_follow_the_hand_until_it_is_armed() {
 fn an_old_or_unknown_pose_cannot_be_armed() {
     let mut bench = Bench::monitoring(400);
     bench.hand.now = bench.now().plus(Duration::from_millis(300));
-    let dof = Dof::Little;
-    let unknown = Some(ArmRefusal::UnknownPose { dof });
-    assert_eq!(bench.hand.arm_refusal(), unknown);
+    let unread = Some(ArmRefusal::NotRead);
+    assert_eq!(bench.hand.arm_refusal(), unread);
     assert_eq!(bench.hand.pose_now(), None, "nor kept as a pose");
     let nowhere = Bench::new();
     assert_eq!(nowhere.hand.arm_refusal(), Some(ArmRefusal::Offline));

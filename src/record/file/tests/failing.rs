@@ -7,10 +7,10 @@
     reason = "numbers of tests are small, and clippy.toml cannot excuse them"
 )]
 
-use crate::record::file::disk::{Disk, DiskFile, SystemDisk};
+use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
 use crate::record::file::reader::SessionFile;
 use crate::record::file::recorder::{Recorder, RecorderInput, RecordingPlan};
-use crate::record::file::recording::{Now, RecorderStatus, SessionRecording};
+use crate::record::file::recording::{Now, RecorderNotice, RecorderStatus, SessionRecording};
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
 use std::collections::{BTreeMap, BTreeSet};
@@ -106,11 +106,6 @@ impl Disk for FailingDisk {
         Ok(Box::new(FailingFile(self.clone(), content)))
     }
 
-    fn is_there(&self, path: &Path) -> bool {
-        let state = self.0.lock().unwrap();
-        state.files.iter().any(|(there, _)| there == path)
-    }
-
     fn remove(&self, path: &Path) -> io::Result<()> {
         let mut state = self.0.lock().unwrap();
         state.files.retain(|(there, _)| there != path);
@@ -130,6 +125,15 @@ impl FailingFile {
 }
 
 impl DiskFile for FailingFile {
+    fn place(&self, _: &Path) -> FilePlace {
+        let state = self.0.0.lock().unwrap();
+        let mut all = state.files.iter();
+        match all.any(|(_, content)| Arc::ptr_eq(content, &self.1)) {
+            true => FilePlace::There,
+            false => FilePlace::Removed,
+        }
+    }
+
     fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
         let mut state = self.0.0.lock().unwrap();
         state.wait();
@@ -438,8 +442,8 @@ fn a_clock_that_is_set_is_said_in_both_files_and_times_are_right_in_each() {
     assert_eq!(
         said,
         [
-            "the recording goes on in another file: the computer's clock was set back by 3600.0 s",
-            "this file goes on where another ended: the computer's clock was set back by 3600.0 s"
+            "the recording goes on in b-2.mcap: the computer's clock was set back by 3600.0 s",
+            "this file goes on after b.mcap: the computer's clock was set back by 3600.0 s"
         ]
     );
 }
@@ -467,6 +471,69 @@ fn plan(path: &Path, disk: impl Disk + 'static) -> RecordingPlan {
     }
 }
 
+#[test]
+fn a_file_that_is_renamed_is_written_on_and_one_that_is_removed_is_told_and_begun_anew() {
+    let entry = entries(1, 1).pop().unwrap();
+    let until = |recorder: &Recorder, notices: usize| {
+        let until = Instant::now() + Duration::from_secs(20);
+        while recorder.status().notices.len() < notices {
+            assert!(Instant::now() < until, "{:?}", recorder.status());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        recorder.status()
+    };
+    let written = |recorder: &Recorder| {
+        let until = Instant::now() + Duration::from_secs(20);
+        let before = recorder.status().bytes;
+        recorder.input().push(entry.clone());
+        while recorder.status().bytes == before {
+            assert!(Instant::now() < until);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    for what in ["file", "folder", "removed", "folder removed"] {
+        let folder = tempfile::tempdir().unwrap();
+        let own = folder.path().join("day");
+        let path = own.join("a.mcap");
+        let recorder = Recorder::start(plan(&path, SystemDisk)).unwrap();
+        written(&recorder);
+        let other = match what {
+            "file" => own.join("b.mcap"),
+            "folder" => folder.path().join("other/a.mcap"),
+            _ => path.clone(),
+        };
+        match what {
+            "file" => std::fs::rename(&path, &other).unwrap(),
+            "folder" => std::fs::rename(&own, folder.path().join("other")).unwrap(),
+            "removed" => std::fs::remove_file(&path).unwrap(),
+            _ => std::fs::remove_dir_all(&own).unwrap(),
+        }
+        let status = until(&recorder, 1);
+        let is_removed = what.ends_with("removed");
+        match &status.notices[0] {
+            RecorderNotice::Moved { from, to } => {
+                assert_eq!((from, to), (&path, &Some(other.clone())));
+                assert!(!is_removed && status.missing == 0, "{what}");
+            }
+            RecorderNotice::Removed { path: gone, .. } => {
+                assert!(is_removed && *gone == path, "{what}");
+            }
+            notice => panic!("{notice:?}"),
+        }
+        written(&recorder);
+        let status = recorder.end();
+        assert_eq!(status.path.as_ref(), Some(&other), "{what}");
+        assert_eq!(status.notices.len(), 1, "{what}: {:?}", status.notices);
+        let file = SessionFile::open(&other).unwrap();
+        assert!(file.is_closed());
+        let (all, ..) = read(&other).unwrap();
+        let count = all
+            .iter()
+            .filter(|one| !matches!(one, Atom::Other(entry) if is_told_beside(entry)));
+        assert_eq!(count.count(), if is_removed { 1 } else { 2 }, "{what}");
+    }
+}
+
 /// A disk whose every call hangs.
 struct HangingDisk;
 
@@ -474,10 +541,6 @@ impl Disk for HangingDisk {
     fn create(&self, _: &Path) -> io::Result<Box<dyn DiskFile>> {
         std::thread::sleep(Duration::from_secs(60));
         Err(ErrorKind::TimedOut.into())
-    }
-
-    fn is_there(&self, _: &Path) -> bool {
-        true
     }
 
     fn remove(&self, _: &Path) -> io::Result<()> {

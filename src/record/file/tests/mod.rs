@@ -3,6 +3,7 @@
 mod failing;
 mod index;
 mod lists;
+mod rewritten;
 
 use crate::hand::command::HandCommand;
 use crate::hand::kinematics::Side;

@@ -24,15 +24,27 @@ pub struct Place {
     pub len: u64,
 }
 
-/// A chunk and the times of its messages, in nanoseconds since 1970.
+/// A chunk and the times of its messages, in nanoseconds since 1970. Messages that stand in a file outside of chunks are taken
+/// together by the hundred kilobytes, and read as if they were one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChunkPlace {
+    /// Whether it is a chunk, or records outside of chunks.
+    pub kind: ChunkKind,
     /// Where.
     pub place: Place,
     /// Of its first message.
     pub first_nanos: u64,
     /// Of its last message.
     pub last_nanos: u64,
+}
+
+/// How messages stand in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChunkKind {
+    /// In a chunk, whose sum protects them.
+    Chunk,
+    /// Outside of chunks.
+    Loose,
 }
 
 /// The records of a file.
@@ -46,6 +58,10 @@ pub struct Found {
     pub metadata: Vec<Place>,
     /// True if the file was ended as it should be.
     pub closed: bool,
+    /// True if the file has an index that does not fit it, or that is damaged; it was gone around.
+    pub stale_index: bool,
+    /// How many messages were written, where the file says so.
+    pub messages: Option<u64>,
     /// Bytes in which no record was found, or no room for one.
     pub skipped: u64,
 }
@@ -78,6 +94,11 @@ pub(super) fn read_at<F: Read + Seek>(
 ) -> io::Result<()> {
     file.seek(SeekFrom::Start(offset))?;
     file.read_exact(bytes)
+}
+
+pub(super) fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    let four = bytes.get(at..)?.first_chunk()?;
+    Some(u32::from_le_bytes(*four))
 }
 
 pub(super) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {

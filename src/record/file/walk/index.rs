@@ -1,6 +1,8 @@
 //! The records of a file that was ended: its own index tells of them.
 
-use super::found::{ChunkPlace, Found, HEAD, MAGIC, Place, RECORD_MAX, read_at, u64_at};
+use super::found::{
+    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
+};
 use mcap::records::op;
 use std::io::{self, Read, Seek};
 
@@ -49,7 +51,12 @@ pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Opt
     }
     index.hash.update(tail.get(..TAIL - 12).unwrap_or_default());
     let whole = index.hash.finalize() == crc && piece.is_empty();
-    Ok(whole.then_some(index.found))
+    let mut header = [0; HEAD_LEN];
+    read_at(file, MAGIC.len() as u64, &mut header)?;
+    let header = MAGIC.len() as u64 + HEAD + u64_at(&header, 1).unwrap_or_default();
+    // What it tells of fills the file from its header to the end of the data: it leaves nothing out, and is of this file.
+    let data = start.saturating_sub(header + HEAD + 4);
+    Ok((whole && index.told == data).then_some(index.found))
 }
 
 /// What the index of a closed file tells so far.
@@ -60,6 +67,8 @@ struct Index {
     start: u64,
     /// Where the last chunk ends. The next comes after, else one could be told of any number of times.
     after: u64,
+    /// Bytes of all that it tells of.
+    told: u64,
 }
 
 impl Index {
@@ -72,6 +81,7 @@ impl Index {
             hash: crc32fast::Hasher::new(),
             start,
             after: 0,
+            told: 0,
         }
     }
 
@@ -94,7 +104,10 @@ impl Index {
                     return None;
                 }
                 self.after = place.offset + HEAD + place.len;
+                let places = usize::try_from(u32_at(body, 32)?).ok()?;
+                self.tell(u64_at(body, places.checked_add(36)?)?);
                 self.found.chunk(ChunkPlace {
+                    kind: ChunkKind::Chunk,
                     place,
                     first_nanos: u64_at(body, 0)?,
                     last_nanos: u64_at(body, 8)?,
@@ -108,12 +121,18 @@ impl Index {
                 let place = self.place(u64_at(body, 0)?, u64_at(body, 8)?)?;
                 self.found.metadata(place);
             }
+            op::STATISTICS => self.found.messages = u64_at(body, 0),
             _ => {}
         }
         Some(())
     }
 
-    fn place(&self, offset: u64, whole: u64) -> Option<Place> {
+    const fn tell(&mut self, bytes: u64) {
+        self.told = self.told.saturating_add(bytes);
+    }
+
+    fn place(&mut self, offset: u64, whole: u64) -> Option<Place> {
+        self.tell(whole);
         let len = whole.checked_sub(HEAD).filter(|len| *len <= RECORD_MAX)?;
         let end = offset.checked_add(whole)?;
         (len > 0 && end <= self.start).then_some(Place { offset, len })
@@ -121,7 +140,7 @@ impl Index {
 }
 
 /// Operation code, content, and what follows it.
-fn record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+pub(crate) fn record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (op, rest) = bytes.split_first()?;
     let len = usize::try_from(u64_at(rest, 0)?).ok()?;
     let rest = rest.get(8..)?;

@@ -2,7 +2,8 @@
 //! before stands. So only the last minute of a long recording is gone through record by record.
 
 use super::found::{
-    CHUNKS_MAX, ChunkPlace, Found, HEAD, HEAD_LEN, Place, RECORD_MAX, content, read_at, u64_at,
+    CHUNKS_MAX, ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, Place, RECORD_MAX, content, read_at,
+    u64_at,
 };
 use crate::record::file::chunk_list::{CHUNK_LIST, ChunkList};
 use mcap::records::{Record, op};
@@ -44,6 +45,7 @@ impl ListedBlock {
             }
             at = chunk.end();
             chunks.push(ChunkPlace {
+                kind: ChunkKind::Chunk,
                 place: Place {
                     offset: chunk.offset,
                     len,
@@ -156,5 +158,17 @@ fn at<F: Read + Seek>(file: &mut F, offset: u64, end: u64) -> io::Result<Option<
     let body = body.and_then(|end| content.get(..end)).unwrap_or_default();
     let is_whole = crc != 0 && crc32fast::hash(body) == crc && header.name == CHUNK_LIST;
     let list = ChunkList::of_bytes(&data).filter(|_| is_whole);
-    Ok(list.and_then(|list| ListedBlock::new(place, &list)))
+    let block = list.and_then(|list| ListedBlock::new(place, &list));
+    // Where bytes were taken out or put in before it, nothing stands where it says.
+    match block {
+        Some(block) if is_there(file, block.overview)? => Ok(Some(block)),
+        _ => Ok(None),
+    }
+}
+
+/// True if an attachment of this length stands here.
+fn is_there<F: Read + Seek>(file: &mut F, overview: Place) -> io::Result<bool> {
+    let mut head = [0; HEAD_LEN];
+    read_at(file, overview.offset, &mut head)?;
+    Ok(u64_at(&head, 1) == Some(overview.len))
 }

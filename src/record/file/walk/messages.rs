@@ -1,22 +1,52 @@
-//! The messages of one chunk.
+//! The messages of one chunk, or of records outside of chunks.
 
-use super::found::RECORD_MAX;
-use crate::record::file::topic::Topic;
+use super::found::{ChunkKind, RECORD_MAX};
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 /// No message of ours is longer. Small parts of a long one could take many times its room.
 const MESSAGE_MAX: usize = 1024 * 1024;
 
-/// Gives each message of a chunk's record (topic, times, bytes); false if the chunk is damaged, and then it gives none of it.
-pub(crate) fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u8])) -> bool {
+/// One record of a chunk.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ChunkRecord<'a> {
+    /// The content of a schema's or a channel's record, behind its operation code.
+    Definition(u8, &'a [u8]),
+    /// A message.
+    Message(ChunkMessage<'a>),
+}
+
+/// One message as it stands in a chunk.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ChunkMessage<'a> {
+    /// The number of its channel.
+    pub(crate) channel: u16,
+    /// Its own number: in what Handscope writes, one more than that of the message before.
+    pub(crate) sequence: u32,
+    /// When it was received and asked for, nanoseconds since 1970.
+    pub(crate) times: (u64, u64),
+    /// What stands in it.
+    pub(crate) data: &'a [u8],
+}
+
+/// Gives each record of a chunk; false if the chunk is damaged, and then it gives none of it. Outside of chunks, where no sum tells,
+/// it gives what stands before the damage.
+pub(crate) fn records(
+    chunk: &mut [u8],
+    kind: ChunkKind,
+    mut take: impl FnMut(ChunkRecord<'_>),
+) -> bool {
+    if let (ChunkKind::Chunk, Some(code)) = (kind, chunk.first_mut()) {
+        // Its length and its sum say whether it is one. A flipped bit here would hide it.
+        *code = op::CHUNK;
+    }
     let options = LinearReaderOptions::default()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
         .with_record_length_limit(usize::try_from(RECORD_MAX).unwrap_or(usize::MAX));
     let mut reader = LinearReader::new_with_options(options);
-    let mut rest = chunk;
+    let mut rest = &*chunk;
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
@@ -26,27 +56,47 @@ pub(crate) fn messages(chunk: &[u8], mut take: impl FnMut(Topic, (u64, u64), &[u
                 reader.notify_read(give);
                 rest = later;
             }
-            Ok(LinearReadEvent::Record { data, opcode }) if opcode == op::MESSAGE => {
-                if let Some((topic, times, message)) = message(data)
-                    && message.len() <= MESSAGE_MAX
-                {
-                    take(topic, times, message);
-                }
-            }
-            Ok(LinearReadEvent::Record { .. }) => {}
+            Ok(LinearReadEvent::Record { data, opcode }) => match opcode {
+                op::MESSAGE => match message(data) {
+                    Some(message) => take(ChunkRecord::Message(message)),
+                    None => return false,
+                },
+                op::SCHEMA | op::CHANNEL => take(ChunkRecord::Definition(opcode, data)),
+                _ => {}
+            },
             Err(_damaged) => return false,
         }
     }
     true
 }
 
-/// Topic, times and content of a message's record: number of the channel, number of the message, and two times stand before it.
-fn message(record: &[u8]) -> Option<(Topic, (u64, u64), &[u8])> {
+/// The same without what defines its channels.
+pub(crate) fn messages(
+    chunk: &mut [u8],
+    kind: ChunkKind,
+    mut take: impl FnMut(ChunkMessage<'_>),
+) -> bool {
+    records(chunk, kind, |record| {
+        if let ChunkRecord::Message(message) = record {
+            take(message);
+        }
+    })
+}
+
+/// A message's record: number of the channel, number of the message, and two times stand before its content. The content of one
+/// that is too long to be ours is left out.
+fn message(record: &[u8]) -> Option<ChunkMessage<'_>> {
     let (channel, rest) = record.split_first_chunk()?;
-    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
+    let (sequence, rest) = rest.split_first_chunk()?;
     let (log, rest) = rest.split_first_chunk()?;
-    let (publish, message) = rest.split_first_chunk()?;
-    let topic = Topic::by_channel(u16::from_le_bytes(*channel))?;
-    let times = (u64::from_le_bytes(*log), u64::from_le_bytes(*publish));
-    Some((topic, times, message))
+    let (publish, data) = rest.split_first_chunk()?;
+    Some(ChunkMessage {
+        channel: u16::from_le_bytes(*channel),
+        sequence: u32::from_le_bytes(*sequence),
+        times: (u64::from_le_bytes(*log), u64::from_le_bytes(*publish)),
+        data: match data.len() <= MESSAGE_MAX {
+            true => data,
+            false => &[],
+        },
+    })
 }

@@ -1,18 +1,22 @@
 //! Finds the records of a session file that may be cut, damaged, or made to harm: every length is checked before it is used.
 //!
 //! `index` asks the index of a file that was ended, `lists` the lists of chunks that stand in every file, and `hops` goes from
-//! record to record where neither tells; `times` corrects what it found there.
+//! record to record where neither tells; `times` corrects what it found there. `survey` reads the whole of a file that another
+//! program has written or changed.
 
 mod found;
 mod hops;
 mod index;
 mod lists;
 mod messages;
+mod survey;
 mod times;
 
-pub use found::{CHUNKS_MAX, ChunkPlace, Found, PLACES_MAX, Place, RECORD_MAX};
+pub use found::{CHUNKS_MAX, ChunkKind, ChunkPlace, Found, PLACES_MAX, Place, RECORD_MAX};
 pub(crate) use found::{MAGIC, content, whole};
-pub(crate) use messages::messages;
+pub(crate) use index::record;
+pub(crate) use messages::{ChunkMessage, ChunkRecord, messages, records};
+pub(crate) use survey::{Survey, survey};
 
 use hops::one_by_one;
 use index::by_index;
@@ -45,5 +49,16 @@ pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
         None => one_by_one(file, begin..len, &mut found)?,
     }
     mend(file, &mut found)?;
+    found.stale_index = found.closed;
     Ok(found)
+}
+
+/// True if these bytes begin with the record of a chunk, whatever its operation code says.
+pub(crate) fn is_chunk(bytes: &[u8]) -> bool {
+    hops::chunk_times(bytes).is_some()
+}
+
+/// How long these bytes say that the record is with which they begin.
+pub(crate) fn record_len(bytes: &[u8]) -> u64 {
+    found::u64_at(bytes, 1).unwrap_or_default()
 }

@@ -21,9 +21,10 @@ pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Resul
         // The definitions stand in a chunk without messages, which has no times.
         let is_empty = (chunk.first_nanos, chunk.last_nanos) == (0, 0);
         if !is_empty && !fits(chunk, before, after) {
-            let bytes = whole(file, chunk.place)?;
+            let mut bytes = whole(file, chunk.place)?;
             let mut times = None;
-            let is_whole = messages(&bytes, |_, (time, _), _| {
+            let is_whole = messages(&mut bytes, chunk.kind, |message| {
+                let (time, _) = message.times;
                 let (first, last) = times.get_or_insert((time, time));
                 (*first, *last) = ((*first).min(time), (*last).max(time));
             });

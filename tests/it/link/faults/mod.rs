@@ -94,6 +94,9 @@ fn every_seeded_schedule_keeps_the_rules() {
     assert!(seen.reconnects > schedules / 2, "{seen:?}");
     assert!(seen.full > schedules / 10, "{seen:?}");
     assert!(seen.disturbed > schedules, "{seen:?}");
+    assert!(seen.rests > schedules / 16, "{seen:?}");
+    assert!(seen.doubts > schedules / 200, "{seen:?}");
+    assert!(seen.foreign_noticed > schedules / 100, "{seen:?}");
 }
 
 /// The words with which an oracle noticed.

@@ -38,7 +38,26 @@ pub(crate) fn run_seed(seed: u64, sabotage: Sabotage) -> Seen {
     in_virtual_time(async { Schedule::new(seed, sabotage).run().await })
 }
 
+/// Who else has a part in a schedule.
+#[derive(Debug, Clone, Copy, Default)]
+struct Actors {
+    /// The hand's feedback freezes now and then.
+    freezes: bool,
+    /// Another program writes targets, past our wire.
+    foreign: bool,
+}
+
+impl Actors {
+    fn of(seed: u64) -> Self {
+        Self {
+            freezes: matches!(seed % 12, 0 | 1),
+            foreign: matches!(seed % 12, 1 | 2),
+        }
+    }
+}
+
 struct Schedule {
+    actors: Actors,
     rng: fastrand::Rng,
     clock: Clock,
     hand: SharedHand,
@@ -152,6 +171,7 @@ impl Schedule {
             personality: Personality::default(),
         };
         let hand = hand::shared(config);
+        let actors = Actors::of(seed);
         let pace = pace(&mut rng, protocol);
         let plan = FaultPlan {
             seed,
@@ -167,7 +187,10 @@ impl Schedule {
             hand: hand.clone(),
             log: log.clone(),
             plan,
-            quirks: quirks(&mut rng, protocol, sabotage.lag),
+            quirks: Quirks {
+                unstamped: actors.freezes,
+                ..quirks(&mut rng, protocol, sabotage.lag)
+            },
             protocol,
             state: Mutex::default(),
         });
@@ -182,8 +205,11 @@ impl Schedule {
             ..link::config(&endpoint(protocol, pace), dial.clone())
         });
         let mut witness = Witness::new(seed, protocol, log);
+        witness.freezes = actors.freezes;
+        witness.foreign = actors.foreign;
         witness.echoes = protocol == Protocol::Slcan && dial.quirks.adapter.echoes;
         Self {
+            actors,
             rng,
             clock,
             hand,
@@ -200,7 +226,10 @@ impl Schedule {
             let pause = Duration::from_millis(self.rng.u64(1..120));
             self.drain_for(pause).await;
             self.act();
+            self.others_act();
+            self.witness.status(&self.link.status());
         }
+        self.hand.with(|hand, now| hand.freeze_feedback(false, now));
         self.dial.quiet();
         self.witness.quiet(self.clock.now());
         if self.sabotage.gone {
@@ -225,6 +254,11 @@ impl Schedule {
                 () = sleep_until(until) => return,
             };
             self.witness.event(&event, self.clock.now());
+            let joints = self.hand.with(|hand, now| {
+                hand.advance_to(now);
+                hand.true_angles()
+            });
+            self.witness.reality(joints, self.clock.now());
             if let LinkEvent::State {
                 state: LinkState::Armed,
                 ..
@@ -260,6 +294,27 @@ impl Schedule {
                 self.arm();
                 self.stop();
             }
+        }
+    }
+
+    /// What the hand does by itself, and what another program does to it.
+    fn others_act(&mut self) {
+        if self.actors.freezes && self.rng.u8(..8) == 0 {
+            let frozen = self.rng.bool();
+            self.witness.seen.freezes += u64::from(frozen);
+            self.hand
+                .with(|hand, now| hand.freeze_feedback(frozen, now));
+        }
+        if self.actors.foreign && self.rng.u8(..6) == 0 {
+            let targets: [i16; 6] = std::array::from_fn(|_| self.rng.i16(0..=1000));
+            let bytes: Vec<u8> = targets
+                .iter()
+                .flat_map(|value| value.to_le_bytes())
+                .collect();
+            self.witness.foreign_write(self.clock.now());
+            self.hand
+                .with(|hand, now| hand.write(1486, &bytes, now).map(drop))
+                .unwrap();
         }
     }
 

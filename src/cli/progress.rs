@@ -1,0 +1,127 @@
+//! How far a long command is, on a terminal; and whether a person wishes its end.
+
+use crate::cli::interrupt::Interrupt;
+use anyhow::Context as _;
+use std::cell::Cell;
+use std::io::{self, IsTerminal as _, Write as _};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use tokio::runtime::Builder;
+
+/// What takes less time needs no words.
+const QUIET_FOR: Duration = Duration::from_secs(2);
+/// Between two lines.
+const TELL_EACH: Duration = Duration::from_millis(250);
+
+/// Set once a person wishes the end of a command that looks at it.
+#[derive(Debug, Clone)]
+pub(crate) struct EndWished(Arc<AtomicBool>);
+
+impl EndWished {
+    /// Listens from now on. The command has to end by itself then.
+    pub(crate) fn listen() -> anyhow::Result<Self> {
+        let runtime = Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.context("cannot listen for Ctrl-C")?;
+        let within = runtime.enter();
+        let mut interrupt = Interrupt::listen()?;
+        drop(within);
+        let wished = Self(Arc::default());
+        let told = wished.clone();
+        std::thread::spawn(move || {
+            runtime.block_on(interrupt.wished());
+            told.0.store(true, Ordering::Relaxed);
+        });
+        Ok(wished)
+    }
+
+    /// One that is never set, because there is nothing to be tidied up.
+    pub(crate) fn never() -> Self {
+        Self(Arc::default())
+    }
+
+    /// Goes on until the end is wished.
+    pub(crate) fn flow(&self) -> ControlFlow<()> {
+        match self.0.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Tells how far a command is, in one line of standard error that is gone at its end; nothing if that is no terminal.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    began: Instant,
+    told: Cell<Option<Instant>>,
+    is_read: bool,
+}
+
+impl Progress {
+    pub(crate) fn new() -> Self {
+        Self {
+            began: Instant::now(),
+            told: Cell::new(None),
+            is_read: io::stderr().is_terminal(),
+        }
+    }
+
+    /// So much is done, from 0 to 1.
+    pub(crate) fn tell(&self, share: f64) {
+        let now = Instant::now();
+        let is_due = self.told.get().is_none_or(|at| now - at >= TELL_EACH);
+        if !self.is_read || !is_due {
+            return;
+        }
+        if let Some(words) = words(share, now - self.began) {
+            self.told.set(Some(now));
+            // Where nobody can read, nobody can be told.
+            let _unread = write!(io::stderr(), "\r\x1b[K{words}");
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.told.get().is_some() {
+            let _unread = write!(io::stderr(), "\r\x1b[K");
+        }
+    }
+}
+
+/// What is told after so long; `None` if that is too early.
+fn words(share: f64, since: Duration) -> Option<String> {
+    if since < QUIET_FOR {
+        return None;
+    }
+    let percent = 100.0 * share;
+    if share < 0.01 {
+        return Some(format!("{percent:.0} %"));
+    }
+    let left_s = since.as_secs_f64() * (1.0 - share) / share;
+    let (minutes, seconds) = ((left_s / 60.0).floor(), left_s % 60.0);
+    Some(match minutes < 1.0 {
+        true => format!("{percent:.0} %, {seconds:.0} s left"),
+        false => format!("{percent:.0} %, {minutes:.0} min {seconds:.0} s left"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_over_two_seconds_tells_how_far_it_is_and_how_long_it_takes() {
+        for (share, since_s, wanted) in [
+            (0.5, 1.9, None),
+            (0.0, 2.0, Some("0 %")),
+            (0.25, 5.0, Some("25 %, 15 s left")),
+            (0.1, 30.0, Some("10 %, 4 min 30 s left")),
+            (1.0, 60.0, Some("100 %, 0 s left")),
+        ] {
+            let told = words(share, Duration::from_secs_f64(since_s));
+            assert_eq!(told.as_deref(), wanted, "{share} after {since_s} s");
+        }
+    }
+}

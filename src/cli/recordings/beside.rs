@@ -1,0 +1,111 @@
+//! A recording beside what another command does: the same file as `record` makes. What goes wrong with it is told, and holds nothing
+//! up.
+
+use crate::cli::out::say;
+use crate::cli::recordings::record::tell_parameters;
+use crate::hand::kinematics::Side;
+use crate::link::{Clock, LinkHandle};
+use crate::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
+use crate::store::calendar;
+use crate::tasks::recording;
+use crate::transport::Endpoint;
+use anyhow::{Context as _, bail};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::task::JoinHandle;
+use tokio::time::{interval, timeout};
+
+/// How often it is looked whether the disk is well.
+const LOOK_EACH: Duration = Duration::from_millis(200);
+/// A link that is closed ends in less.
+const LINK_ENDS_WITHIN: Duration = Duration::from_secs(2);
+
+/// A recording that goes on by itself, if one was asked for.
+pub(crate) struct SideRecording(Option<Running>);
+
+struct Running {
+    recorder: Arc<Recorder>,
+    pump: JoinHandle<()>,
+    /// Tells what the hand keeps, and then how the disk is.
+    beside: JoinHandle<()>,
+}
+
+impl SideRecording {
+    /// Records what happens at this link from now on, into a file that is not there yet. Must be called within a tokio runtime.
+    pub(crate) fn begin(
+        path: Option<&Path>,
+        link: &LinkHandle,
+        hand: &Endpoint,
+        side: Side,
+    ) -> anyhow::Result<Self> {
+        let Some(path) = path else {
+            return Ok(Self(None));
+        };
+        if path.symlink_metadata().is_ok() {
+            bail!(
+                "{} is already there and is not overwritten; name another file with --record",
+                path.display()
+            );
+        }
+        let clock = link.clock();
+        let moments = (clock.now(), calendar::since_1970());
+        let recorder = Recorder::start(RecordingPlan {
+            path: path.to_path_buf(),
+            opening: Opening::begin(hand.to_string(), moments, side),
+            disk: Arc::new(SystemDisk),
+        })
+        .context("cannot start the recorder")?;
+        say(&format!("recording {hand} to {}", path.display()));
+        let recorder = Arc::new(recorder);
+        let observed = link.observe();
+        let pump = tokio::spawn(recording::record(observed, recorder.input(), clock));
+        let beside = watch(Arc::clone(&recorder), link.clone(), hand.clone(), clock);
+        Ok(Self(Some(Running {
+            recorder,
+            pump,
+            beside: tokio::spawn(beside),
+        })))
+    }
+
+    /// Ends the file, and tells what is wrong with it, if anything is. The link must be closed, or it goes on being recorded.
+    pub(crate) async fn end(self) {
+        let Some(running) = self.0 else { return };
+        running.beside.abort();
+        // It keeps the link open.
+        let _aborted = running.beside.await;
+        let _ended = timeout(LINK_ENDS_WITHIN, running.pump).await;
+        let Some(recorder) = Arc::into_inner(running.recorder) else {
+            return;
+        };
+        let status = recorder.end();
+        if let Some(trouble) = status.trouble {
+            say(&format!("the recording cannot be written: {trouble}"));
+        } else if !status.ended {
+            say(
+                "the recording was not ended: the disk does not take its last bytes; 'handscope recover' repairs it",
+            );
+        }
+    }
+}
+
+/// Asks once what the hand keeps, and then says when the disk fails and when it is well again.
+async fn watch(recorder: Arc<Recorder>, link: LinkHandle, hand: Endpoint, clock: Clock) {
+    tell_parameters(&link, &hand, &recorder.input(), clock).await;
+    drop(link);
+    let mut told = None;
+    let mut tick = interval(LOOK_EACH);
+    loop {
+        tick.tick().await;
+        let trouble = recorder.status().trouble;
+        if told != trouble {
+            say(&match &trouble {
+                Some(trouble) => {
+                    format!("the recording cannot be written: {trouble}; trying again")
+                }
+                None => "the recording is written again".to_owned(),
+            });
+            told = trouble;
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What stops the hands when this program ends, however it ends: one call tells every open link to hold, and a process of its
+//! own holds a hand whose program died. Lists the links of this process, as it ends as a whole.
+
+use crate::link::holder::{HolderTie, Started};
+use crate::link::wanted::PendingControl;
+use crate::record::Disarmed;
+use crate::transport::Endpoint;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+
+/// How often it is looked whether all hands rest.
+const LOOK_EACH: Duration = Duration::from_millis(5);
+
+/// The open links of this process.
+static OPEN: Mutex<Vec<Weak<MotionGuard>>> = Mutex::new(Vec::new());
+
+/// Whether the hand of one link may move because of this program, and what holds it if that ends.
+#[derive(Debug)]
+pub(crate) struct MotionGuard {
+    wanted: Arc<watch::Sender<PendingControl>>,
+    /// Since it was armed it was not seen to rest.
+    moves: AtomicBool,
+    reaches: AtomicBool,
+    tie: Mutex<Option<HolderTie>>,
+}
+
+impl MotionGuard {
+    /// For a link that opens.
+    pub(crate) fn enter(wanted: Arc<watch::Sender<PendingControl>>) -> Arc<Self> {
+        let guard = Arc::new(Self {
+            wanted,
+            moves: AtomicBool::new(false),
+            reaches: AtomicBool::new(false),
+            tie: Mutex::default(),
+        });
+        let mut open = lock(&OPEN);
+        open.retain(|link| link.strong_count() > 0);
+        open.push(Arc::downgrade(&guard));
+        guard
+    }
+
+    /// The hand is about to be armed at this endpoint. Gives the start of the process that holds it if this one dies, if
+    /// one was started just now.
+    pub(crate) fn moves(&self, endpoint: &Endpoint) -> Option<Started> {
+        self.moves.store(true, Ordering::Relaxed);
+        let mut tie = lock(&self.tie);
+        if tie.as_ref().is_some_and(|tie| tie.moves(endpoint)) {
+            return None;
+        }
+        let (started_tie, started) = HolderTie::start(endpoint)?;
+        *tie = Some(started_tie);
+        Some(started)
+    }
+
+    /// The hand rests by feedback, or is left in good order.
+    pub(crate) fn rests(&self) {
+        if self.moves.swap(false, Ordering::Relaxed)
+            && let Some(tie) = lock(&self.tie).as_ref()
+        {
+            tie.rests();
+        }
+    }
+
+    /// Whether this process can reach the hand now.
+    pub(crate) fn reaches(&self, reaches: bool) {
+        self.reaches.store(reaches, Ordering::Relaxed);
+    }
+
+    fn may_move(&self) -> bool {
+        self.moves.load(Ordering::Relaxed) && self.reaches.load(Ordering::Relaxed)
+    }
+
+    fn stop(&self) {
+        let why = Disarmed::Stop;
+        self.wanted.send_modify(|wanted| {
+            wanted.stop(why);
+            wanted.book.end(why);
+        });
+    }
+}
+
+/// Tells every hand to hold that may move because of this program, before anything else. Waits for nothing.
+pub fn hold_all() {
+    moving().iter().for_each(|link| link.stop());
+}
+
+/// The same, and waits until feedback shows that they rest, or for so long. Not for a thread that links run on.
+pub fn hold_all_within(time: Duration) {
+    let until = Instant::now() + time;
+    hold_all();
+    while !moving().is_empty() && Instant::now() < until {
+        std::thread::sleep(LOOK_EACH);
+    }
+}
+
+fn moving() -> Vec<Arc<MotionGuard>> {
+    let open: Vec<_> = lock(&OPEN).iter().filter_map(Weak::upgrade).collect();
+    open.into_iter().filter(|link| link.may_move()).collect()
+}
+
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,483 @@
+//! One group of setpoints as it is read back, against what was written: whose the values are. Pure; what follows from it is
+//! decided elsewhere.
+//!
+//! A joint may hold what it held before, what was written last, or what was written before that within the time that a write may
+//! take, in this order. Anything else came from elsewhere, unless it looks like the hand's own way to take a value: rounded a
+//! little, or limited. A value that is overwritten before it is read cannot be seen.
+
+use crate::hand::sample::SET_OUT_OF_RANGE;
+use crate::hand::{Dof, Moment, PerDof};
+use crate::link::bus::late_replies::LATE_HORIZON;
+use crate::record::{SetpointConflict, SetpointRegister};
+use arrayvec::ArrayVec;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// So many readings that hold a stranger's value …
+const MISSES: usize = 3;
+/// … within this time are another controller's, while writes of our own go on. One may be wrong.
+const WITHIN: Duration = Duration::from_secs(1);
+/// Writes that are remembered: as many as setpoint rounds fit into the time that a write may take.
+const WRITES_MAX: usize = 512;
+/// "No action" (manual 2.6.11).
+const LEAVE: i16 = -1;
+/// What some hands take it for.
+const CLAMPED_LEAVE: i16 = 1000;
+/// Where a joint is that was left alone, as far as readings of a moving one tell.
+const LEFT_WITHIN: i16 = 50;
+
+/// What one write says of one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wrote {
+    /// The write does not cover the joint.
+    Nothing,
+    /// Leave the joint alone: the hand decides what it holds then.
+    Leave,
+    /// This value.
+    Value(i16),
+}
+
+#[derive(Debug, Clone, Copy)]
+struct OwnWrite {
+    number: u64,
+    at: Moment,
+    values: PerDof<Wrote>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Joint {
+    /// What it held when that was understood last.
+    held: Option<i16>,
+    /// Writes before this number cannot come any more.
+    open_from: u64,
+    /// The newest write that must have acted by now, if it was not seen to.
+    due: Option<(u64, Wrote)>,
+    /// The newest write through a wire that is gone, if it must have acted by now: nobody knows when.
+    stale: Option<Wrote>,
+    /// The least and the largest of our values that were read back as written.
+    taken: Option<(i16, i16)>,
+    /// What we wrote last.
+    wrote: Option<i16>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Ours,
+    /// Nobody here wrote it, and nothing of ours is under way.
+    Changed,
+    /// Nobody here wrote it, while something of ours may still act.
+    Strange,
+    /// The hand took our value in its own way, or not at all.
+    NotTaken,
+}
+
+/// What a reading shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Seen {
+    /// Nothing unusual.
+    Usual,
+    /// Something that one reading alone does not prove: to be read again soon.
+    Doubtful,
+    /// Another controller's value.
+    Foreign(SetpointConflict),
+    /// The hand holds another value than it was given, and nobody else was seen to write.
+    NotTaken(SetpointConflict),
+}
+
+/// Watches one group of six.
+#[derive(Debug)]
+pub(crate) struct SetpointWatch {
+    register: SetpointRegister,
+    writes: VecDeque<OwnWrite>,
+    next: u64,
+    /// Writes before this number left through a wire that is gone: they may act late in any order.
+    reopened: u64,
+    joints: PerDof<Joint>,
+    /// The reading before held a value that nobody wrote.
+    doubted: bool,
+    misses: ArrayVec<Moment, MISSES>,
+    /// Until then the hand may set its own values.
+    hand_decides_until: Option<Moment>,
+    /// This hand was not seen to keep a -1 as it is.
+    clamps_leave: bool,
+}
+
+impl SetpointWatch {
+    pub(crate) fn new(register: SetpointRegister) -> Self {
+        Self {
+            register,
+            writes: VecDeque::new(),
+            next: 0,
+            reopened: 0,
+            joints: PerDof::splat(Joint::default()),
+            doubted: false,
+            misses: ArrayVec::new(),
+            hand_decides_until: None,
+            clamps_leave: true,
+        }
+    }
+
+    /// A fresh conversation: what the hand held before does not count, and what we wrote may still act.
+    pub(crate) fn begin(&mut self) {
+        self.reopened = self.next;
+        for (_, joint) in self.joints.iter_mut() {
+            *joint = Joint {
+                open_from: self.next,
+                ..Joint::default()
+            };
+        }
+        self.doubted = false;
+        self.misses.clear();
+    }
+
+    /// We write this, or may have.
+    pub(crate) fn wrote(&mut self, values: PerDof<Wrote>, now: Moment) {
+        for (dof, value) in values.iter() {
+            if let Wrote::Value(value) = value {
+                self.joints[dof].wrote = Some(*value);
+            }
+        }
+        self.forget_old(now);
+        if let Some(last) = self.writes.back_mut().filter(|last| last.values == values) {
+            last.at = now;
+            return;
+        }
+        if self.writes.len() == WRITES_MAX {
+            self.forget_oldest();
+        }
+        self.writes.push_back(OwnWrite {
+            number: self.next,
+            at: now,
+            values,
+        });
+        self.next += 1;
+    }
+
+    /// From now on, for as long as a write may take, the hand sets its own values.
+    pub(crate) fn hand_decides(&mut self, now: Moment) {
+        self.hand_decides_until = Some(now.plus(LATE_HORIZON));
+    }
+
+    fn forget_old(&mut self, now: Moment) {
+        while let Some(first) = self.writes.front()
+            && now.since(first.at) >= LATE_HORIZON
+        {
+            self.forget_oldest();
+        }
+    }
+
+    fn forget_oldest(&mut self) {
+        let Some(write) = self.writes.pop_front() else {
+            return;
+        };
+        for (dof, value) in write.values.iter() {
+            let joint = &mut self.joints[dof];
+            if *value == Wrote::Nothing {
+                continue;
+            }
+            if write.number < self.reopened {
+                joint.stale = Some(*value);
+            } else if write.number >= joint.open_from {
+                joint.due = Some((write.number, *value));
+            }
+        }
+    }
+
+    /// What this reading shows; `angles` is where the joints were read to be.
+    pub(crate) fn read(
+        &mut self,
+        values: &PerDof<i16>,
+        angles: Option<PerDof<i16>>,
+        asked: Moment,
+    ) -> Seen {
+        self.forget_old(asked);
+        if self.hand_decides_until.is_some_and(|until| asked < until) {
+            self.accept(values);
+            return Seen::Usual;
+        }
+        let verdicts = PerDof::from_fn(|dof| {
+            let angle = angles.map(|angles| angles[dof]);
+            self.judge(dof, values[dof], angle)
+        });
+        let first = |wanted: &[Verdict]| {
+            let mut all = verdicts.iter();
+            let found = all.find(|(_, verdict)| wanted.contains(verdict))?;
+            Some(self.conflict(found.0, values))
+        };
+        let foreign = first(&[Verdict::Changed, Verdict::Strange]);
+        let not_taken = first(&[Verdict::NotTaken]);
+        let is_changed = verdicts.iter().any(|(_, seen)| *seen == Verdict::Changed);
+        let was_doubted = std::mem::replace(&mut self.doubted, is_changed);
+        let Some(foreign) = foreign else {
+            return not_taken.map_or(Seen::Usual, Seen::NotTaken);
+        };
+        if self.misses.is_full() {
+            self.misses.remove(0);
+        }
+        self.misses.push(asked);
+        let oldest = self.misses.first().filter(|_| self.misses.is_full());
+        let many = oldest.is_some_and(|at| asked.since(*at) <= WITHIN);
+        if !(many || is_changed && was_doubted) {
+            return Seen::Doubtful;
+        }
+        self.misses.clear();
+        self.doubted = false;
+        self.accept(values);
+        Seen::Foreign(foreign)
+    }
+
+    fn conflict(&self, dof: Dof, values: &PerDof<i16>) -> SetpointConflict {
+        SetpointConflict {
+            register: self.register,
+            dof,
+            holds: Some(values[dof]).filter(|value| *value != SET_OUT_OF_RANGE),
+            wrote: self.joints[dof].wrote,
+        }
+    }
+
+    /// What is held now is understood, whoever wrote it.
+    fn accept(&mut self, values: &PerDof<i16>) {
+        for (dof, value) in values.iter() {
+            let joint = &mut self.joints[dof];
+            joint.held = Some(*value);
+            joint.open_from = self.next;
+            joint.due = None;
+        }
+    }
+
+    fn judge(&mut self, dof: Dof, read: i16, angle: Option<i16>) -> Verdict {
+        let joint = self.joints[dof];
+        if joint.held == Some(read) {
+            let says_this =
+                |value| matches!(value, Wrote::Value(_)) && self.may_be(value, read, angle);
+            let is_late = |(_, value)| matches!(value, Wrote::Value(_)) && !says_this(value);
+            // What was held before may be what was written since.
+            let is_newer = || self.writes.iter().any(|write| says_this(write.values[dof]));
+            return match joint.due.is_some_and(is_late) && !is_newer() {
+                true => Verdict::NotTaken,
+                false => Verdict::Ours,
+            };
+        }
+        let open = self.open(dof);
+        let is_this = |(_, value): &&(u64, Wrote)| self.may_be(*value, read, angle);
+        if let Some((number, value)) = open.iter().find(is_this).copied() {
+            self.clamps_leave &= !(value == Wrote::Leave && read == LEAVE);
+            self.settle(dof, read, number);
+            if let Wrote::Value(value) = value {
+                let joint = &mut self.joints[dof];
+                let (least, most) = joint.taken.unwrap_or((value, value));
+                joint.taken = Some((least.min(value), most.max(value)));
+            }
+            return Verdict::Ours;
+        }
+        let earlier = self
+            .writes
+            .iter()
+            .filter(|write| write.number < self.reopened);
+        let mut earlier = earlier.map(|write| write.values[dof]).chain(joint.stale);
+        if joint.held.is_none() || earlier.any(|value| self.may_be(value, read, angle)) {
+            self.joints[dof].held = Some(read);
+            return Verdict::Ours;
+        }
+        let is_limit = |(_, wrote): &&(u64, Wrote)| is_limit(joint, *wrote, read);
+        match open.iter().find(is_limit).copied() {
+            Some((number, _)) => {
+                self.settle(dof, read, number);
+                Verdict::NotTaken
+            }
+            None if open.is_empty() => Verdict::Changed,
+            None => Verdict::Strange,
+        }
+    }
+
+    /// What may still come of a joint's writes, in order, with their numbers.
+    fn open(&self, dof: Dof) -> Vec<(u64, Wrote)> {
+        let joint = self.joints[dof];
+        let under_way = self.writes.iter();
+        let under_way = under_way.filter(|write| write.number >= joint.open_from);
+        let under_way = under_way.map(|write| (write.number, write.values[dof]));
+        let all = joint.due.into_iter().chain(under_way);
+        all.filter(|(_, value)| *value != Wrote::Nothing).collect()
+    }
+
+    /// The write of this number acted.
+    fn settle(&mut self, dof: Dof, read: i16, number: u64) {
+        let joint = &mut self.joints[dof];
+        joint.held = Some(read);
+        joint.open_from = number + 1;
+        joint.due = joint.due.filter(|(due, _)| *due > number);
+        joint.stale = None;
+    }
+
+    /// True if a hand that was told this may show that.
+    fn may_be(&self, wrote: Wrote, read: i16, angle: Option<i16>) -> bool {
+        let near = |value: i16, within: i16| value.abs_diff(read) <= within.unsigned_abs();
+        match wrote {
+            Wrote::Nothing => false,
+            Wrote::Leave => {
+                let is_clamped = self.clamps_leave && read == CLAMPED_LEAVE;
+                let is_there = angle.is_some_and(|angle| near(angle, LEFT_WITHIN));
+                read == LEAVE || is_clamped || is_there
+            }
+            Wrote::Value(value) => near(value, self.register.rounds_by()),
+        }
+    }
+}
+
+/// True if a hand that limits what it takes would show this: nothing beyond it was ever taken.
+fn is_limit(joint: Joint, wrote: Wrote, read: i16) -> bool {
+    let Wrote::Value(wrote) = wrote else {
+        return false;
+    };
+    joint.taken.is_none_or(|(least, most)| match wrote > read {
+        true => most <= read,
+        false => least >= read,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How a hand takes a value, given what it holds.
+    type Takes = fn(told: Wrote, holds: i16) -> i16;
+
+    fn value(told: Wrote, holds: i16) -> i16 {
+        match told {
+            Wrote::Value(value) => value,
+            Wrote::Nothing | Wrote::Leave => holds,
+        }
+    }
+
+    fn ms(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    /// Streams to a hand for 20 s, at 50 or 1 a second, and reads ten times a second; what was seen besides the usual.
+    fn streamed(takes: Takes, tells: fn(u64) -> Wrote, late_ms: u64) -> Vec<Seen> {
+        let mut all = Vec::new();
+        for every in [20, 1000] {
+            let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
+            let (mut holds, mut under_way) = (1000, VecDeque::new());
+            for t in 0..20_000 {
+                if t > 500 && t % every == 0 {
+                    watch.wrote(PerDof::splat(tells(t)), ms(t));
+                    under_way.push_back((t + late_ms, tells(t)));
+                }
+                while let Some((_, told)) = under_way.pop_front_if(|(due, _)| *due <= t) {
+                    holds = takes(told, holds);
+                }
+                if t % 97 == 0 {
+                    let at = Some(PerDof::splat(holds));
+                    let seen = watch.read(&PerDof::splat(holds), at, ms(t));
+                    all.extend(Some(seen).filter(|seen| *seen != Seen::Usual));
+                }
+            }
+        }
+        all
+    }
+
+    fn sweep(t: u64) -> Wrote {
+        let phase = i16::try_from(t % 4000).unwrap() / 2;
+        Wrote::Value(if phase < 1000 {
+            1000 - phase
+        } else {
+            phase - 1000
+        })
+    }
+
+    #[test]
+    fn whatever_a_hand_makes_of_what_it_is_told_is_no_other_controller() {
+        let ways: [(&str, Takes, bool); 6] = [
+            ("as told", value, false),
+            ("rounds", |told, holds| value(told, holds) / 16 * 16, false),
+            ("limits", |told, holds| value(told, holds).min(600), true),
+            (
+                "limits below",
+                |told, holds| value(told, holds).max(400),
+                true,
+            ),
+            (
+                "both",
+                |told, holds| value(told, holds).clamp(300, 700),
+                true,
+            ),
+            ("ignores", |_, holds| holds, true),
+        ];
+        for (name, takes, is_told) in ways {
+            for late_ms in [0, 30, 300, 1900] {
+                let seen = streamed(takes, sweep, late_ms);
+                let foreign = seen.iter().find(|seen| matches!(seen, Seen::Foreign(_)));
+                assert_eq!(foreign, None, "{name}, {late_ms} ms late");
+                let told = seen.iter().any(|seen| matches!(seen, Seen::NotTaken(_)));
+                assert_eq!(told, is_told, "{name}, {late_ms} ms late: {seen:?}");
+            }
+        }
+        let leaves: [(&str, Takes); 3] = [
+            ("keeps -1", |told, holds| {
+                if told == Wrote::Leave {
+                    -1
+                } else {
+                    value(told, holds)
+                }
+            }),
+            ("keeps the target", value),
+            ("takes it for 1000", |told, holds| {
+                if told == Wrote::Leave {
+                    1000
+                } else {
+                    value(told, holds)
+                }
+            }),
+        ];
+        for (name, takes) in leaves {
+            let tells = |t: u64| {
+                if t % 700 < 300 {
+                    Wrote::Leave
+                } else {
+                    sweep(t)
+                }
+            };
+            assert_eq!(streamed(takes, tells, 20), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn one_wrong_reading_is_doubtful_and_another_controllers_values_are_not() {
+        let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
+        let read =
+            |watch: &mut SetpointWatch, value, t| watch.read(&PerDof::splat(value), None, ms(t));
+        let write = |watch: &mut SetpointWatch, value, t| {
+            watch.wrote(PerDof::splat(Wrote::Value(value)), ms(t));
+        };
+        assert_eq!(read(&mut watch, 1000, 0), Seen::Usual);
+        for (nth, value) in (0..200).map(|nth| (nth, 900 - 4 * i16::try_from(nth).unwrap())) {
+            write(&mut watch, value, 100 + 20 * nth);
+            if nth % 5 == 0 {
+                // Once in a while a reading is wrong.
+                let seen = if nth % 100 == 50 { 7 } else { value };
+                let said = read(&mut watch, seen, 105 + 20 * nth);
+                assert_eq!(said == Seen::Usual, seen == value, "{nth}");
+                assert!(!matches!(said, Seen::Foreign(_)), "{nth}");
+            }
+        }
+        // Another streams as well: every other reading shows its values.
+        let foreign = (0..20).find_map(|nth| {
+            let t = 5000 + 100 * nth;
+            write(&mut watch, 300, t);
+            write(&mut watch, 330, t + 5);
+            match read(&mut watch, if nth % 2 == 0 { 800 } else { 330 }, t + 10) {
+                Seen::Foreign(conflict) => Some((nth, conflict)),
+                _ => None,
+            }
+        });
+        let conflict = SetpointConflict {
+            register: SetpointRegister::AngleSet,
+            dof: Dof::Little,
+            holds: Some(800),
+            wrote: Some(330),
+        };
+        assert_eq!(foreign, Some((4, conflict)));
+        assert_eq!(conflict.to_string(), "ANGLE_SET: little 800, we wrote 330");
+    }
+}

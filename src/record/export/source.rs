@@ -1,0 +1,127 @@
+//! A stretch of a session on its way into another format: read entry after entry, watched, and broken off when that is wished.
+
+use crate::hand::Moment;
+use crate::record::Entry;
+use crate::record::export::output::{ExportError, Unfinished};
+use crate::record::file::SessionFile;
+use crate::record::file::reader::{Damage, Stretch};
+use mcap::McapError;
+use parquet::errors::ParquetError;
+use std::io;
+use std::ops::ControlFlow;
+
+/// Entries between two looks at whether to go on: some milliseconds.
+const LOOK_EACH: u64 = 256;
+
+/// How far an export is, from 0 to 1. Breaks it off where that is wished.
+pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
+
+/// A stretch of a session that is exported.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// The session.
+    pub file: &'a SessionFile,
+    /// What of it.
+    pub stretch: Stretch,
+    /// Told how far it is.
+    pub watch: &'a Watch<'a>,
+}
+
+/// Why a stretch was not read, or not written, to its end.
+#[derive(Debug)]
+pub(crate) enum Broken {
+    /// The session cannot be read on.
+    Source(io::Error),
+    /// What is made of it cannot be written.
+    Output(io::Error),
+    /// The same of a table.
+    Table(ParquetError),
+    /// A person wished it.
+    Interrupted,
+}
+
+impl Broken {
+    /// For what was to be written.
+    pub(crate) fn of(self, output: &Unfinished) -> ExportError {
+        match self {
+            Self::Source(error) => ExportError::Unreadable {
+                message: error.to_string(),
+            },
+            Self::Output(error) => output.error(&error),
+            Self::Table(error) => output.parquet_error(error),
+            Self::Interrupted => ExportError::Interrupted,
+        }
+    }
+}
+
+impl From<io::Error> for Broken {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl From<McapError> for Broken {
+    fn from(error: McapError) -> Self {
+        Self::Output(io::Error::other(error))
+    }
+}
+
+impl From<ParquetError> for Broken {
+    fn from(error: ParquetError) -> Self {
+        Self::Table(error)
+    }
+}
+
+impl<'a> Source<'a> {
+    /// A stretch that nobody watches.
+    #[must_use]
+    pub fn new(file: &'a SessionFile, stretch: Stretch) -> Self {
+        let watch = &|_| ControlFlow::Continue(());
+        Self {
+            file,
+            stretch,
+            watch,
+        }
+    }
+
+    /// The same without the bytes on the wire.
+    pub(crate) const fn without_wire(mut self) -> Self {
+        self.stretch.wire = false;
+        self
+    }
+
+    /// Gives each entry to `take`, until one cannot be taken.
+    pub(crate) fn entries(
+        &self,
+        mut take: impl FnMut(Entry) -> Result<(), Broken>,
+    ) -> Result<Damage, Broken> {
+        let mut done = self.look(self.stretch.from);
+        let mut count = 0_u64;
+        let damage = self.file.entries(self.stretch, |entry| {
+            count += 1;
+            if count.is_multiple_of(LOOK_EACH) && done.is_ok() {
+                done = self.look(entry.at());
+            }
+            if done.is_ok() {
+                done = take(entry);
+            }
+            match done {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        });
+        let damage = damage.map_err(Broken::Source)?;
+        done.map(|()| damage)
+    }
+
+    /// Tells how far it is.
+    fn look(&self, at: Moment) -> Result<(), Broken> {
+        let from = self.stretch.from.max(self.file.first());
+        let whole = self.stretch.to.min(self.file.last()).since(from);
+        let share = at.since(from).as_secs_f64() / whole.as_secs_f64().max(1e-6);
+        match (self.watch)(share.min(1.0)) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Broken::Interrupted),
+        }
+    }
+}

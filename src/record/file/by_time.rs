@@ -1,0 +1,96 @@
+//! Messages in the order of time, however they stand in a file, without holding more than some megabytes of them.
+
+use crate::record::file::walk::{ChunkMessage, ChunkPlace, Place, messages};
+use std::io;
+use std::ops::{ControlFlow, RangeInclusive};
+
+/// Bytes of messages held at once: some minutes of one hand. What comes later is read again then.
+const HELD_MAX: usize = 8 * 1024 * 1024;
+/// What a message takes in memory beside its content.
+const EACH: usize = 128;
+
+/// The order: received, number, place.
+type Key = (u64, u32, usize, usize);
+
+/// A message that waits for its turn.
+struct Held {
+    key: Key,
+    channel: u16,
+    asked_nanos: u64,
+    data: Box<[u8]>,
+}
+
+/// Gives the messages of a stretch of time in its order. Chunks are in the order of their first message.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn each(
+    chunks: &[ChunkPlace],
+    within: RangeInclusive<u64>,
+    mut read: impl FnMut(Place) -> io::Result<Vec<u8>>,
+    mut take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
+) -> io::Result<()> {
+    let mut after = None;
+    loop {
+        let (from, mut to) = (after, None);
+        let (mut held, mut bytes) = (Vec::new(), 0);
+        for (number, chunk) in chunks.iter().enumerate() {
+            let last = to.map_or(*within.end(), |(time, ..): Key| time);
+            if chunk.first_nanos > last {
+                break;
+            }
+            let first = from.map_or(*within.start(), |(time, ..): Key| time);
+            if chunk.last_nanos < first {
+                continue;
+            }
+            let mut content = read(chunk.place)?;
+            let mut nth = 0;
+            // Whether it is whole was seen when the file was opened.
+            let _whole = messages(&mut content, chunk.kind, |message| {
+                nth += 1;
+                let key = (message.times.0, message.sequence, number, nth);
+                let is_next = within.contains(&message.times.0)
+                    && from.is_none_or(|from| key > from)
+                    && to.is_none_or(|to| key <= to);
+                if is_next {
+                    bytes += message.data.len() + EACH;
+                    held.push(Held {
+                        key,
+                        channel: message.channel,
+                        asked_nanos: message.times.1,
+                        data: message.data.into(),
+                    });
+                    if bytes > HELD_MAX {
+                        to = leave_out(&mut held, &mut bytes).or(to);
+                    }
+                }
+            });
+        }
+        held.sort_unstable_by_key(|one| one.key);
+        for one in &held {
+            let (received, sequence, ..) = one.key;
+            let flow = take(&ChunkMessage {
+                channel: one.channel,
+                sequence,
+                times: (received, one.asked_nanos),
+                data: &one.data,
+            });
+            if flow.is_break() {
+                return Ok(());
+            }
+        }
+        match to {
+            Some(_) => after = to,
+            None => return Ok(()),
+        }
+    }
+}
+
+/// Leaves the later half for another time; gives the last that stays.
+fn leave_out(held: &mut Vec<Held>, bytes: &mut usize) -> Option<Key> {
+    held.sort_unstable_by_key(|one| one.key);
+    while *bytes > HELD_MAX / 2 && held.len() > 1 {
+        *bytes -= held.pop().map_or(0, |one| one.data.len() + EACH);
+    }
+    held.last().map(|one| one.key)
+}

@@ -1,0 +1,235 @@
+//! The channels and schemas of a file, read by name: numbers of channels are each program's own.
+
+use crate::record::file::topic::Topic;
+use mcap::records::Record;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Definitions of each kind that are taken from one file. Ours have twelve.
+const DEFINITIONS_MAX: usize = 1024;
+/// Letters kept of a name, and of what a schema says.
+const NAME_MAX: usize = 200;
+const FIELDS_MAX: usize = 4096;
+/// How messages and schemas of ours are encoded.
+const MESSAGES_IN: &str = "cdr";
+const SCHEMAS_IN: &str = "ros2msg";
+
+/// A schema as a file defines it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Schema {
+    name: String,
+    encoding: String,
+    fields: String,
+}
+
+/// A channel as a file defines it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Channel {
+    schema: u16,
+    topic: String,
+    encoding: String,
+}
+
+/// Messages that are not read, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SkippedTopic {
+    /// The topic's name.
+    pub topic: String,
+    /// The name of its schema; empty without one.
+    pub schema: String,
+    /// How its messages are encoded.
+    pub encoding: String,
+    /// How many they are.
+    pub messages: u64,
+    /// Why.
+    pub why: SkipReason,
+}
+
+/// Why messages are not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SkipReason {
+    /// The topic is not one of Handscope's.
+    Unknown,
+    /// The topic is, but its schema or encoding is another.
+    OtherSchema,
+    /// The schema has the right name and other fields.
+    OtherFields,
+    /// Nothing in the file says what they are.
+    Undefined,
+    /// The file says so twice, and not the same.
+    Contradicted,
+}
+
+impl SkippedTopic {
+    /// True if it is Handscope's, so that something of the recording is missing.
+    #[must_use]
+    pub const fn is_ours(&self) -> bool {
+        !matches!(self.why, SkipReason::Unknown)
+    }
+}
+
+impl std::fmt::Display for SkippedTopic {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            topic,
+            schema,
+            encoding,
+            messages,
+            why,
+        } = self;
+        let why = match why {
+            SkipReason::Unknown => "not Handscope's",
+            SkipReason::OtherSchema => "Handscope's has another schema or encoding",
+            SkipReason::OtherFields => "Handscope's schema of that name has other fields",
+            SkipReason::Undefined => "no channel says what they are",
+            SkipReason::Contradicted => "the file defines this channel twice, differently",
+        };
+        write!(
+            f,
+            "skipped: topic {topic} with schema '{schema}' in '{encoding}', {messages} messages: {why}"
+        )
+    }
+}
+
+/// All that a file defines, and how many messages each channel has.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Definitions {
+    schemas: BTreeMap<u16, Schema>,
+    channels: BTreeMap<u16, Channel>,
+    contradicted: BTreeMap<u16, ()>,
+    counts: BTreeMap<u16, u64>,
+}
+
+impl Definitions {
+    /// Takes in the record of a schema or a channel.
+    pub(crate) fn take(&mut self, code: u8, record: &[u8]) {
+        match mcap::parse_record(code, record) {
+            Ok(Record::Schema { header, data }) => {
+                let schema = Schema {
+                    name: clipped(&header.name, NAME_MAX),
+                    encoding: clipped(&header.encoding, NAME_MAX),
+                    fields: fields(&String::from_utf8_lossy(&data)),
+                };
+                if self.schemas.len() < DEFINITIONS_MAX {
+                    self.schemas.entry(header.id).or_insert(schema);
+                }
+            }
+            Ok(Record::Channel(read)) => {
+                let channel = Channel {
+                    schema: read.schema_id,
+                    topic: clipped(&read.topic, NAME_MAX),
+                    encoding: clipped(&read.message_encoding, NAME_MAX),
+                };
+                let is_other = |there: &Channel| *there != channel;
+                if self.channels.get(&read.id).is_some_and(is_other) {
+                    self.contradicted.insert(read.id, ());
+                } else if self.channels.len() < DEFINITIONS_MAX {
+                    self.channels.insert(read.id, channel);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Counts a message.
+    pub(crate) fn count(&mut self, channel: u16) {
+        *self.counts.entry(channel).or_default() += 1;
+    }
+
+    /// True if the file defines this channel.
+    pub(crate) fn has(&self, channel: u16) -> bool {
+        self.channels.contains_key(&channel)
+    }
+
+    /// True if nothing is defined, and no message was counted.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.channels.is_empty() && self.counts.is_empty()
+    }
+
+    /// Messages counted.
+    pub(crate) fn messages(&self) -> u64 {
+        self.counts.values().sum()
+    }
+
+    /// True if each topic has the number that Handscope gives it, and nothing else is defined.
+    pub(crate) fn are_own(&self) -> bool {
+        let own = |topic: Topic| {
+            let channel = self.channels.get(&topic.channel());
+            channel.is_some_and(|channel| channel.topic == topic.name())
+        };
+        Topic::all().all(own) && self.channels.len() == Topic::all().count()
+    }
+
+    /// The topics of the channels, and what is skipped.
+    pub(crate) fn topics(&self) -> (BTreeMap<u16, Topic>, Vec<SkippedTopic>) {
+        let (mut topics, mut skipped) = (BTreeMap::new(), Vec::new());
+        let numbers: BTreeSet<u16> = self
+            .counts
+            .keys()
+            .chain(self.channels.keys())
+            .copied()
+            .collect();
+        for number in numbers {
+            let messages = self.counts.get(&number).copied().unwrap_or_default();
+            match self.topic(number) {
+                Ok(topic) => {
+                    topics.insert(number, topic);
+                }
+                Err(why) if messages > 0 => skipped.push(self.skipped(number, messages, why)),
+                Err(_) => {}
+            }
+        }
+        (topics, skipped)
+    }
+
+    fn topic(&self, number: u16) -> Result<Topic, SkipReason> {
+        let channel = self.channels.get(&number).ok_or(SkipReason::Undefined)?;
+        if self.contradicted.contains_key(&number) {
+            return Err(SkipReason::Contradicted);
+        }
+        let topic = Topic::all().find(|topic| topic.name() == channel.topic);
+        let topic = topic.ok_or(SkipReason::Unknown)?;
+        let schema = self.schemas.get(&channel.schema);
+        let schema = schema.ok_or(SkipReason::OtherSchema)?;
+        let is_ours = schema.name == topic.schema().name
+            && schema.encoding == SCHEMAS_IN
+            && channel.encoding == MESSAGES_IN;
+        // Every robot has joints of that name, which tell nothing that State does not.
+        if !is_ours {
+            return Err(match topic {
+                Topic::Joints => SkipReason::Unknown,
+                _ => SkipReason::OtherSchema,
+            });
+        }
+        match schema.fields == fields(topic.schema().text) {
+            true => Ok(topic),
+            false => Err(SkipReason::OtherFields),
+        }
+    }
+
+    fn skipped(&self, number: u16, messages: u64, why: SkipReason) -> SkippedTopic {
+        let channel = self.channels.get(&number);
+        let schema = channel.and_then(|channel| self.schemas.get(&channel.schema));
+        SkippedTopic {
+            topic: channel.map_or_else(|| format!("of channel {number}"), |one| one.topic.clone()),
+            schema: schema.map_or_else(String::new, |schema| schema.name.clone()),
+            encoding: channel.map_or_else(String::new, |one| one.encoding.clone()),
+            messages,
+            why,
+        }
+    }
+}
+
+fn clipped(text: &str, letters: usize) -> String {
+    text.chars().take(letters).collect()
+}
+
+/// The fields of a definition, one a line: without comments and without the types in it, whose names are spelled in two ways.
+fn fields(text: &str) -> String {
+    let lines = text.lines().take_while(|line| !line.starts_with("==="));
+    let lines = lines.filter_map(|line| {
+        let bare = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = bare.split_whitespace().collect();
+        (!words.is_empty()).then(|| words.join(" ").replace("/msg/", "/"))
+    });
+    clipped(&lines.collect::<Vec<_>>().join("\n"), FIELDS_MAX)
+}

@@ -1,0 +1,102 @@
+//! What of a file is missing, and what else is to be said of how it was found.
+
+use crate::hand::Moment;
+use crate::record::file::channels::SkippedTopic;
+use std::time::Duration;
+
+/// What is to be said of a file, beside what is missing in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Remark {
+    /// Not as Handscope writes it.
+    Rewritten,
+    /// Messages that are not read.
+    Skipped(SkippedTopic),
+    /// Its index was gone around.
+    StaleIndex,
+    /// Messages stand outside of chunks, and the sum over the file is not right.
+    SumDiffers,
+    /// What the file says of itself is missing or damaged.
+    OpeningLost,
+}
+
+impl Remark {
+    /// True unless all that Handscope wrote may be there in spite of it.
+    #[must_use]
+    pub const fn is_loss(&self) -> bool {
+        match self {
+            Self::Skipped(skipped) => skipped.is_ours(),
+            Self::StaleIndex => false,
+            Self::Rewritten | Self::SumDiffers | Self::OpeningLost => true,
+        }
+    }
+}
+
+impl std::fmt::Display for Remark {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Skipped(skipped) => return skipped.fmt(f),
+            Self::Rewritten => {
+                "another program wrote or changed this file, or its beginning is damaged: it is read by the names of its topics, and nobody can tell what was left out"
+            }
+            Self::StaleIndex => {
+                "its index does not fit: the file was read from its beginning to its end"
+            }
+            Self::SumDiffers => {
+                "the checksum over the file is wrong, and messages outside of chunks have no other: any value may be wrong"
+            }
+            Self::OpeningLost => {
+                "what the file says of itself is missing or damaged: the beginning is that of the first message, and the hand is known only if its parameters were recorded"
+            }
+        })
+    }
+}
+
+/// Gaps of one file that are listed; more are counted.
+const GAPS_MAX: usize = 1000;
+
+/// A stretch of time of which messages are missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gap {
+    /// The last moment before it.
+    pub from: Moment,
+    /// The first after it.
+    pub to: Moment,
+    /// How many messages are missing; 0 if nobody counted.
+    pub messages: u64,
+}
+
+/// What of a file is missing.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Damage {
+    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_EACH`](crate::record::file::FLUSH_EACH).
+    pub chunks: u64,
+    /// Bytes in which no record was found.
+    pub bytes: u64,
+    /// Messages that are missing by their numbers.
+    pub messages: u64,
+    /// When they are missing, at most a thousand.
+    pub gaps: Vec<Gap>,
+}
+
+impl Damage {
+    pub(crate) fn gap(&mut self, gap: Gap) {
+        self.messages = self.messages.saturating_add(gap.messages);
+        if self.gaps.len() < GAPS_MAX {
+            self.gaps.push(gap);
+        }
+    }
+
+    /// Adds what is missing of another file.
+    pub fn add(&mut self, other: &Self) {
+        self.chunks += other.chunks;
+        self.bytes += other.bytes;
+        self.messages += other.messages;
+        self.gaps.extend(&other.gaps);
+    }
+
+    /// The time over which anything is missing.
+    #[must_use]
+    pub fn length(&self) -> Duration {
+        self.gaps.iter().map(|gap| gap.to.since(gap.from)).sum()
+    }
+}

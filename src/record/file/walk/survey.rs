@@ -1,0 +1,274 @@
+//! All of a file that another program has written or changed: its messages may stand in chunks or outside of them, in any order,
+//! under any numbers. The whole file is read once; its own index is only held against what is found.
+
+use super::found::{
+    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, u32_at, u64_at, whole,
+};
+use super::hops::{LOOKED_AT, chunk_times, next_place, plausible};
+use super::messages::{ChunkRecord, records};
+use crate::record::file::channels::Definitions;
+use mcap::records::op;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+
+/// Messages outside of chunks are taken together up to so many bytes.
+const LOOSE_MAX: u64 = 256 * 1024;
+/// Bytes read at once.
+const READ_AT_ONCE: usize = 64 * 1024;
+/// Where a message is searched after damage, one of another time is none.
+const NEAR_NANOS: u64 = 3_600_000_000_000;
+/// Channel, number, two times.
+const MESSAGE_HEAD: u64 = 2 + 4 + 8 + 8;
+
+/// What there is in a file.
+#[derive(Debug, Default)]
+pub(crate) struct Survey {
+    /// Chunks, and messages outside of them; those that are whole.
+    pub(crate) found: Found,
+    /// What is defined.
+    pub(crate) definitions: Definitions,
+    /// Chunks that cannot be read.
+    pub(crate) damaged: u64,
+    /// True if the sum over all of the data is not that of the file, where messages stand outside of chunks: no other sum tells.
+    pub(crate) sum_differs: bool,
+}
+
+/// Reads all of a file.
+///
+/// # Errors
+/// What the system says; nothing that stands in the file is an error.
+pub(crate) fn survey<F: Read + Seek>(file: &mut F) -> io::Result<Survey> {
+    let len = file.seek(SeekFrom::End(0))?;
+    let mut surveyor = Surveyor {
+        file: BufReader::with_capacity(READ_AT_ONCE, file),
+        len,
+        survey: Survey::default(),
+        loose: None,
+        newest: 0,
+    };
+    surveyor.file.seek(SeekFrom::Start(0))?;
+    let end = surveyor.data()?;
+    if let Some((end, sum)) = end {
+        surveyor.index(end + HEAD + 4)?;
+        let is_loose = |chunk: &ChunkPlace| chunk.kind == ChunkKind::Loose;
+        if sum != 0 && surveyor.survey.found.chunks.iter().any(is_loose) {
+            surveyor.survey.sum_differs = surveyor.sum(end)? != sum;
+        }
+    }
+    Ok(surveyor.survey)
+}
+
+/// True if the record consists of a text and of what else fills its length, as far as that can be seen from its first bytes.
+fn is_pair(head: &[u8]) -> bool {
+    let fits = || {
+        let first = u64::from(u32_at(head, HEAD_LEN)?);
+        let second = HEAD.checked_add(4)?.checked_add(first)?;
+        let second = u64::from(u32_at(head, usize::try_from(second).ok()?)?);
+        Some(8 + first + second == u64_at(head, 1)?)
+    };
+    fits().unwrap_or_else(|| u32_at(head, HEAD_LEN).is_some_and(|len| len > 30))
+}
+
+struct Surveyor<'a, F: Read + Seek> {
+    file: BufReader<&'a mut F>,
+    len: u64,
+    survey: Survey,
+    /// Messages outside of chunks that are still to be looked at: from and to.
+    loose: Option<(u64, u64)>,
+    /// Time of the newest message so far.
+    newest: u64,
+}
+
+impl<F: Read + Seek> Surveyor<'_, F> {
+    /// The first bytes of what stands here.
+    fn head(&mut self, at: u64) -> io::Result<Vec<u8>> {
+        let left = usize::try_from(self.len - at).unwrap_or(usize::MAX);
+        let mut head = vec![0; left.min(LOOKED_AT)];
+        let here = self.file.stream_position()?;
+        let step = i64::try_from(i128::from(at) - i128::from(here));
+        self.file.seek_relative(step.map_err(io::Error::other)?)?;
+        self.file.read_exact(&mut head)?;
+        Ok(head)
+    }
+
+    /// Goes through the data; where it ends and the sum over it, if it was ended.
+    fn data(&mut self) -> io::Result<Option<(u64, u32)>> {
+        let mut at = MAGIC.len() as u64;
+        while at + HEAD <= self.len {
+            let head = self.head(at)?;
+            let Some(next) = self.end(&head, at) else {
+                self.look_at_loose()?;
+                let next = self.after_damage(at + 1)?;
+                self.survey.found.skipped += next - at;
+                at = next;
+                continue;
+            };
+            let code = head.first().copied().unwrap_or_default();
+            let place = Place {
+                offset: at,
+                len: next - at - HEAD,
+            };
+            if chunk_times(&head).is_some() {
+                self.look_at_loose()?;
+                self.look_at(ChunkKind::Chunk, place)?;
+            } else if matches!(code, op::MESSAGE | op::SCHEMA | op::CHANNEL) {
+                if self.loose.is_some_and(|(_, to)| to != at) {
+                    self.look_at_loose()?;
+                }
+                let (from, _) = self.loose.unwrap_or((at, at));
+                self.loose = Some((from, next));
+                if next - from >= LOOSE_MAX {
+                    self.look_at_loose()?;
+                }
+            } else if code == op::METADATA {
+                self.survey.found.metadata(place);
+            } else if code == op::DATA_END {
+                self.look_at_loose()?;
+                return Ok(u32_at(&head, HEAD_LEN).map(|sum| (at, sum)));
+            }
+            at = next;
+        }
+        self.look_at_loose()?;
+        self.survey.found.skipped += self.len.saturating_sub(at);
+        Ok(None)
+    }
+
+    /// Where the record ends, if one can stand here.
+    fn end(&self, head: &[u8], at: u64) -> Option<u64> {
+        let size = u64_at(head, 1)?;
+        match head.first() {
+            // Pictures and films may be as long as they like.
+            Some(&op::ATTACHMENT) if size > RECORD_MAX => {
+                let end = at.checked_add(HEAD)?.checked_add(size)?;
+                (end <= self.len).then_some(end)
+            }
+            // One that claims to be longer would hide what defines the channels.
+            Some(&(op::HEADER | op::METADATA)) if !is_pair(head) => None,
+            Some(&op::MESSAGE) if size < MESSAGE_HEAD => None,
+            Some(&op::DATA_END) if size != 4 => None,
+            // What stands behind the data has no place in it.
+            Some(&(op::FOOTER | op::CHUNK_INDEX | op::STATISTICS | op::SUMMARY_OFFSET)) => None,
+            _ => plausible(head, at, self.len),
+        }
+    }
+
+    /// The next place where a chunk or a message can stand.
+    fn after_damage(&mut self, from: u64) -> io::Result<u64> {
+        let (len, newest, definitions) = (self.len, self.newest, &self.survey.definitions);
+        next_place(&mut self.file, (from, len), |head, at| {
+            let is_message = || {
+                let size = u64_at(head, 1).unwrap_or_default();
+                let channel = head.get(HEAD_LEN..).and_then(<[u8]>::first_chunk);
+                let time = u64_at(head, HEAD_LEN + 6).unwrap_or_default();
+                size >= MESSAGE_HEAD
+                    && channel.is_some_and(|two| definitions.has(u16::from_le_bytes(*two)))
+                    && time.abs_diff(newest) < NEAR_NANOS
+            };
+            let is_wanted = match head.first() {
+                Some(&op::CHUNK) => chunk_times(head).is_some(),
+                Some(&op::MESSAGE) => is_message(),
+                _ => false,
+            };
+            is_wanted && plausible(head, at, len).is_some()
+        })
+    }
+
+    fn look_at_loose(&mut self) -> io::Result<()> {
+        let Some((from, to)) = self.loose.take() else {
+            return Ok(());
+        };
+        let place = Place {
+            offset: from,
+            len: to - from - HEAD,
+        };
+        self.look_at(ChunkKind::Loose, place)
+    }
+
+    /// Reads a chunk: what it defines, what it holds, and when that was.
+    fn look_at(&mut self, kind: ChunkKind, place: Place) -> io::Result<()> {
+        let mut bytes = whole(&mut self.file, place)?;
+        let mut times: Option<(u64, u64)> = None;
+        let definitions = &mut self.survey.definitions;
+        let is_whole = records(&mut bytes, kind, |record| match record {
+            ChunkRecord::Definition(code, content) => definitions.take(code, content),
+            ChunkRecord::Message(message) => {
+                definitions.count(message.channel);
+                let (first, last) = times.unwrap_or((message.times.0, message.times.0));
+                times = Some((first.min(message.times.0), last.max(message.times.0)));
+            }
+        });
+        self.survey.damaged += u64::from(!is_whole);
+        if let Some((first_nanos, last_nanos)) = times {
+            self.newest = last_nanos;
+            self.survey.found.chunk(ChunkPlace {
+                kind,
+                place,
+                first_nanos,
+                last_nanos,
+            });
+        }
+        Ok(())
+    }
+
+    /// Goes through the index, and holds it against what was found.
+    fn index(&mut self, from: u64) -> io::Result<()> {
+        let mut at = from;
+        let (mut told, mut strangers) = (0_usize, 0_usize);
+        while at + HEAD <= self.len {
+            let head = self.head(at)?;
+            let Some(next) = plausible(&head, at, self.len) else {
+                break;
+            };
+            match head.first() {
+                Some(&op::CHUNK_INDEX) => {
+                    let offset = u64_at(&head, HEAD_LEN + 16);
+                    let chunks = &self.survey.found.chunks;
+                    let known = chunks
+                        .binary_search_by_key(&offset, |chunk| Some(chunk.place.offset))
+                        .is_ok();
+                    told += usize::from(known);
+                    strangers += usize::from(!known);
+                }
+                Some(&op::STATISTICS) => self.survey.found.messages = u64_at(&head, HEAD_LEN),
+                Some(&op::FOOTER) => {
+                    self.survey.found.closed = true;
+                    break;
+                }
+                _ => {}
+            }
+            at = next;
+        }
+        let survey = &mut self.survey;
+        let chunks = survey.found.chunks.iter();
+        let chunks = chunks.filter(|chunk| chunk.kind == ChunkKind::Chunk);
+        let has_index = told + strangers > 0;
+        // Chunks that hold no message or are damaged are told of, too.
+        let misses = has_index && told < chunks.count();
+        let points_aside = has_index && told == 0;
+        let counts_others = survey.damaged == 0
+            && survey.found.skipped == 0
+            && survey
+                .found
+                .messages
+                .is_some_and(|all| all != survey.definitions.messages());
+        survey.found.stale_index = misses || points_aside || counts_others;
+        Ok(())
+    }
+
+    /// The sum over the first bytes of the file.
+    fn sum(&mut self, to: u64) -> io::Result<u32> {
+        self.file.seek(SeekFrom::Start(0))?;
+        let mut hash = crc32fast::Hasher::new();
+        let mut bytes = vec![0; READ_AT_ONCE];
+        let mut left = to;
+        while left > 0 {
+            let step = usize::try_from(left)
+                .unwrap_or(usize::MAX)
+                .min(READ_AT_ONCE);
+            let part = bytes.get_mut(..step).unwrap_or_default();
+            self.file.read_exact(part)?;
+            hash.update(part);
+            left -= step as u64;
+        }
+        Ok(hash.finalize())
+    }
+}

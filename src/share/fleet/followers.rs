@@ -1,0 +1,102 @@
+//! Hears of other programs that let a hand of the same side follow what is sent: two hands must not obey one sender unasked.
+
+use crate::hand::kinematics::Side;
+use crate::link::Clock;
+use crate::share::fleet::{FleetBook, FleetCard, FleetHand, topic};
+use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::task::AbortHandle;
+use tokio::time::{interval, timeout};
+
+/// Who tells of a hand is heard within this, with two of its notices lost.
+const HEARD_WITHIN: Duration = Duration::from_millis(2000);
+/// How often it is looked who is silent.
+const LOOK_EACH: Duration = Duration::from_millis(100);
+/// As many hands may change at once.
+const KEPT: u16 = 512;
+
+/// Others whose hand of this side follows what is sent in this domain. Dropped, nobody listens any more.
+#[derive(Debug)]
+pub struct OtherFollowers {
+    seen: watch::Receiver<Option<FleetCard>>,
+    abort: AbortHandle,
+}
+
+impl Drop for OtherFollowers {
+    fn drop(&mut self) {
+        self.abort.abort();
+    }
+}
+
+impl OtherFollowers {
+    /// Listens from now on. Must be called within a tokio runtime.
+    ///
+    /// # Errors
+    /// [`DdsError`], if the library does not make the reader.
+    pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Result<Self, DdsError> {
+        let messages = node.reader(&topic(), KEPT)?;
+        let (told, seen) = watch::channel(None);
+        let listening = Listening {
+            node: node.clone(),
+            side,
+            clock,
+            told,
+        };
+        Ok(Self {
+            seen,
+            abort: tokio::spawn(listening.run(messages)).abort_handle(),
+        })
+    }
+
+    /// One that is there now.
+    #[must_use]
+    pub fn now(&self) -> Option<FleetCard> {
+        self.seen.borrow().clone()
+    }
+
+    /// One that is there, once there is one.
+    pub async fn appears(&self) -> FleetCard {
+        let mut seen = self.seen.clone();
+        let appeared = seen.wait_for(Option::is_some).await;
+        match appeared.ok().and_then(|card| card.clone()) {
+            Some(card) => card,
+            None => std::future::pending().await,
+        }
+    }
+
+    /// One that was there already when this began to listen: waits as long as it takes to hear of it.
+    pub async fn was_there(&self) -> Option<FleetCard> {
+        timeout(HEARD_WITHIN, self.appears()).await.ok()
+    }
+}
+
+struct Listening {
+    node: DdsNode,
+    side: Side,
+    clock: Clock,
+    told: watch::Sender<Option<FleetCard>>,
+}
+
+impl Listening {
+    async fn run(self, mut messages: mpsc::Receiver<DdsMessage>) {
+        let mut book = FleetBook::default();
+        let mut tick = interval(LOOK_EACH);
+        loop {
+            let is_new = tokio::select! {
+                message = messages.recv() => {
+                    let Some(message) = message else { return };
+                    let hand = FleetHand::parse(&message.bytes, self.node.address());
+                    let hand = hand.filter(|_| !self.node.wrote(&message));
+                    hand.is_some_and(|hand| book.take(message.from, hand, self.clock.now()))
+                }
+                _ = tick.tick() => book.sweep(self.clock.now()),
+            };
+            if is_new {
+                let follows = |hand: &FleetHand| hand.card.follows && hand.card.side == self.side;
+                let other = book.list().into_iter().find(follows);
+                self.told.send_replace(other.map(|hand| hand.card));
+            }
+        }
+    }
+}

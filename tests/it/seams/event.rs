@@ -1,0 +1,176 @@
+//! What happens while the hand moves: the columns of the table that strike the hand, its wire or its time.
+
+use crate::seams::judge::{INDEX, Seen};
+use crate::seams::mover::Mover;
+use crate::seams::table::Column;
+use handscope::hand::{Fault, Moment, Span};
+use nix::sys::signal::Signal;
+use std::time::Duration;
+
+/// DEFAULT_SPEED_SET and DEFAULT_FORCE_SET (manual 2.6).
+const DEFAULTS: Span = Span::new(1032, 24);
+const STEP: Duration = Duration::from_millis(20);
+/// What is on its way has come so far.
+const UNDER_WAY: i16 = 850;
+
+/// Looks at the joints while time goes by.
+pub(super) struct Witness<'a> {
+    mover: &'a mut dyn Mover,
+    event: Moment,
+    points: Vec<(Moment, [i16; 6])>,
+}
+
+impl<'a> Witness<'a> {
+    /// Waits until the index is on its way, where joints move at all.
+    pub(super) fn of(mover: &'a mut dyn Mover, moves: bool) -> Self {
+        let mut witness = Self {
+            event: Moment::ZERO,
+            mover,
+            points: Vec::new(),
+        };
+        if moves {
+            witness.pass(200);
+        }
+        for _ in 0..1500 {
+            if !moves || witness.index() < UNDER_WAY || witness.mover.has_ended() {
+                break;
+            }
+            witness.pass(20);
+        }
+        assert!(
+            !moves || (100..=UNDER_WAY).contains(&witness.index()),
+            "it is not on its way: {} {}",
+            witness.index(),
+            witness.mover.said()
+        );
+        witness.event = witness.mover.hand().now();
+        witness
+    }
+
+    fn index(&self) -> i16 {
+        self.mover.hand().angles()[INDEX]
+    }
+
+    fn pass(&mut self, ms: u64) {
+        for _ in 0..ms.div_ceil(20) {
+            self.mover.pass(STEP);
+            let hand = self.mover.hand();
+            self.points.push((hand.now(), hand.angles()));
+        }
+    }
+
+    /// Looks on until the program is over, and a moment longer.
+    fn pass_to_the_end(&mut self) {
+        for _ in 0..150 {
+            if self.mover.has_ended() {
+                break;
+            }
+            self.pass(200);
+        }
+        self.pass(1500);
+    }
+
+    /// A person closes its window, which waits for the hand.
+    pub(super) fn closes(&mut self) {
+        self.mover.close();
+        self.pass(3000);
+    }
+
+    /// A drive has 74 °C.
+    pub(super) fn grows_hot(&mut self) {
+        self.mover.hand().warm(74.0);
+        self.pass(5000);
+    }
+
+    /// Lets it happen to what only writes, and looks on until that is over.
+    pub(super) fn happens_to_writes(&mut self, column: Column) {
+        self.happens(column);
+        self.pass_to_the_end();
+    }
+
+    /// Lets it happen, and looks on for some seconds.
+    pub(super) fn happens(&mut self, column: Column) {
+        let hand = std::sync::Arc::clone(self.mover.hand());
+        match column {
+            Column::Frozen => {
+                self.mover.freeze();
+                self.pass(12_000);
+            }
+            Column::Asleep => {
+                self.mover.sleep(Duration::from_secs(10));
+                self.pass(3000);
+            }
+            Column::LinkLost => {
+                hand.silence(true);
+                self.pass(2000);
+                hand.silence(false);
+                self.pass(4000);
+            }
+            Column::Replugged => {
+                hand.unplug();
+                self.pass(1000);
+                hand.plug_in();
+                self.pass(4000);
+            }
+            Column::PowerCycled => {
+                hand.silence(true);
+                hand.power_cycle();
+                self.pass(500);
+                hand.silence(false);
+                self.pass(4000);
+            }
+            Column::OddReplies => {
+                hand.odd_replies();
+                self.pass(5000);
+            }
+            Column::Disobeys => {
+                hand.disobey();
+                self.pass(100);
+                self.mover.stop();
+                self.pass(5000);
+            }
+            Column::SecondMaster => {
+                for _ in 0..15 {
+                    hand.another_controller_writes();
+                    self.pass(200);
+                }
+            }
+            Column::FaultOrHeat => {
+                hand.fault(Fault::Motor);
+                self.pass(4000);
+            }
+            Column::FeedbackFrozen => {
+                hand.freeze_feedback();
+                self.pass(4000);
+            }
+            Column::Signal => {
+                self.mover.signal(Signal::SIGTERM);
+                self.pass(3000);
+            }
+            Column::Killed => {
+                self.mover.signal(Signal::SIGKILL);
+                self.pass(3000);
+            }
+            Column::ReaderGone => {
+                self.mover.lose_reader();
+                self.pass_to_the_end();
+            }
+            Column::SecondHandscope => {
+                self.mover.second_handscope();
+                self.pass(9000);
+            }
+            Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
+        }
+    }
+
+    pub(super) fn seen(self) -> Seen {
+        Seen {
+            event: self.event,
+            writes: self.mover.hand().writes_since(self.event),
+            said: self.mover.said(),
+            has_ended: self.mover.has_ended(),
+            defaults: self.mover.hand().holds(DEFAULTS),
+            points: self.points,
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! The seams between what moves a hand and what happens meanwhile: one table, every cell tried over the wires, or a word why it
+//! cannot be; one test an event. The hand's own journal and joints judge. `HANDSCOPE_SEAMS=whole` tries every cell on every wire; any
+//! other text tries the cells in whose names it is found, on every wire.
+
+mod event;
+mod hand;
+mod judge;
+mod mover;
+mod process;
+mod table;
+mod window;
+
+use crate::seams::event::Witness;
+use crate::seams::judge::{Seen, Verdict};
+use crate::seams::process::{Place, Process};
+use crate::seams::table::{Cell, Column, Row, cell, cell_on};
+use crate::seams::window::Window;
+use crate::setup::body::Protocol;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Cells at a time. Nearly all of their time they wait.
+const AT_A_TIME: usize = 4;
+/// So often a hand is brought into motion, where that fails.
+const BEGINS: usize = 3;
+/// A hand that takes its time to answer, so that what is written in a row takes a second.
+const THINKS: Duration = Duration::from_millis(40);
+
+/// One try: a cell on a wire.
+#[derive(Debug, Clone, Copy)]
+struct Try {
+    row: Row,
+    column: Column,
+    protocol: Protocol,
+    number: usize,
+}
+
+impl Try {
+    fn name(&self) -> String {
+        let (row, column) = (self.row.name(), self.column.name());
+        format!("{row} / {column} / {}", hand::name(self.protocol))
+    }
+
+    /// Every way in which this row moves a hand.
+    fn movers(&self) -> &'static [Start] {
+        match self.row {
+            Row::Slider => &[Start::Window(Window::slider)],
+            Row::Pose => &[Start::Window(Window::pose), Start::Window(Window::sequence)],
+            Row::Series => &[Start::Window(Window::series)],
+            Row::Exhibition => &[Start::Window(Window::exhibition)],
+            Row::Calibration => &[Start::Window(Window::calibration)],
+            Row::Leading => match self.column {
+                Column::Signal | Column::Killed | Column::ReaderGone => {
+                    &[Start::Process(Place::led)]
+                }
+                Column::Panic
+                | Column::Frozen
+                | Column::DisplayLost
+                | Column::Asleep
+                | Column::LinkLost
+                | Column::Replugged
+                | Column::PowerCycled
+                | Column::FeedbackFrozen
+                | Column::OddReplies
+                | Column::Disobeys
+                | Column::SecondMaster
+                | Column::SecondHandscope
+                | Column::FaultOrHeat => &[Start::Window(Window::led)],
+            },
+            Row::Trial => &[Start::Process(Place::trial)],
+            Row::Follow => &[
+                Start::Process(Place::follow_udp),
+                Start::Process(Place::follow_tcp),
+            ],
+            Row::FollowDds => &[Start::Process(Place::follow_dds)],
+            Row::Share => &[Start::Process(Place::share)],
+            Row::Params => &[Start::Process(Place::params)],
+        }
+    }
+
+    fn see(&self, start: Start) -> Seen {
+        let moves = !matches!(self.row, Row::Params | Row::Calibration);
+        let watch = |mover: &mut dyn mover::Mover| {
+            let mut witness = Witness::of(mover, moves);
+            match self.row {
+                Row::Params => witness.happens_to_writes(self.column),
+                _ => witness.happens(self.column),
+            }
+            witness.seen()
+        };
+        match start {
+            Start::Window(start) => watch(&mut start(Window::live(self.protocol))),
+            Start::Process(start) => {
+                let thinks = match self.row {
+                    Row::Params => THINKS,
+                    _ => Duration::ZERO,
+                };
+                let number = u8::try_from(self.number % 250).unwrap();
+                watch(&mut start(Place::new(self.protocol, number, thinks)))
+            }
+        }
+    }
+
+    /// Tries it: what is wrong, if something is.
+    fn run(&self, whole: bool) -> Result<(), String> {
+        let Cell::Tried(verdict, words) = cell_on(self.row, self.column, self.protocol) else {
+            return Ok(());
+        };
+        let all = self.movers();
+        // One way suffices in an ordinary run; which one differs from cell to cell.
+        let one = &all[self.number % all.len()..][..1];
+        for start in if whole { all } else { one } {
+            // On a machine with other work a sender may fall silent before anything moves; what moves is judged.
+            let tried = || catch_unwind(AssertUnwindSafe(|| self.see(*start)));
+            let seen = (1..BEGINS)
+                .find_map(|_| tried().ok())
+                .map_or_else(tried, Ok);
+            let seen = seen.map_err(|panic| {
+                let words = panic.downcast_ref::<String>().cloned();
+                words.unwrap_or_else(|| "it did not come so far".into())
+            })?;
+            let judged = seen.judge(verdict, words);
+            judged.map_err(|why| format!("{why}\n    {}", seen.summary()))?;
+        }
+        Ok(())
+    }
+}
+
+/// How a row is brought to move a hand.
+#[derive(Clone, Copy)]
+enum Start {
+    Window(fn(Window) -> Window),
+    Process(fn(Place) -> Process),
+}
+
+/// The tries of one event. An ordinary run takes each cell on one wire, so that every row and every event meets every wire.
+fn tries(column: Column, wanted: &str) -> Vec<Try> {
+    let wires = [
+        Protocol::Rs485,
+        Protocol::Rtu,
+        Protocol::Tcp,
+        Protocol::Slcan,
+    ];
+    let has_can = Path::new("/sys/class/net/vcan0").exists();
+    let at_column = Column::ALL.iter().position(|one| *one == column).unwrap();
+    let mut all = Vec::new();
+    for (at_row, row) in Row::ALL.into_iter().enumerate() {
+        let all_wires = wires.into_iter().chain(has_can.then_some(Protocol::Can));
+        for (at_wire, protocol) in all_wires.enumerate() {
+            let one = Try {
+                row,
+                column,
+                protocol,
+                number: (at_column * Row::ALL.len() + at_row) * 5 + at_wire,
+            };
+            // Another program is another thing on a port than on a socket.
+            let is_other = column == Column::SecondHandscope;
+            let turn = (at_row + at_column) % wires.len();
+            let is_other = is_other || column == Column::SecondMaster;
+            let is_its_turn = turn == at_wire || is_other && protocol == Protocol::Tcp;
+            let is_wanted = match wanted {
+                "" => is_its_turn,
+                "whole" => true,
+                part => one.name().contains(part),
+            };
+            if is_wanted && matches!(cell_on(row, column, protocol), Cell::Tried(..)) {
+                all.push(one);
+            }
+        }
+    }
+    all
+}
+
+/// One column of the table, as it was found.
+fn printed(column: Column, failed: &[(String, String)]) -> String {
+    let mut text = String::new();
+    for row in Row::ALL {
+        let name = format!("{} / {}", row.name(), column.name());
+        let failed = failed.iter().find(|(which, _)| which.starts_with(&name));
+        let found = match (cell(row, column), failed) {
+            (_, Some((which, why))) => format!("WRONG on {which}: {why}"),
+            (Cell::Tried(verdict, _), None) => format!("ok: {verdict:?}"),
+            (Cell::By(test), None) => format!("tried by {test}"),
+            (Cell::CannotBe(why), None) => format!("cannot be: {why}"),
+        };
+        text.push_str(&format!("{name}: {found}\n"));
+    }
+    text
+}
+
+/// Tries one event on everything that moves a hand.
+fn try_all(column: Column) {
+    let wanted = std::env::var("HANDSCOPE_SEAMS").unwrap_or_default();
+    let (begun, all) = (Instant::now(), tries(column, &wanted));
+    let (next, failed) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..AT_A_TIME {
+            scope.spawn(|| {
+                while let Some(one) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Err(why) = one.run(!wanted.is_empty()) {
+                        println!("WRONG: {}: {why}", one.name());
+                        failed.lock().unwrap().push((one.name(), why));
+                    }
+                }
+            });
+        }
+    });
+    let failed = failed.into_inner().unwrap();
+    println!("{}", printed(column, &failed));
+    println!("{} tries in {:?}", all.len(), begun.elapsed());
+    assert!(failed.is_empty(), "{} are wrong: {failed:#?}", failed.len());
+}
+
+/// One test an event, named as the event is in `handscope help safety`.
+macro_rules! events {
+    ($($test:ident $column:ident,)+) => {
+        $(
+            #[test]
+            fn $test() {
+                try_all(Column::$column);
+            }
+        )+
+
+        /// The test of each event.
+        const EVENTS: &[(&str, Column)] = &[$((stringify!($test), Column::$column),)+];
+    };
+}
+
+events! {
+    the_program_is_ended Signal,
+    the_program_is_killed Killed,
+    the_program_has_a_fault Panic,
+    the_window_is_frozen Frozen,
+    the_display_is_lost DisplayLost,
+    the_computer_sleeps Asleep,
+    the_link_is_lost LinkLost,
+    the_adapter_is_unplugged Replugged,
+    the_hand_is_power_cycled PowerCycled,
+    feedback_freezes FeedbackFrozen,
+    replies_are_late_or_wrong OddReplies,
+    the_hand_disobeys Disobeys,
+    another_controller_writes SecondMaster,
+    another_handscope_moves_it SecondHandscope,
+    a_joint_has_a_fault FaultOrHeat,
+    nobody_reads_the_output ReaderGone,
+}
+
+#[test]
+fn the_window_is_closed() {
+    for (number, (start, protocol)) in [
+        (Window::slider as fn(Window) -> Window, Protocol::Rs485),
+        (Window::pose, Protocol::Rtu),
+        (Window::sequence, Protocol::Tcp),
+        (Window::series, Protocol::Slcan),
+        (Window::led, Protocol::Can),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut window = start(Window::live(protocol));
+        let mut witness = Witness::of(&mut window, true);
+        witness.closes();
+        let seen = witness.seen();
+        let judged = seen.judge(Verdict::Held(300), "");
+        judged.unwrap_or_else(|why| panic!("{number}: {why} {}", seen.summary()));
+    }
+}
+
+#[test]
+fn a_drive_is_hot() {
+    let place = || Place::new(Protocol::Tcp, 7, Duration::ZERO);
+    for (name, words) in [
+        ("trial", ""),
+        ("follow", "°C"),
+        ("mirror", "°C"),
+        ("window", ""),
+    ] {
+        let mut mover: Box<dyn mover::Mover> = match name {
+            "trial" => Box::new(place().trial()),
+            "follow" => Box::new(place().follow_udp()),
+            "mirror" => Box::new(place().led()),
+            _ => Box::new(Window::live(Protocol::Rtu).led()),
+        };
+        let mut witness = Witness::of(mover.as_mut(), true);
+        witness.grows_hot();
+        let seen = witness.seen();
+        let judged = seen.judge(Verdict::Held(3000), words);
+        judged.unwrap_or_else(|why| panic!("{name}: {why} {}", seen.summary()));
+    }
+}
+
+/// All tests, as text.
+fn sources(folder: &Path) -> String {
+    let mut text = String::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            text.push_str(&sources(&path));
+        } else if path.extension().is_some_and(|kind| kind == "rs") {
+            text.push_str(&std::fs::read_to_string(path).unwrap());
+        }
+    }
+    text
+}
+
+#[test]
+fn every_cell_is_tried_or_says_why_it_cannot_be() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let all = sources(&root.join("tests/it")) + &sources(&root.join("src"));
+    let mut tried = 0;
+    for row in Row::ALL {
+        for column in Column::ALL {
+            match cell(row, column) {
+                Cell::Tried(..) => tried += 1,
+                Cell::By(test) => {
+                    let there = all.contains(&format!("fn {test}("));
+                    assert!(there, "{row:?} {column:?}: there is no test {test}");
+                }
+                Cell::CannotBe(why) => assert!(why.len() > 10, "{row:?} {column:?}"),
+            }
+        }
+    }
+    let events = Column::ALL.map(|column| EVENTS.iter().filter(|(_, one)| *one == column).count());
+    assert_eq!(events, [1; Column::ALL.len()], "one test an event");
+    println!(
+        "{tried} of {} cells are tried here",
+        Row::ALL.len() * Column::ALL.len()
+    );
+}
+
+#[test]
+fn each_row_of_the_table_of_the_manual_is_a_test_by_that_name() {
+    let page = handscope::manual::topic("safety").unwrap().text;
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| "));
+    let rows = rows.filter_map(|line| Some(line.split_once('|')?.0.trim()));
+    let mut told: Vec<String> = rows.skip(1).map(|event| event.replace(' ', "_")).collect();
+    let mut tests: Vec<&str> = EVENTS.iter().map(|(test, _)| *test).collect();
+    tests.extend(["the_window_is_closed", "a_drive_is_hot"]);
+    told.sort();
+    tests.sort_unstable();
+    assert_eq!(told, tests);
+}

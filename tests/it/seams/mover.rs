@@ -1,0 +1,51 @@
+//! What moves the hand of a cell, as the columns of the table see it.
+
+use crate::seams::hand::SeamHand;
+use nix::sys::signal::Signal;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Something that is moving a hand. What cannot befall it, nobody asks of it.
+pub(super) trait Mover {
+    fn hand(&self) -> &Arc<SeamHand>;
+
+    /// Time goes by.
+    fn pass(&mut self, step: Duration);
+
+    /// Everything that a person was told until now.
+    fn said(&mut self) -> String;
+
+    /// A person stops the hand: STOP, or Ctrl-C.
+    fn stop(&mut self);
+
+    /// True once its process is over.
+    fn has_ended(&mut self) -> bool {
+        false
+    }
+
+    /// The computer sleeps; the hand does not.
+    fn sleep(&mut self, length: Duration);
+
+    /// Its window draws and asks nothing any more.
+    fn freeze(&mut self) {
+        panic!("it has no window");
+    }
+
+    /// A person closes its window.
+    fn close(&mut self) {
+        panic!("it has no window");
+    }
+
+    /// Its process gets this signal.
+    fn signal(&mut self, _signal: Signal) {
+        panic!("it is no process");
+    }
+
+    /// Nobody reads its standard output any more.
+    fn lose_reader(&mut self) {
+        panic!("it is no process");
+    }
+
+    /// Another Handscope begins to move the same hand, or tries to. What it says is added to what is said here.
+    fn second_handscope(&mut self);
+}

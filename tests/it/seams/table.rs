@@ -1,0 +1,370 @@
+//! The table itself: every row against every column, and what must come of it. There is no cell without an entry.
+
+use crate::seams::judge::Verdict;
+use crate::setup::body::Protocol;
+use Cell::{By, CannotBe, Tried};
+use Verdict::{
+    Ends, GoesOn, Held, HeldAtTheEnd, Insists, NothingMore, NothingWrong, Rests, Settled, Still,
+};
+
+/// What moves the hand or writes to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Row {
+    Slider,
+    Pose,
+    Series,
+    Trial,
+    Follow,
+    FollowDds,
+    Leading,
+    Share,
+    Exhibition,
+    Params,
+    Calibration,
+}
+
+/// What happens meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Column {
+    Signal,
+    Killed,
+    Panic,
+    Frozen,
+    DisplayLost,
+    Asleep,
+    LinkLost,
+    Replugged,
+    PowerCycled,
+    FeedbackFrozen,
+    OddReplies,
+    Disobeys,
+    SecondMaster,
+    SecondHandscope,
+    FaultOrHeat,
+    ReaderGone,
+}
+
+impl Row {
+    pub(super) const ALL: [Self; 11] = [
+        Self::Slider,
+        Self::Pose,
+        Self::Series,
+        Self::Trial,
+        Self::Follow,
+        Self::FollowDds,
+        Self::Leading,
+        Self::Share,
+        Self::Exhibition,
+        Self::Params,
+        Self::Calibration,
+    ];
+
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Slider => "slider in the window",
+            Self::Pose => "pose and sequence",
+            Self::Series => "series in the window",
+            Self::Trial => "trial",
+            Self::Follow => "follow UDP and TCP",
+            Self::FollowDds => "follow DDS",
+            Self::Leading => "another hand leading",
+            Self::Share => "share --writers",
+            Self::Exhibition => "exhibition",
+            Self::Params => "params",
+            Self::Calibration => "calibration",
+        }
+    }
+}
+
+impl Column {
+    pub(super) const ALL: [Self; 16] = [
+        Self::Signal,
+        Self::Killed,
+        Self::Panic,
+        Self::Frozen,
+        Self::DisplayLost,
+        Self::Asleep,
+        Self::LinkLost,
+        Self::Replugged,
+        Self::PowerCycled,
+        Self::FeedbackFrozen,
+        Self::OddReplies,
+        Self::Disobeys,
+        Self::SecondMaster,
+        Self::SecondHandscope,
+        Self::FaultOrHeat,
+        Self::ReaderGone,
+    ];
+
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Signal => "ended by a signal",
+            Self::Killed => "killed",
+            Self::Panic => "panic",
+            Self::Frozen => "window frozen",
+            Self::DisplayLost => "display lost",
+            Self::Asleep => "asleep 10 s",
+            Self::LinkLost => "link lost, back",
+            Self::Replugged => "adapter replugged",
+            Self::PowerCycled => "hand power-cycled",
+            Self::FeedbackFrozen => "feedback frozen",
+            Self::OddReplies => "odd replies",
+            Self::Disobeys => "hand disobeys",
+            Self::SecondMaster => "second master",
+            Self::SecondHandscope => "second Handscope",
+            Self::FaultOrHeat => "fault 8, 70 °C",
+            Self::ReaderGone => "reader of stdout gone",
+        }
+    }
+}
+
+/// What is to be done about one cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Cell {
+    /// It is tried, and this must come of it, with these words told, divided by bars.
+    Tried(Verdict, &'static str),
+    /// Another test tries it: this one.
+    By(&'static str),
+    /// It cannot be, or cannot be tried: why.
+    CannotBe(&'static str),
+}
+
+/// As [`cell`], where the wire matters: the system lets one program open a serial port, and any number a socket.
+pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cell {
+    let is_port = !matches!(protocol, Protocol::Tcp | Protocol::Can);
+    let is_in_the_window = match row {
+        Row::Slider
+        | Row::Pose
+        | Row::Series
+        | Row::Leading
+        | Row::Exhibition
+        | Row::Calibration => true,
+        Row::Trial | Row::Follow | Row::FollowDds | Row::Share | Row::Params => false,
+    };
+    match (column, row) {
+        // The second master of this table writes without a wire, as one on another connection does. On a bus its frames are heard.
+        (Column::SecondMaster, Row::Trial | Row::Follow | Row::FollowDds | Row::Share)
+            if is_port =>
+        {
+            CannotBe("the frames of a second master are heard on a bus: tried with the link")
+        }
+        (Column::SecondHandscope, _) if is_port && is_in_the_window => {
+            CannotBe("one program opens a serial port: tried with the commands")
+        }
+        (Column::SecondHandscope, Row::Params) if is_port => Tried(Settled, "in use"),
+        // A sender may fall silent on a machine with other work, and then the hand is held.
+        (Column::SecondHandscope, Row::Follow | Row::FollowDds) if is_port => {
+            Tried(NothingWrong, "in use")
+        }
+        (Column::SecondHandscope, _) if is_port => Tried(GoesOn, "in use"),
+        (_, _) => cell(row, column),
+    }
+}
+
+/// What must come of one thing that moves a hand when another happens.
+pub(super) const fn cell(row: Row, column: Column) -> Cell {
+    match row {
+        Row::Slider | Row::Pose => told_by_the_window(column),
+        Row::Series => series(column),
+        Row::Leading => leading(column),
+        Row::Exhibition => exhibition(column),
+        Row::Calibration => calibration(column),
+        Row::Trial => trial(column),
+        Row::Follow | Row::FollowDds => follow(column),
+        Row::Share => share(column),
+        Row::Params => params(column),
+    }
+}
+
+const NO_STDOUT: Cell = CannotBe("a window prints nothing");
+const NO_WINDOW: Cell = CannotBe("a command has no window");
+const LINK_IS_LOST: &str = "LinkLost";
+const NO_PANIC: Cell =
+    CannotBe("nothing from outside makes it panic; the window's hook is the same");
+const WINDOW_PANICS: Cell = By("a_panic_in_the_window_holds_the_hand_before_it_ends");
+const WINDOW_ENDS: Cell = By("a_hand_is_held_whatever_ends_the_window");
+
+/// A hand that was told where to go, once.
+const fn told_by_the_window(column: Column) -> Cell {
+    match column {
+        Column::Signal | Column::Killed | Column::DisplayLost => WINDOW_ENDS,
+        Column::Panic => WINDOW_PANICS,
+        Column::Frozen => Tried(GoesOn, ""),
+        Column::Asleep => Tried(NothingMore(0), "Disarmed"),
+        Column::LinkLost | Column::Replugged => Tried(NothingMore(0), LINK_IS_LOST),
+        Column::PowerCycled => Tried(Rests, LINK_IS_LOST),
+        Column::FeedbackFrozen => Tried(Held(1500), ""),
+        Column::OddReplies => Tried(NothingWrong, ""),
+        Column::Disobeys => Tried(Insists, "Hold"),
+        Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
+        Column::SecondHandscope => Tried(NothingMore(6000), ""),
+        Column::FaultOrHeat => Tried(NothingMore(500), "Fault"),
+        Column::ReaderGone => NO_STDOUT,
+    }
+}
+
+const fn series(column: Column) -> Cell {
+    match column {
+        Column::Frozen => Tried(GoesOn, ""),
+        Column::Signal
+        | Column::Killed
+        | Column::Panic
+        | Column::DisplayLost
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::Disobeys
+        | Column::SecondMaster
+        | Column::SecondHandscope
+        | Column::FaultOrHeat
+        | Column::ReaderGone => told_by_the_window(column),
+    }
+}
+
+/// Another hand leads this one: in the window, or by `follow --mirror`.
+const fn leading(column: Column) -> Cell {
+    match column {
+        Column::Signal => Tried(HeldAtTheEnd(1000), ""),
+        Column::Killed => Tried(Held(1500), ""),
+        Column::Panic => WINDOW_PANICS,
+        Column::DisplayLost => WINDOW_ENDS,
+        Column::Frozen => Tried(GoesOn, ""),
+        Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        // What leads is never far ahead: the hand comes to rest there by itself.
+        Column::Disobeys => Tried(Insists, ""),
+        Column::SecondHandscope
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::SecondMaster
+        | Column::FaultOrHeat => told_by_the_window(column),
+    }
+}
+
+const fn exhibition(column: Column) -> Cell {
+    match column {
+        Column::Frozen => Tried(Held(2500), ""),
+        Column::FaultOrHeat => Tried(Held(1000), ""),
+        Column::Signal
+        | Column::Killed
+        | Column::Panic
+        | Column::DisplayLost
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::Disobeys
+        | Column::SecondMaster
+        | Column::SecondHandscope
+        | Column::ReaderGone => told_by_the_window(column),
+    }
+}
+
+/// The hand does it alone; no joint moves.
+const fn calibration(column: Column) -> Cell {
+    match column {
+        Column::Signal | Column::Killed | Column::Panic | Column::DisplayLost => {
+            CannotBe("the hand calibrates alone: nothing was told that could be taken back")
+        }
+        Column::SecondMaster => Tried(NothingMore(0), ""),
+        Column::SecondHandscope => Tried(NothingMore(5000), ""),
+        Column::ReaderGone => NO_STDOUT,
+        Column::Frozen
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::FaultOrHeat => Tried(Still, ""),
+        Column::Disobeys => By("a_stop_passes_while_the_hand_calibrates"),
+    }
+}
+
+const fn trial(column: Column) -> Cell {
+    match column {
+        Column::Signal => Tried(HeldAtTheEnd(1000), "feedback shows rest"),
+        Column::Killed => Tried(Held(1500), ""),
+        Column::Panic => NO_PANIC,
+        Column::Frozen | Column::DisplayLost => NO_WINDOW,
+        Column::Asleep => Tried(NothingMore(500), ""),
+        Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "the link was lost|24 V"),
+        Column::PowerCycled => Tried(Rests, "the link was lost"),
+        Column::FeedbackFrozen => Tried(Held(1500), ""),
+        Column::OddReplies => Tried(NothingWrong, ""),
+        Column::Disobeys => Tried(Insists, "NOT CONFIRMED"),
+        Column::SecondMaster => Tried(NothingMore(3000), "no longer armed"),
+        Column::SecondHandscope => Tried(NothingMore(6000), ""),
+        Column::FaultOrHeat => Tried(HeldAtTheEnd(1000), "fault"),
+        Column::ReaderGone => Tried(Ends, ""),
+    }
+}
+
+const fn follow(column: Column) -> Cell {
+    match column {
+        Column::Signal => Tried(HeldAtTheEnd(1000), ""),
+        Column::Killed => Tried(Held(1500), ""),
+        Column::Panic => NO_PANIC,
+        Column::Frozen | Column::DisplayLost => NO_WINDOW,
+        Column::Asleep => Tried(NothingMore(500), ""),
+        Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "lost"),
+        Column::PowerCycled => Tried(Rests, "lost"),
+        Column::FeedbackFrozen => Tried(Held(1500), ""),
+        Column::OddReplies => Tried(NothingWrong, ""),
+        Column::Disobeys => Tried(Insists, ""),
+        Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
+        Column::SecondHandscope => Tried(NothingMore(6000), ""),
+        Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
+        Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+    }
+}
+
+/// A client of the gateway moves the hand.
+const fn share(column: Column) -> Cell {
+    match column {
+        Column::Signal
+        | Column::Panic
+        | Column::Killed
+        | Column::Frozen
+        | Column::DisplayLost
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::SecondHandscope
+        | Column::Asleep
+        | Column::Disobeys => follow(column),
+        Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "lost"),
+        Column::PowerCycled => Tried(Rests, "lost"),
+        Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
+        Column::FaultOrHeat => Tried(Held(1000), "fault"),
+        Column::ReaderGone => CannotBe("it prints nothing after its first line"),
+    }
+}
+
+/// Defaults are written one after the other; nothing moves.
+const fn params(column: Column) -> Cell {
+    match column {
+        Column::Frozen | Column::DisplayLost => NO_WINDOW,
+        Column::SecondMaster => CannotBe("another controller moves joints, and nothing here does"),
+        Column::Panic => NO_PANIC,
+        Column::Signal
+        | Column::Killed
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::Disobeys
+        | Column::SecondHandscope
+        | Column::FaultOrHeat
+        | Column::ReaderGone => Tried(Settled, ""),
+    }
+}
