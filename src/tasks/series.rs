@@ -100,8 +100,9 @@ pub async fn series<H: Hand>(
                     sample = *newest;
                     series.take(&sample, fresh);
                 }
-                let LinkStatus { state, armed, .. } = hand.status();
-                order = order.or(series.tick(&sample, LinkView { state, armed }, clock.now()));
+                let LinkStatus { state, armed, disarmed, foreign_setpoint, .. } = hand.status();
+                let link = LinkView { state, armed, disarmed, foreign_setpoint };
+                order = order.or(series.tick(&sample, link, clock.now()));
             }
         }
         if let Some(SeriesOrder::Set(setpoints)) = &order {

@@ -1,7 +1,7 @@
 //! What ends a trial before its time: faults, heat, force, a lost or disarmed link, old readings. Pure; stops nothing itself.
 
 use crate::hand::{ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Timed};
-use crate::record::LinkState;
+use crate::record::{Disarmed, LinkState, SetpointConflict};
 use crate::trials::plan::Limits;
 use std::time::Duration;
 
@@ -18,9 +18,15 @@ pub enum Abort {
     /// A person ended it.
     #[error("ended by a person")]
     Person,
-    /// Stop, disarming, another controller, or another arming.
+    /// Stop, disarming, or another arming.
     #[error("the hand is no longer armed")]
     Disarmed,
+    /// Another controller talks to the hand.
+    #[error("another controller {}", wrote.map_or_else(|| "talks to the hand".into(), |wrote| format!("wrote {wrote}")))]
+    OtherController {
+        /// What it was seen to write; `None` if it was only heard.
+        wrote: Option<SetpointConflict>,
+    },
     /// The link was lost. Where the hand is now is not known.
     #[error("the link was lost")]
     LinkLost,
@@ -102,12 +108,30 @@ pub enum Abort {
 }
 
 /// The link as a trial sees it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinkView {
     /// Where it stands.
     pub state: LinkState,
     /// The current arming.
     pub armed: Option<ArmEpoch>,
+    /// Why the hand is not armed, if it was.
+    pub disarmed: Option<Disarmed>,
+    /// What another controller was last seen to write.
+    pub foreign_setpoint: Option<SetpointConflict>,
+}
+
+impl LinkView {
+    /// Why this arming is over, if it is.
+    #[must_use]
+    pub(crate) fn arming_ended(&self, epoch: ArmEpoch) -> Option<Abort> {
+        let by_other = self.armed.is_none() && self.disarmed == Some(Disarmed::OtherController);
+        (self.armed != Some(epoch)).then_some(match by_other {
+            true => Abort::OtherController {
+                wrote: self.foreign_setpoint,
+            },
+            false => Abort::Disarmed,
+        })
+    }
 }
 
 /// The first reason to end now, gravest first.
@@ -122,7 +146,7 @@ pub fn reason(
         return Some(Abort::LinkLost);
     }
     fault(seen.sample)
-        .or_else(|| (link.armed != Some(epoch)).then_some(Abort::Disarmed))
+        .or_else(|| link.arming_ended(epoch))
         .or_else(|| blind(seen))
         .or_else(|| ceiling(seen, limits.ceiling_g))
         .or_else(|| heat(seen.sample, limits.stop_c))

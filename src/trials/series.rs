@@ -176,8 +176,8 @@ impl TrialSeries {
         if !link.state.is_live() {
             return Some(self.fail(Abort::LinkLost));
         }
-        if link.armed != Some(self.epoch) {
-            return Some(self.fail(Abort::Disarmed));
+        if let Some(why) = link.arming_ended(self.epoch) {
+            return Some(self.fail(why));
         }
         if now < until {
             return None;

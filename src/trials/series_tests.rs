@@ -46,6 +46,7 @@ impl Hand {
             link: LinkView {
                 state: LinkState::Armed,
                 armed: Some(EPOCH),
+                ..LinkView::default()
             },
         }
     }
@@ -257,10 +258,12 @@ fn a_lost_or_changed_arming_ends_it_and_so_does_a_lost_link() {
         LinkView {
             state: LinkState::Holding,
             armed: None,
+            ..LinkView::default()
         },
         LinkView {
             state: LinkState::Armed,
             armed: Some(ArmEpoch(4)),
+            ..LinkView::default()
         },
     ] {
         check(Abort::Disarmed, plan(250, 2), |hand| {

@@ -124,7 +124,7 @@ async fn serve(
 async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
     let moved = gateway.clients().iter().any(is_held);
-    tell_movers(&gateway);
+    tell_movers(&gateway, link);
     drop(gateway);
     if !moved && link.status().state != LinkState::Holding {
         return Ok(());
@@ -174,7 +174,7 @@ async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
         told.link(link, hand);
         if let Some(gateway) = gateway {
             told.turned_away(gateway);
-            tell_movers(gateway);
+            tell_movers(gateway, link);
         }
     }
 }
@@ -209,7 +209,7 @@ impl Told {
 }
 
 /// Tells of each client that may move the hand, and that it may no more.
-fn tell_movers(gateway: &Gateway) {
+fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
     for MoverEvent { client, change } in gateway.movers() {
         say(&match change {
             MoverChange::Began => format!("{client} may move the hand"),
@@ -217,7 +217,15 @@ fn tell_movers(gateway: &Gateway) {
                 format!("{client}, which could move the hand, is gone: the hand is stopped")
             }
             MoverChange::Ended(end) => {
-                format!("{client} may no longer move the hand: {}", ended(end))
+                let by_other = end == LeaseRefusal::Ended(Disarmed::OtherController);
+                let foreign = link.status().foreign_setpoint.filter(|_| by_other);
+                let why = foreign.map_or_else(
+                    || ended(end).to_owned(),
+                    |foreign| {
+                        format!("another controller wrote {foreign}, and the hand is stopped")
+                    },
+                );
+                format!("{client} may no longer move the hand: {why}")
             }
         });
     }

@@ -5,6 +5,8 @@ use crate::record::file::reader::Damage;
 use parquet::errors::ParquetError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
+#[cfg(unix)]
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 /// Why nothing was exported.
@@ -149,13 +151,24 @@ impl Unfinished {
         self.error(&error)
     }
 
-    /// The file, in its temporary place.
+    /// The file, in its temporary place; others may read it as the system has it for new files.
     pub(crate) fn file(&self) -> Result<BufWriter<Sink>, ExportError> {
+        self.open(&mut OpenOptions::new())
+    }
+
+    /// The same for a recording, which only its person can read.
+    pub(crate) fn private_file(&self) -> Result<BufWriter<Sink>, ExportError> {
+        let mut options = OpenOptions::new();
+        #[cfg(unix)]
+        options.mode(0o600);
+        self.open(&mut options)
+    }
+
+    fn open(&self, options: &mut OpenOptions) -> Result<BufWriter<Sink>, ExportError> {
         let sink = match self.wanted {
             Destination::Stdout => Sink::Stdout(io::stdout()),
             Destination::Path(_) => {
-                let mut new = OpenOptions::new();
-                let made = new.write(true).create_new(true).open(&self.beside);
+                let made = options.write(true).create_new(true).open(&self.beside);
                 Sink::File(made.map_err(|error| self.error(&error))?)
             }
         };

@@ -120,7 +120,7 @@ pub fn import(
     let output = Unfinished::new(to)?;
     let written = |error: Broken| error.of(&output);
     let opening = Opening::imported();
-    let mut copy = SessionCopy::new(&opening, output.file()?).map_err(written)?;
+    let mut copy = SessionCopy::new(&opening, output.private_file()?).map_err(written)?;
     let monitoring = Entry::Heard(Record::State {
         at: opening.began,
         state: LinkState::Monitoring,

@@ -17,6 +17,8 @@ texts! {
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
     BY_PERSON: "Ended by a person.", "由操作者结束。";
     DISARMED: "The hand is no longer armed for it.", "灵巧手的使能已取消。";
+    OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通信。";
+    OTHER_WROTE: "Another controller wrote {}.", "另有控制器写入 {}。";
     LINK_LOST: "The link was lost.", "连接断开。";
     FAULT: "{} reports a fault: {}.", "{}报告故障：{}。";
     HEAT: "{} is too warm: {} °C, limit {} °C.", "{}温度过高：{} °C，上限 {} °C。";
@@ -223,6 +225,10 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
     match why {
         Abort::Person => look.say(BY_PERSON).into(),
         Abort::Disarmed => look.say(DISARMED).into(),
+        Abort::OtherController { wrote: None } => look.say(OTHER_CONTROLLER).into(),
+        Abort::OtherController { wrote: Some(wrote) } => {
+            look.fill(OTHER_WROTE, &[&words::setpoint(look, &wrote)])
+        }
         Abort::LinkLost => look.say(LINK_LOST).into(),
         Abort::NotKept => look.say(NOT_KEPT).into(),
         Abort::Fault { dof, faults } => {

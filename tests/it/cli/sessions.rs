@@ -3,6 +3,7 @@
 use crate::setup::process::{Ended, Running, run, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -213,6 +214,25 @@ fn a_killed_recording_opens_says_that_it_was_not_closed_and_is_recovered() {
         1,
         &["already there", "--out"],
     );
+}
+
+#[test]
+fn a_recording_is_for_its_person_alone_whichever_command_makes_it() {
+    let recorded = record("0.6");
+    let (file, csv) = (recorded.path("session.mcap"), recorded.path("a.csv"));
+    recorded.export(&["--csv"], "a.csv").ok();
+    recorded.export(&["--mcap"], "cut.mcap").ok();
+    run(&["recover", text(&file)]).ok();
+    run(&["import", text(&csv)]).ok();
+    for name in [
+        "session.mcap",
+        "cut.mcap",
+        "session-recovered.mcap",
+        "a.mcap",
+    ] {
+        let about = std::fs::metadata(recorded.path(name)).unwrap();
+        assert_eq!(about.permissions().mode() & 0o777, 0o600, "{name}");
+    }
 }
 
 #[test]

@@ -301,7 +301,7 @@ const fn trial(column: Column) -> Cell {
         Column::FeedbackFrozen => Tried(Held(1500), ""),
         Column::OddReplies => Tried(NothingWrong, ""),
         Column::Disobeys => Tried(Insists, "NOT CONFIRMED"),
-        Column::SecondMaster => Tried(NothingMore(3000), "no longer armed"),
+        Column::SecondMaster => Tried(NothingMore(3000), "another controller wrote"),
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
         Column::FaultOrHeat => Tried(HeldAtTheEnd(1000), "fault"),
         Column::ReaderGone => Tried(Ends, ""),

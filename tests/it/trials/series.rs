@@ -94,7 +94,11 @@ impl Bench {
             let own = series.as_mut().unwrap();
             let view = {
                 let LinkStatus { state, armed, .. } = self.link.status();
-                LinkView { state, armed }
+                LinkView {
+                    state,
+                    armed,
+                    ..LinkView::default()
+                }
             };
             match own.tick(&self.sample, view, self.clock.now()) {
                 Some(SeriesOrder::Set(setpoints)) => self.link.set(&setpoints),
