@@ -40,6 +40,8 @@ pub enum HaltReason {
     NoHand,
     /// It answers again, after it did not.
     LinkLost,
+    /// What it told grew old, or stood still though motion was asked for.
+    NoFeedback,
     /// Somebody pressed STOP.
     Stopped,
     /// A fault that only a person can end, or too many.
@@ -487,9 +489,8 @@ impl ExhibitRun {
             Some(Disarmed::Fault) => Some(HaltReason::Fault),
             Some(Disarmed::Resume) => Some(HaltReason::Slept),
             Some(Disarmed::OtherController) => Some(HaltReason::OtherController),
-            Some(Disarmed::LinkLost | Disarmed::Stale | Disarmed::FrozenFeedback) => {
-                Some(HaltReason::LinkLost)
-            }
+            Some(Disarmed::LinkLost) => Some(HaltReason::LinkLost),
+            Some(Disarmed::Stale | Disarmed::FrozenFeedback) => Some(HaltReason::NoFeedback),
             Some(Disarmed::Stop) => Some(HaltReason::Stopped),
             Some(Disarmed::Person | Disarmed::Released | Disarmed::Silent | Disarmed::Hot) => {
                 Some(HaltReason::NotArmed)

@@ -301,11 +301,14 @@ async fn a_touch_beside_the_tiles_holds_the_attract_loop_and_it_opens_later() {
 #[tokio::test(start_paused = true)]
 async fn stop_a_lost_link_sleep_and_others_end_the_arming_until_staff_come() {
     type Ends = fn(&Booth);
-    let ends: [(HaltReason, Ends); 5] = [
+    let ends: [(HaltReason, Ends); 6] = [
         (HaltReason::Stopped, Booth::stop),
         (HaltReason::Slept, |booth| booth.hand.sleeps()),
-        (HaltReason::LinkLost, |booth| {
+        (HaltReason::NoFeedback, |booth| {
             booth.hand.disarmed(Disarmed::Stale)
+        }),
+        (HaltReason::NoFeedback, |booth| {
+            booth.hand.disarmed(Disarmed::FrozenFeedback);
         }),
         (HaltReason::OtherController, |booth| {
             booth.hand.disarmed(Disarmed::OtherController);

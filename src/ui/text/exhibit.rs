@@ -63,6 +63,7 @@ texts! {
         HaltReason::NotArmed => "Staff: check that nobody is near the hand, then unlock and arm.", "工作人员：确认无人靠近灵巧手后，解锁并使能。";
         HaltReason::NoHand => "Staff: the hand does not answer. Check its power and its cable.", "工作人员：灵巧手没有应答。请检查电源和线缆。";
         HaltReason::LinkLost => "Staff: the hand was away and is back. Check it, then unlock and arm.", "工作人员：灵巧手曾断开，现已恢复。检查后解锁并使能。";
+        HaltReason::NoFeedback => "Staff: what the hand reports grew old or stood still. Check its power and its cable, then unlock and arm.", "工作人员：灵巧手的反馈过时或毫无变化。检查电源和线缆后，解锁并使能。";
         HaltReason::Stopped => "Staff: STOP was pressed. See that all is well, then unlock and arm.", "工作人员：有人按下了停止。确认一切正常后，解锁并使能。";
         HaltReason::Fault => "Staff: a drive reports a fault. Check the hand, then unlock and arm.", "工作人员：驱动器报告故障。检查灵巧手后，解锁并使能。";
         HaltReason::OtherController => "Staff: another program talks to the hand. Close it, then unlock and arm.", "工作人员：另有程序正在控制灵巧手。关闭后解锁并使能。";
