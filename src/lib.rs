@@ -36,7 +36,7 @@
 //!
 //! # What always holds
 //!
-//! * Only [`hand::HandCommand::writes`] makes register writes, and none leaves the manual's addresses and ranges.
+//! * Only [`hand::HandCommand`], [`hand::Setting`] and [`hand::Trigger`] make register writes, and none leaves the manual's addresses and ranges.
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while a person has armed the hand;
 //!   a stop, faults, link loss, old feedback, another controller and sleep disarm it.
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not.

@@ -153,63 +153,9 @@ pub enum Action {
     UndoTare,
     /// Count the fingertips from the taring that was kept of this hand.
     TakeKeptTare,
-    /// Let the plots stand still; nothing is lost meanwhile.
-    PausePlots(bool),
 }
 
 impl Action {
-    /// True for what would come between a series of trials and the hand. It is refused while one runs.
-    #[must_use]
-    pub const fn disturbs_series(&self) -> bool {
-        match self {
-            Self::Arm
-            | Self::Target(..)
-            | Self::Force(..)
-            | Self::Speed(..)
-            | Self::Lock(..)
-            | Self::Preset(_)
-            | Self::Gesture(_)
-            | Self::Recall(_)
-            | Self::Play(_)
-            | Self::ClearErrors => true,
-            Self::Param(action) => matches!(
-                action,
-                ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree
-            ),
-            _ => false,
-        }
-    }
-
-    /// True for what is carried out during an exhibition: nothing on its page asks for more.
-    #[must_use]
-    pub const fn passes_in_exhibit(&self) -> bool {
-        matches!(
-            self,
-            Self::Stop | Self::Exhibit(_) | Self::Language(_) | Self::Theme(_)
-        )
-    }
-
-    /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All
-    /// else is about a hand, or about what of the live window is not on screen then, and is refused.
-    #[must_use]
-    pub const fn passes_in_replay(&self) -> bool {
-        matches!(
-            self,
-            Self::Stop
-                | Self::Session(_)
-                | Self::Save(_)
-                | Self::SavePicture(_)
-                | Self::PausePlots(_)
-                | Self::Theme(_)
-                | Self::Language(_)
-                | Self::Layout(_)
-                | Self::Zoom(_)
-                | Self::AngleUnit(_)
-                | Self::PlotWindow(_)
-                | Self::ShowPlot(..)
-        )
-    }
-
     /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
     /// gestures and notes are in the history already.
     #[must_use]

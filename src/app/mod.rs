@@ -2,6 +2,7 @@
 
 pub mod action;
 pub mod connect;
+pub mod effect;
 pub mod env;
 pub mod exhibit;
 pub mod files;

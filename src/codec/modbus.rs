@@ -146,7 +146,7 @@ impl BytePacking {
 mod tests {
     use super::*;
     use crate::hand::register::{STATE, TEMP};
-    use crate::hand::{Angle, HandCommand, HandId, PerDof, Target};
+    use crate::hand::{Angle, HandCommand, HandId, PerDof, Setting, Target, Trigger, Writes};
 
     #[test]
     fn spans_become_words_at_the_byte_address() {
@@ -176,9 +176,9 @@ mod tests {
 
     #[test]
     fn one_byte_registers_are_written_by_function_6() {
-        let id = HandCommand::Id(HandId::new(254).unwrap()).writes();
+        let id = Setting::Id(HandId::new(254).unwrap()).writes();
         for (writes, address, value) in [
-            (HandCommand::Save.writes(), 1005, 1),
+            (Writes::from_iter([Trigger::Save.write()]), 1005, 1),
             (HandCommand::ClearErrors.writes(), 1004, 1),
             (id, 1000, 254),
         ] {
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn the_ip_address_is_two_words_low_byte_first() {
-        let writes = HandCommand::IpAddress([192, 168, 11, 210].into()).writes();
+        let writes = Setting::IpAddress([192, 168, 11, 210].into()).writes();
         let words = ArrayVec::from_iter([0xA8C0, 0xD20B]);
         let address = 1700;
         assert_eq!(

@@ -1,10 +1,9 @@
-//! Everything that can be told to a hand, and the only way to a register write. No framing, no sending.
+//! What a hand may be told at any time, and the only way to a register write. No framing, no sending.
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::register::{self, Register, Span};
-use crate::hand::units::{Force, Gesture, HandId, SerialSpeed, Speed, Target};
+use crate::hand::units::{Force, Gesture, Speed, Target};
 use arrayvec::ArrayVec;
-use std::net::Ipv4Addr;
 
 /// Bytes in the longest write: six shorts.
 pub const WRITE_LEN_MAX: usize = 12;
@@ -26,8 +25,10 @@ pub enum GestureRoute {
     Off,
 }
 
-/// One thing that a person can ask of a hand.
+/// What a hand may be told at any time: motion, limits, and to clear its errors. What it keeps, and what it does alone, are
+/// [`Setting`](crate::hand::Setting) and [`Trigger`](crate::hand::Trigger).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum HandCommand {
     /// Move joints now (manual 2.6.11).
     Angles(PerDof<Target>),
@@ -39,25 +40,9 @@ pub enum HandCommand {
     Gesture(Gesture, GestureRoute),
     /// Clear what can be cleared (manual 2.6.3).
     ClearErrors,
-    /// Write the parameters to flash (manual 2.6.4).
-    Save,
-    /// Return to the factory's parameters (manual 2.6.5).
-    ResetParameters,
-    /// Calibrate the force sensors (manual 2.6.6).
-    CalibrateForce,
-    /// Another id on the bus (manual 2.6.1).
-    Id(HandId),
-    /// Another serial speed (manual 2.6.2).
-    SerialSpeed(SerialSpeed),
-    /// Speeds after power-up (manual 2.6.8).
-    DefaultSpeeds(PerDof<Option<Speed>>),
-    /// Force thresholds after power-up (manual 2.6.9).
-    DefaultForces(PerDof<Option<Force>>),
-    /// Another IP address (manual 2.6, 1700 to 1703); two pairs, as the field writes it.
-    IpAddress(Ipv4Addr),
 }
 
-/// One write to the hand's memory. Only [`HandCommand::writes`] makes one, so none can leave the manual's ranges.
+/// One write to the hand's memory. Only commands, settings and triggers make one, so none can leave the manual's ranges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RegisterWrite {
     span: Span,
@@ -85,8 +70,15 @@ impl RegisterWrite {
 
     /// True if the hand moves because of it.
     #[must_use]
-    pub const fn is_motion(&self) -> bool {
-        matches!(self.span.address, 1486..=1497 | 1008 | 2320 | 2322)
+    pub fn is_motion(&self) -> bool {
+        [
+            register::ANGLE_SET,
+            register::GESTURE_NO_SET,
+            register::ACTION_SEQ_INDEX,
+            register::ACTION_SEQ_RUN,
+        ]
+        .iter()
+        .any(|row| row.span().covers(self.span))
     }
 
     /// What it says of each joint, if it lies within this row of six shorts.
@@ -100,11 +92,11 @@ impl RegisterWrite {
         })
     }
 
-    fn byte(row: &Register, value: u8) -> Self {
+    pub(super) fn byte(row: &Register, value: u8) -> Self {
         Self::run(row.address, [value])
     }
 
-    fn run(address: u16, bytes: impl IntoIterator<Item = u8>) -> Self {
+    pub(super) fn run(address: u16, bytes: impl IntoIterator<Item = u8>) -> Self {
         let bytes: ArrayVec<u8, WRITE_LEN_MAX> = bytes.into_iter().take(WRITE_LEN_MAX).collect();
         let len = u16::try_from(bytes.len()).unwrap_or_default();
         Self {
@@ -120,8 +112,8 @@ pub type Writes = ArrayVec<RegisterWrite, WRITES_MAX>;
 impl HandCommand {
     /// True if the hand moves because of it.
     #[must_use]
-    pub const fn is_motion(&self) -> bool {
-        matches!(self, Self::Angles(_) | Self::Gesture(..))
+    pub fn is_motion(&self) -> bool {
+        self.writes().iter().any(RegisterWrite::is_motion)
     }
 
     /// The register writes, in order. Joints that are not given are not written.
@@ -140,20 +132,6 @@ impl HandCommand {
                 values.map(|v| v.map(Speed::get)),
                 &mut out,
             ),
-            Self::DefaultSpeeds(values) => {
-                runs(
-                    &register::DEFAULT_SPEED_SET,
-                    values.map(|v| v.map(Speed::get)),
-                    &mut out,
-                );
-            }
-            Self::DefaultForces(values) => {
-                runs(
-                    &register::DEFAULT_FORCE_SET,
-                    values.map(|v| v.map(Force::get)),
-                    &mut out,
-                );
-            }
             Self::Gesture(number, GestureRoute::Register1008) => {
                 out.push(RegisterWrite::byte(&register::GESTURE_NO_SET, number.get()));
             }
@@ -166,14 +144,6 @@ impl HandCommand {
             }
             Self::Gesture(_, GestureRoute::Off) => {}
             Self::ClearErrors => out.push(RegisterWrite::byte(&register::CLEAR_ERROR, 1)),
-            Self::Save => out.push(RegisterWrite::byte(&register::SAVE, 1)),
-            Self::ResetParameters => out.push(RegisterWrite::byte(&register::RESET_PARA, 1)),
-            Self::CalibrateForce => out.push(RegisterWrite::byte(&register::GESTURE_FORCE_CLB, 1)),
-            Self::Id(id) => out.push(RegisterWrite::byte(&register::HAND_ID, id.get())),
-            Self::SerialSpeed(speed) => {
-                out.push(RegisterWrite::byte(&register::REDU_RATIO, speed.code()))
-            }
-            Self::IpAddress(address) => out.push(RegisterWrite::run(1700, address.octets())),
         }
         out
     }
@@ -187,7 +157,7 @@ fn angles(targets: &PerDof<Target>) -> RegisterWrite {
 }
 
 /// One write for each run of neighbouring joints that have a value: there is no "leave alone" in these groups.
-fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
+pub(super) fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
     let mut run: Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)> = None;
     let flush = |run: &mut Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)>, out: &mut Writes| {
         if let Some((first, bytes)) = run.take() {
@@ -210,8 +180,14 @@ fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
 mod tests {
     use super::*;
     use crate::hand::register::{Access, Element, by_address};
-    use crate::hand::units::{Angle, OutOfRange};
+    use crate::hand::setting::{Setting, Trigger};
+    use crate::hand::units::{Angle, HandId, OutOfRange, SerialSpeed};
     use proptest::prelude::*;
+    use proptest::strategy::ValueTree as _;
+    use proptest::test_runner::TestRunner;
+    use std::collections::BTreeSet;
+    use std::fmt::Debug;
+    use strum::VariantNames as _;
 
     fn angles_from(raw: [i16; 6]) -> Result<PerDof<Angle>, OutOfRange> {
         let mut out = PerDof::splat(Angle::MAX);
@@ -266,39 +242,84 @@ mod tests {
         ]
     }
 
-    fn some_command() -> impl Strategy<Value = HandCommand> {
-        let six = || prop::array::uniform6(prop::option::of(any::<i16>()));
-        let speeds = move || six().prop_map(|v| PerDof::new(v).map(|v| v.map(Speed::nearest)));
-        let forces = move || six().prop_map(|v| PerDof::new(v).map(|v| v.map(Force::nearest)));
+    fn speeds() -> impl Strategy<Value = PerDof<Option<Speed>>> {
+        let six = prop::array::uniform6(prop::option::of(any::<i16>()));
+        six.prop_map(|six| PerDof::new(six).map(|speed| speed.map(Speed::nearest)))
+    }
+
+    fn forces() -> impl Strategy<Value = PerDof<Option<Force>>> {
+        let six = prop::array::uniform6(prop::option::of(any::<i16>()));
+        six.prop_map(|six| PerDof::new(six).map(|force| force.map(Force::nearest)))
+    }
+
+    fn route() -> impl Strategy<Value = GestureRoute> {
+        prop_oneof![
+            Just(GestureRoute::Register1008),
+            Just(GestureRoute::ActionLibrary),
+            Just(GestureRoute::Off),
+        ]
+    }
+
+    fn commands() -> impl Strategy<Value = HandCommand> {
+        let gesture = any::<u8>().prop_map(Gesture::nearest);
         prop_oneof![
             prop::array::uniform6(target()).prop_map(|t| HandCommand::Angles(PerDof::new(t))),
             forces().prop_map(HandCommand::Forces),
             speeds().prop_map(HandCommand::Speeds),
-            forces().prop_map(HandCommand::DefaultForces),
-            speeds().prop_map(HandCommand::DefaultSpeeds),
-            (any::<u8>(), 0..3usize).prop_map(|(n, route)| HandCommand::Gesture(
-                Gesture::nearest(n),
-                [
-                    GestureRoute::Register1008,
-                    GestureRoute::ActionLibrary,
-                    GestureRoute::Off
-                ][route]
-            )),
+            (gesture, route()).prop_map(|(number, route)| HandCommand::Gesture(number, route)),
             Just(HandCommand::ClearErrors),
-            Just(HandCommand::Save),
-            Just(HandCommand::ResetParameters),
-            Just(HandCommand::CalibrateForce),
-            any::<u8>().prop_map(|id| HandCommand::Id(HandId::nearest(id))),
-            (0..4usize).prop_map(|i| HandCommand::SerialSpeed(SerialSpeed::ALL[i])),
-            any::<[u8; 4]>().prop_map(|ip| HandCommand::IpAddress(ip.into())),
         ]
+    }
+
+    fn settings() -> impl Strategy<Value = Setting> {
+        prop_oneof![
+            forces().prop_map(Setting::DefaultForces),
+            speeds().prop_map(Setting::DefaultSpeeds),
+            any::<u8>().prop_map(|id| Setting::Id(HandId::nearest(id))),
+            (0..4usize).prop_map(|i| Setting::SerialSpeed(SerialSpeed::ALL[i])),
+            any::<[u8; 4]>().prop_map(|ip| Setting::IpAddress(ip.into())),
+        ]
+    }
+
+    fn triggers() -> impl Strategy<Value = Trigger> {
+        prop_oneof![
+            Just(Trigger::Save),
+            Just(Trigger::ResetParameters),
+            Just(Trigger::CalibrateForce),
+        ]
+    }
+
+    /// The names of what is drawn.
+    fn drawn<T: Debug + Into<&'static str>>(
+        from: impl Strategy<Value = T>,
+    ) -> BTreeSet<&'static str> {
+        let mut runner = TestRunner::deterministic();
+        let mut draw = || from.new_tree(&mut runner).unwrap().current().into();
+        (0..1000).map(|_| draw()).collect()
+    }
+
+    #[test]
+    fn everything_that_can_be_written_is_drawn() {
+        assert_eq!(drawn(commands()), names(HandCommand::VARIANTS));
+        assert_eq!(drawn(settings()), names(Setting::VARIANTS));
+        assert_eq!(drawn(triggers()), names(Trigger::VARIANTS));
+    }
+
+    fn names(all: &[&'static str]) -> BTreeSet<&'static str> {
+        all.iter().copied().collect()
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
-        fn no_write_leaves_the_manuals_addresses_or_ranges(command in some_command()) {
-            for write in command.writes() {
+        fn no_write_leaves_the_manuals_addresses_or_ranges(
+            writes in prop_oneof![
+                5 => commands().prop_map(|command| command.writes()),
+                5 => settings().prop_map(|setting| setting.writes()),
+                1 => triggers().prop_map(|trigger| Writes::from_iter([trigger.write()])),
+            ]
+        ) {
+            for write in writes {
                 let mut at = write.address();
                 let mut rest = write.bytes();
                 while !rest.is_empty() {

@@ -1,6 +1,6 @@
 //! What the device is: registers, values, samples, commands. No bytes on a wire, no clock, no egui.
 //!
-//! Everything that reaches a hand passes [`command::HandCommand`]; everything that comes back
+//! Everything that reaches a hand is a [`HandCommand`], a [`Setting`] or a [`Trigger`]; everything that comes back
 //! passes [`sample::HandSample`]. Both are built from the one table in [`register`].
 
 pub mod column;
@@ -34,7 +34,7 @@ pub use reading::{
 pub use register::{REGISTERS, Register, Span};
 pub use sample::{Group, Groups, HandSample, Reply};
 pub use setpoints::{ArmEpoch, Setpoints};
-pub use setting::Setting;
+pub use setting::{Setting, Trigger};
 pub use status::{Status, Words};
 pub use tactile::TactileBlock;
 pub use undocumented::Undocumented;

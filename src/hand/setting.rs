@@ -1,6 +1,6 @@
-//! What a hand keeps once it is saved, as values to be set: one register group each. Nothing volatile, no trigger, no motion.
+//! What a hand keeps once it is saved, as values to be set, one register group each; and what it does alone, at rest. No motion.
 
-use crate::hand::command::HandCommand;
+use crate::hand::command::{RegisterWrite, Writes, runs};
 use crate::hand::dof::PerDof;
 use crate::hand::register::{self, Span};
 use crate::hand::units::{Force, HandId, SerialSpeed, Speed};
@@ -11,6 +11,7 @@ pub const IP_PARTS: Span = Span::new(1700, 4);
 
 /// A kept register group and what it is to hold. Joints that are `None` are left as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum Setting {
     /// Speeds after power-up (manual 2.6.8).
     DefaultSpeeds(PerDof<Option<Speed>>),
@@ -25,16 +26,28 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// The command that writes it.
+    /// The register writes, in order. Joints that are not given are not written.
     #[must_use]
-    pub const fn command(&self) -> HandCommand {
-        match *self {
-            Self::DefaultSpeeds(speeds) => HandCommand::DefaultSpeeds(speeds),
-            Self::DefaultForces(forces) => HandCommand::DefaultForces(forces),
-            Self::Id(id) => HandCommand::Id(id),
-            Self::SerialSpeed(speed) => HandCommand::SerialSpeed(speed),
-            Self::IpAddress(address) => HandCommand::IpAddress(address),
+    pub fn writes(&self) -> Writes {
+        let mut out = Writes::new();
+        match self {
+            Self::DefaultSpeeds(values) => {
+                let values = values.map(|value| value.map(Speed::get));
+                runs(&register::DEFAULT_SPEED_SET, values, &mut out);
+            }
+            Self::DefaultForces(values) => {
+                let values = values.map(|value| value.map(Force::get));
+                runs(&register::DEFAULT_FORCE_SET, values, &mut out);
+            }
+            Self::Id(id) => out.push(RegisterWrite::byte(&register::HAND_ID, id.get())),
+            Self::SerialSpeed(speed) => {
+                out.push(RegisterWrite::byte(&register::REDU_RATIO, speed.code()));
+            }
+            Self::IpAddress(address) => {
+                out.push(RegisterWrite::run(IP_PARTS.address, address.octets()));
+            }
         }
+        out
     }
 
     /// The whole group, to be read back.
@@ -53,10 +66,34 @@ impl Setting {
     #[must_use]
     pub fn is_held_by(&self, bytes: &[u8]) -> bool {
         let whole = self.span();
-        self.command()
-            .writes()
+        self.writes()
             .iter()
             .all(|write| whole.slice(bytes, write.span()) == Some(write.bytes()))
+    }
+}
+
+/// What a hand does alone, once, and at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
+pub enum Trigger {
+    /// Write the parameters to flash (manual 2.6.4).
+    Save,
+    /// Return to the factory's parameters (manual 2.6.5).
+    ResetParameters,
+    /// Calibrate the force sensors (manual 2.6.6).
+    CalibrateForce,
+}
+
+impl Trigger {
+    /// The register write.
+    #[must_use]
+    pub fn write(self) -> RegisterWrite {
+        let row = match self {
+            Self::Save => &register::SAVE,
+            Self::ResetParameters => &register::RESET_PARA,
+            Self::CalibrateForce => &register::GESTURE_FORCE_CLB,
+        };
+        RegisterWrite::byte(row, 1)
     }
 }
 
@@ -79,8 +116,8 @@ mod tests {
     #[test]
     fn a_setting_writes_only_what_is_kept_and_only_inside_its_group() {
         for setting in all() {
-            assert!(!setting.command().is_motion());
-            for write in setting.command().writes() {
+            for write in setting.writes() {
+                assert!(!write.is_motion());
                 assert!(setting.span().covers(write.span()), "{setting:?}");
                 let row = by_address(write.address()).unwrap();
                 assert_eq!(row.persistence, Persistence::Saved, "{row}");

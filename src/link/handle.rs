@@ -259,6 +259,15 @@ impl LinkHandle {
         self.request(|answer| Request::Set(setting, answer)).await
     }
 
+    /// Writes one kept group at rest, once. It is not read back: the hand may answer elsewhere then.
+    ///
+    /// # Errors
+    /// As [`Self::write`], and [`RequestError::NotNow`] while the hand is armed or not known to rest.
+    pub async fn set_unread(&self, setting: Setting) -> Result<(), RequestError> {
+        self.request(|answer| Request::SetUnread(setting, answer))
+            .await
+    }
+
     /// Writes the hand's parameters to its flash, and says what is known of it (manual 2.6.4).
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::hand::{HandCommand, OutOfRange, Setting, Span};
 use crate::link::lease::{Lease, LeaseRefusal};
-use crate::record::{Calibrated, Reset, Saved, Written};
+use crate::record::{Calibrated, NotSent, Reset, Saved, Written};
 use tokio::sync::oneshot;
 
 /// Where the answer to a request goes. Nobody may be waiting any more; then it is dropped.
@@ -17,6 +17,8 @@ pub(crate) enum Request {
     Read(Span, Answer<Vec<u8>>),
     /// Write one kept group and read it back.
     Set(Setting, Answer<Written>),
+    /// Write one kept group at rest; the hand may answer elsewhere then.
+    SetUnread(Setting, Answer<()>),
     /// Write the parameters to flash.
     Save(Answer<Saved>),
     /// Return to the factory's parameters.
@@ -33,6 +35,7 @@ impl Request {
             Self::Command(_, _, answer) => answer.send(Err(error)).is_ok(),
             Self::Read(_, answer) => answer.send(Err(error)).is_ok(),
             Self::Set(_, answer) => answer.send(Err(error)).is_ok(),
+            Self::SetUnread(_, answer) => answer.send(Err(error)).is_ok(),
             Self::Save(answer) => answer.send(Err(error)).is_ok(),
             Self::Reset(answer) => answer.send(Err(error)).is_ok(),
             Self::Calibrate(answer) => answer.send(Err(error)).is_ok(),
@@ -45,6 +48,7 @@ impl Request {
             Self::Command(_, _, answer) => answer.is_closed(),
             Self::Read(_, answer) => answer.is_closed(),
             Self::Set(_, answer) => answer.is_closed(),
+            Self::SetUnread(_, answer) => answer.is_closed(),
             Self::Save(answer) => answer.is_closed(),
             Self::Reset(answer) => answer.is_closed(),
             Self::Calibrate(answer) => answer.is_closed(),
@@ -64,6 +68,9 @@ pub enum RequestError {
     /// A motion under a lease that does not hold.
     #[error(transparent)]
     NotOwner(#[from] LeaseRefusal),
+    /// What a hand keeps is not touched now.
+    #[error("{0}: nothing was sent")]
+    NotNow(NotSent),
     /// Too many requests wait already.
     #[error("{limit} requests wait already: nothing was sent")]
     Full {

@@ -1,6 +1,6 @@
 //! What a hand is found by: its id, serial speed and address, and where it is found after a change of one.
 
-use crate::hand::{HandCommand, HandId, SerialSpeed};
+use crate::hand::{HandId, SerialSpeed, Setting};
 use crate::params::rows::{ParamId, Value};
 use crate::transport::Endpoint;
 
@@ -79,17 +79,17 @@ impl PlacePair {
     }
 }
 
-/// The command that writes a row by which a hand is found; none for other rows and for values outside the manual's ranges.
+/// The setting that is a row by which a hand is found; none for other rows and for values outside the manual's ranges.
 #[must_use]
-pub fn command(id: ParamId, value: Value) -> Option<HandCommand> {
+pub fn setting(id: ParamId, value: Value) -> Option<Setting> {
     match (id, value) {
         (ParamId::HandId, Value::Number(number)) => {
-            HandId::new(i64::from(number)).ok().map(HandCommand::Id)
+            HandId::new(i64::from(number)).ok().map(Setting::Id)
         }
         (ParamId::ReduRatio, Value::Number(number)) => {
-            SerialSpeed::of_code(number.into()).map(HandCommand::SerialSpeed)
+            SerialSpeed::of_code(number.into()).map(Setting::SerialSpeed)
         }
-        (ParamId::IpAddress, Value::Address(address)) => Some(HandCommand::IpAddress(address)),
+        (ParamId::IpAddress, Value::Address(address)) => Some(Setting::IpAddress(address)),
         _ => None,
     }
 }

@@ -34,6 +34,9 @@ pub trait Hand: Clone + Send + Sync + 'static {
         &self,
         setting: Setting,
     ) -> impl Future<Output = Result<Written, RequestError>> + Send;
+    /// Writes a kept setting, by which the hand may be found elsewhere then.
+    fn set_unread(&self, setting: Setting)
+    -> impl Future<Output = Result<(), RequestError>> + Send;
     /// Writes the parameters to flash.
     fn save(&self) -> impl Future<Output = Result<Saved, RequestError>> + Send;
     /// Returns to the factory's parameters.
@@ -79,6 +82,9 @@ impl Hand for LinkHandle {
     }
     async fn set_kept(&self, setting: Setting) -> Result<Written, RequestError> {
         Self::set_kept(self, setting).await
+    }
+    async fn set_unread(&self, setting: Setting) -> Result<(), RequestError> {
+        Self::set_unread(self, setting).await
     }
     async fn save(&self) -> Result<Saved, RequestError> {
         Self::save(self).await

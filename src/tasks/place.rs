@@ -4,7 +4,7 @@
 use crate::hand::Moment;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
-use crate::params::place::{Moved, PlacePair, WhichPlace, command};
+use crate::params::place::{Moved, PlacePair, WhichPlace, setting};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::Saved;
@@ -210,13 +210,14 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         }
         (self.tell)(PlaceStep::Writing(from));
         let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
-        // The link cannot know that this write wants rest.
         if !rests(&hand).await {
             return None;
         }
-        let refused = match hand.write(command(self.change.id, value)?).await {
+        let refused = match hand.set_unread(setting(self.change.id, value)?).await {
             Err(RequestError::Refused { reason, .. }) => Some(reason),
-            Err(RequestError::NotConnected | RequestError::Full { .. }) => return None,
+            Err(
+                RequestError::NotConnected | RequestError::NotNow(_) | RequestError::Full { .. },
+            ) => return None,
             // A missing answer proves nothing.
             Ok(()) | Err(_) => None,
         };

@@ -11,7 +11,7 @@ use crate::app::running::Running;
 use crate::app::settings::Settings;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
-use crate::params::place::{PlacePair, WhichPlace, command, new_place};
+use crate::params::place::{PlacePair, WhichPlace, new_place, setting};
 use crate::params::rows::{ParamId, Value};
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
@@ -30,7 +30,7 @@ impl HandState {
         let followed = new_place(&old, id, wanted);
         let is_bus = !matches!(old, Endpoint::Tcp { .. });
         let is_possible = followed.is_some() || !is_bus || id == ParamId::IpAddress;
-        let is_new = command(id, wanted).is_some() && before != wanted;
+        let is_new = setting(id, wanted).is_some() && before != wanted;
         if self.procedure.is_some() || !is_possible || !is_new {
             return;
         }

@@ -1,10 +1,13 @@
-//! What a person does with the hand that is shown, and how the window is set.
+//! What a person does with the hand that is shown.
 
-use crate::app::action::Action;
 use crate::app::env::Env;
+use crate::app::hand::HandState;
+use crate::app::notices::Notices;
+use crate::app::settings::Settings;
 use crate::app::state::State;
-use crate::hand::{Dof, Moment};
-use crate::history::MarkKind;
+use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Finger, Gesture, Moment};
+use crate::history::{Mark, MarkKind};
 use crate::record::EventKind;
 use crate::transport::Endpoint;
 
@@ -34,8 +37,8 @@ impl State {
         hand.know(settings);
     }
 
-    /// What is done with the hand that is shown.
-    pub(super) fn hand_action(&mut self, action: Action, env: &Env, now: Moment) {
+    /// The hand that is shown, with what is told of it.
+    pub(super) fn shown(&mut self) -> (&mut HandState, &mut Notices, &mut Settings) {
         let Self {
             hands,
             notices,
@@ -43,90 +46,66 @@ impl State {
             ..
         } = self;
         notices.about(hands.is_several().then(|| &hands.shown().label));
-        let hand = hands.shown_mut();
-        match action {
-            Action::Arm => hand.arm(notices),
-            Action::HoldToRun(on) => {
-                settings.hold_to_run = on;
-                hands.iter_mut().for_each(|hand| hand.tick_hold(on));
-            }
-            Action::Disarm => hand.disarm(),
-            Action::Target(dof, angle) => hand.target(dof, angle),
-            Action::Force(dof, force) => each(dof).for_each(|dof| hand.force(dof, force)),
-            Action::Speed(dof, speed) => each(dof).for_each(|dof| hand.speed(dof, speed)),
-            Action::Lock(dof, locked) => hand.lock(dof, locked),
-            Action::Preset(preset) => hand.preset(preset),
-            Action::Gesture(gesture) => {
-                hand.gesture(gesture, settings.gesture_route, env, notices);
-            }
-            Action::ClearErrors if hand.procedure.is_none() => hand.clear_errors(env, notices),
-            Action::ChangePlace(id, wanted) => hand.open_place_change(id, wanted),
-            Action::FactoryReset => hand.open_reset(),
-            Action::CalibrateForce => hand.open_calibration(),
-            Action::Procedure(action) => hand.procedure_action(action, env),
-            Action::Input(action) => self.input_action(action, env),
-            Action::Tare(finger) => {
-                hand.tare(finger, notices);
-                hand.keep_tare(settings);
-            }
-            Action::UndoTare => {
-                hand.tare.undo();
-                hand.keep_tare(settings);
-            }
-            Action::TakeKeptTare => hand.take_kept_tare(notices),
-            Action::SeenFault(dof, what) => hand.faults.see_one(dof, what),
-            Action::SeenFaults => hand.faults.see_all(),
-            Action::Note(at, words) => {
-                if let Some(note) = MarkKind::note(&words) {
-                    hand.record_event(at, EventKind::Note, words.trim().to_owned());
-                    hand.history.mark(at, note);
-                }
-            }
-            Action::RemoveMark(mark) => {
-                if let MarkKind::Note(words) = &mark.kind {
-                    hand.record_event(mark.at, EventKind::NoteRemoved, words.to_string());
-                }
-                hand.history.remove_mark(&mark);
-            }
-            Action::Stage(id, value) => hand.params.stage(id, value),
-            action => self.pose_action(action, env, now),
+        (hands.shown_mut(), notices, settings)
+    }
+
+    pub(super) fn set_hold_to_run(&mut self, on: bool) {
+        self.settings.hold_to_run = on;
+        self.hands.iter_mut().for_each(|hand| hand.tick_hold(on));
+    }
+
+    pub(super) fn gesture(&mut self, gesture: Gesture, env: &Env) {
+        let (hand, notices, settings) = self.shown();
+        hand.gesture(gesture, settings.gesture_route, env, notices);
+    }
+
+    pub(super) fn tare(&mut self, finger: Option<Finger>) {
+        let (hand, notices, settings) = self.shown();
+        hand.tare(finger, notices);
+        hand.keep_tare(settings);
+    }
+
+    pub(super) fn undo_tare(&mut self) {
+        let (hand, _, settings) = self.shown();
+        hand.tare.undo();
+        hand.keep_tare(settings);
+    }
+
+    /// Puts a note into the history; no words are no note.
+    pub(super) fn note(&mut self, at: Moment, words: &str) {
+        if let Some(note) = MarkKind::note(words) {
+            let hand = self.hand_mut();
+            hand.record_event(at, EventKind::Note, words.trim().to_owned());
+            hand.history.mark(at, note);
         }
     }
 
-    /// What is kept from one start to the next.
-    pub(super) fn setting_action(&mut self, action: Action) {
+    pub(super) fn remove_mark(&mut self, mark: &Mark) {
+        let hand = self.hand_mut();
+        if let MarkKind::Note(words) = &mark.kind {
+            hand.record_event(mark.at, EventKind::NoteRemoved, words.to_string());
+        }
+        hand.history.remove_mark(mark);
+    }
+
+    /// Which side the hand that is shown is of.
+    pub(super) fn set_side(&mut self, side: Side) {
         let Self {
             hands, settings, ..
         } = self;
-        match action {
-            Action::Side(side) => {
-                if let Some(endpoint) = &hands.shown().endpoint {
-                    settings.set_side_of(endpoint, side);
-                }
-                // Others of which nobody said a side have the one that was said last.
-                if !hands.is_several() {
-                    settings.side = side;
-                }
-                hands.shown_mut().know(settings);
-            }
-            Action::NameGesture(gesture, name) => settings.name_gesture(gesture, &name),
-            Action::GestureRoute(route) => settings.gesture_route = route,
-            Action::Theme(theme) => settings.theme = theme,
-            Action::Layout(layout) => settings.layout = layout,
-            Action::ReadFirst(first) => settings.read_first = first,
-            Action::Zoom(zoom) => settings.zoom = zoom,
-            Action::Language(language) => settings.language = language,
-            Action::AngleUnit(unit) => settings.angle_unit = unit,
-            Action::PlotWindow(window) => settings.plot_window = window,
-            Action::ShowPlot(kind, on) => settings.plots.set(kind, on),
-            // Standing plots are the view's own matter, and all others were carried out before.
-            _ => {}
+        if let Some(endpoint) = &hands.shown().endpoint {
+            settings.set_side_of(endpoint, side);
         }
+        // Others of which nobody said a side have the one that was said last.
+        if !hands.is_several() {
+            settings.side = side;
+        }
+        hands.shown_mut().know(settings);
     }
 }
 
 /// One joint, or all.
-fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
+pub(super) fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
     Dof::ALL
         .into_iter()
         .filter(move |own| dof.is_none_or(|dof| dof == *own))

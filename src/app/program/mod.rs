@@ -18,6 +18,7 @@ use crate::app::hand::connection::REST_WITHIN;
 use crate::app::hand::sequence::Play;
 use crate::app::notices::NoticeKind;
 use crate::app::program::closing::Closing;
+use crate::app::program::hand_actions::each;
 use crate::app::program::jobs::Jobs;
 use crate::app::program::saved::SavedFiles;
 use crate::app::sessions::SessionAction;
@@ -169,20 +170,51 @@ impl App {
             None => action,
         };
         self.state.now = now;
-        if self.state.exhibit.is_some() && !action.passes_in_exhibit() {
+        if self.state.exhibit.is_some() && !action.effect().passes_in_exhibit() {
             return;
         }
         self.state.notices.about(None);
         let hand = self.state.hand_mut();
         hand.now = now;
-        if hand.runs_series() && action.disturbs_series() {
+        if hand.runs_series() && !action.effect().passes_in_series() {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
         self.record_act(&action, now);
+        self.carry_out(action);
+    }
+
+    #[expect(clippy::too_many_lines, reason = "one arm for each action")]
+    fn carry_out(&mut self, action: Action) {
         let (state, env) = (&mut self.state, &self.env);
         match action {
-            Action::Arm | Action::HoldKey(_) if self.closing.is_some() => {}
+            Action::Stop => self.stop(),
+            Action::Arm if self.closing.is_some() => {}
+            Action::Arm => {
+                let (hand, notices, _) = state.shown();
+                hand.arm(notices);
+            }
+            Action::Disarm => state.hand_mut().disarm(),
+            Action::HoldToRun(on) => state.set_hold_to_run(on),
+            Action::HoldKey(_) if self.closing.is_some() => {}
+            Action::HoldKey(key) => state.hold_key(key),
+            Action::Target(dof, angle) => state.hand_mut().target(dof, angle),
+            Action::Force(dof, force) => {
+                each(dof).for_each(|dof| state.hand_mut().force(dof, force));
+            }
+            Action::Speed(dof, speed) => {
+                each(dof).for_each(|dof| state.hand_mut().speed(dof, speed));
+            }
+            Action::Lock(dof, locked) => state.hand_mut().lock(dof, locked),
+            Action::Preset(preset) => state.hand_mut().preset(preset),
+            Action::Gesture(gesture) => state.gesture(gesture, env),
+            Action::Capture(name) => state.capture(&name),
+            Action::Recapture(id) => state.recapture(id),
+            Action::Library(edit) => state.poses.edit(edit),
+            Action::Recall(id) => state.recall(id, env),
+            Action::Play(play) => state.play(play, env),
+            Action::HideShipped(name, hide) => state.hide_shipped(name, hide),
+            Action::DryRun(sequence) => state.dry_run(sequence),
             Action::Session(action) => {
                 let on = [
                     SessionAction::Record(true),
@@ -192,23 +224,30 @@ impl App {
                 self.records |= on.contains(&action);
                 self.recorded.act(action, state, env);
             }
-            Action::Exhibit(action) => {
-                self.leaves |= self.exhibit.act(action, state, env);
-            }
-            Action::Param(action) => self.jobs.param_action(action, state, env),
+            Action::Exhibit(action) => self.leaves |= self.exhibit.act(action, state, env),
+            Action::Input(action) => state.input_action(action, env),
             Action::Trial(action) => self.jobs.trial_action(action, state, env),
-            Action::Save(content) => self.jobs.export(content, env),
             Action::ImportPoses(typed) => self.jobs.import_poses(typed, state, env),
             Action::ExportPoses => {
                 let library = state.poses.library.clone();
                 self.jobs.export(Export::Poses(library), env);
             }
-            Action::FindPorts => self.jobs.find_ports(env),
+            Action::NameGesture(gesture, name) => state.settings.name_gesture(gesture, &name),
+            Action::GestureRoute(route) => state.settings.gesture_route = route,
+            // A card that is open clears them itself, or must not be disturbed.
+            Action::ClearErrors if state.hand().procedure.is_some() => {}
+            Action::ClearErrors => {
+                let (hand, notices, _) = state.shown();
+                hand.clear_errors(env, notices);
+            }
+            Action::ChangePlace(id, wanted) => state.hand_mut().open_place_change(id, wanted),
+            Action::FactoryReset => state.hand_mut().open_reset(),
+            Action::CalibrateForce => state.hand_mut().open_calibration(),
+            Action::Procedure(action) => state.hand_mut().procedure_action(action, env),
             Action::Connect(endpoint) => state.connect(Some(endpoint), env),
             Action::Disconnect => state.connect(None, env),
             Action::Hands(action) => state.hands_action(action, env),
-            Action::Stop => self.stop(),
-            Action::HoldKey(key) => state.hold_key(key),
+            Action::FindPorts => self.jobs.find_ports(env),
             Action::Scan(wish) => {
                 let held = state.hands.iter();
                 let held = held.filter_map(|hand| hand.endpoint.clone()).collect();
@@ -216,10 +255,33 @@ impl App {
             }
             Action::CancelScan => state.scan.cancel(),
             Action::FindShared(interface) => state.fleet.listen(interface, env),
-            Action::Dismiss(id) => state.notices.dismiss(id),
+            Action::SeenFault(dof, what) => state.hand_mut().faults.see_one(dof, what),
+            Action::SeenFaults => state.hand_mut().faults.see_all(),
+            Action::Save(content) => self.jobs.export(content, env),
+            // The shell draws it, and asks for its file to be saved then.
+            Action::SavePicture(_) => {}
             Action::Stay => state.leave = None,
             Action::Leave => (self.leaves, state.leave) = (true, None),
-            action => state.hand_action(action, env, now),
+            Action::Dismiss(id) => state.notices.dismiss(id),
+            Action::Theme(theme) => state.settings.theme = theme,
+            Action::Side(side) => state.set_side(side),
+            Action::Language(language) => state.settings.language = language,
+            Action::Layout(layout) => state.settings.layout = layout,
+            Action::Zoom(zoom) => state.settings.zoom = zoom,
+            Action::ReadFirst(first) => state.settings.read_first = first,
+            Action::AngleUnit(unit) => state.settings.angle_unit = unit,
+            Action::PlotWindow(window) => state.settings.plot_window = window,
+            Action::ShowPlot(kind, on) => state.settings.plots.set(kind, on),
+            Action::Note(at, words) => state.note(at, &words),
+            Action::RemoveMark(mark) => state.remove_mark(&mark),
+            Action::Tare(finger) => state.tare(finger),
+            Action::UndoTare => state.undo_tare(),
+            Action::TakeKeptTare => {
+                let (hand, notices, _) = state.shown();
+                hand.take_kept_tare(notices);
+            }
+            Action::Stage(id, value) => state.hand_mut().params.stage(id, value),
+            Action::Param(action) => self.jobs.param_action(action, state, env),
         }
     }
 

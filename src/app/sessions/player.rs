@@ -204,7 +204,7 @@ impl SessionPlayer {
                 self.state.notices.dismiss(id);
                 None
             }
-            action if action.passes_in_replay() => Some(action),
+            action if action.effect().passes_in_replay() => Some(action),
             _ => {
                 self.tell(NoticeKind::Recorded);
                 None

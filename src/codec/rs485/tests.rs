@@ -9,7 +9,8 @@ use crate::codec::rs485::device::{
 };
 use crate::codec::rs485::framing::{BUFFER_LEN, Payload};
 use crate::hand::{
-    Force, HandCommand, HandId, PerDof, RegisterWrite, SerialSpeed, Span, Speed, Target, Writes,
+    Force, HandCommand, HandId, PerDof, RegisterWrite, SerialSpeed, Setting, Span, Speed, Target,
+    Trigger, Writes,
 };
 use proptest::prelude::*;
 
@@ -191,20 +192,23 @@ fn requests_are_encoded_as_printed() {
     let thousand = Speed::new(1000).unwrap();
     let angles = PerDof::splat(Target::Go(crate::hand::Angle::MAX));
     // Printed row 1 writes 2000 to an angle, which no command can express.
-    for (row, command) in [
-        (2, HandCommand::Id(HandId::new(2).unwrap())),
-        (3, HandCommand::SerialSpeed(SerialSpeed::ALL[1])),
-        (4, HandCommand::Save),
-        (5, HandCommand::CalibrateForce),
-        (6, HandCommand::Speeds(PerDof::splat(Some(thousand)))),
+    for (row, writes) in [
+        (2, Setting::Id(HandId::new(2).unwrap()).writes()),
+        (3, Setting::SerialSpeed(SerialSpeed::ALL[1]).writes()),
+        (4, Writes::from_iter([Trigger::Save.write()])),
+        (5, Writes::from_iter([Trigger::CalibrateForce.write()])),
+        (
+            6,
+            HandCommand::Speeds(PerDof::splat(Some(thousand))).writes(),
+        ),
         (
             7,
-            HandCommand::Forces(PerDof::splat(Some(Force::new(1000).unwrap()))),
+            HandCommand::Forces(PerDof::splat(Some(Force::new(1000).unwrap()))).writes(),
         ),
-        (8, HandCommand::Angles(angles)),
+        (8, HandCommand::Angles(angles).writes()),
     ] {
-        let frame = encode_write(id, &only(&command.writes()));
-        assert_eq!(frame.as_slice(), printed[row], "{command:?}");
+        let frame = encode_write(id, &only(&writes));
+        assert_eq!(frame.as_slice(), printed[row], "{writes:?}");
     }
 }
 

@@ -123,8 +123,8 @@ fn is_bytes(write: &RegisterWrite) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::HandCommand;
     use crate::hand::register::STATE;
+    use crate::hand::{HandCommand, Setting, Trigger};
 
     fn word_use(endpoint: &str, found: Option<BytePacking>) -> WordUse {
         let mut word_use = WordUse::new(&endpoint.parse().unwrap());
@@ -150,14 +150,15 @@ mod tests {
             ("rtu:p?packing=one", None, false),
         ] {
             let word_use = word_use(endpoint, found);
-            for command in [
-                HandCommand::Save,
-                HandCommand::ClearErrors,
-                HandCommand::IpAddress([192, 168, 11, 211].into()),
+            for write in [
+                Trigger::Save.write(),
+                HandCommand::ClearErrors.writes().remove(0),
+                Setting::IpAddress([192, 168, 11, 211].into())
+                    .writes()
+                    .remove(0),
             ] {
-                let write = &command.writes()[0];
-                let said = word_use.allows(write);
-                assert_eq!(said.is_ok(), allowed, "{endpoint} {found:?} {command:?}");
+                let said = word_use.allows(&write);
+                assert_eq!(said.is_ok(), allowed, "{endpoint} {found:?} {write:?}");
             }
             let speeds = HandCommand::Speeds(crate::hand::PerDof::splat(None));
             for write in speeds.writes() {

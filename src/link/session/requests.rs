@@ -161,7 +161,7 @@ fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
     }
 }
 
-fn request_error(error: &BusError, span: Span) -> RequestError {
+pub(crate) fn request_error(error: &BusError, span: Span) -> RequestError {
     let address = span.address;
     match error {
         BusError::Timeout { after } => {

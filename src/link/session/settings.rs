@@ -2,10 +2,11 @@
 //! passes before each exchange. What a late frame means is decided in `save_watch`.
 
 use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
-use crate::hand::{HandCommand, Moment, Setting, Span};
+use crate::hand::{Moment, Setting, Span, Trigger};
 use crate::link::bus::{Bus, BusError, ResultFrame};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
+use crate::link::session::requests::request_error;
 use crate::link::session::save_watch::{Ack, Next};
 use crate::link::wanted::PendingControl;
 use crate::record::{
@@ -65,7 +66,11 @@ impl Session {
                     },
                     holds: None,
                 };
-                self.conclude(answer, end, Ok(lost))
+                self.conclude(answer, end.map(Ok), Ok(lost))
+            }
+            Request::SetUnread(setting, answer) => {
+                let end = self.write_unread(bus, setting).await;
+                self.conclude(answer, end, Err(RequestError::LinkLost))
             }
             Request::Save(answer) => {
                 let end = self.save_parameters(bus).await;
@@ -73,16 +78,16 @@ impl Session {
                     Err(_) => self.saving.lost().ok_or(RequestError::LinkLost),
                     Ok(_) => Err(RequestError::LinkLost),
                 };
-                self.conclude(answer, end, lost)
+                self.conclude(answer, end.map(Ok), lost)
             }
             Request::Reset(answer) => {
                 let end = self.reset_parameters(bus).await;
-                self.conclude(answer, end, Ok(Reset::Unanswered))
+                self.conclude(answer, end.map(Ok), Ok(Reset::Unanswered))
             }
             Request::Calibrate(answer) => {
                 let end = self.calibrate_forces(bus).await;
                 let why = SaveDoubt::LinkLost;
-                self.conclude(answer, end, Ok(Calibrated::Unknown { why }))
+                self.conclude(answer, end.map(Ok), Ok(Calibrated::Unknown { why }))
             }
             Request::Command(..) | Request::Read(..) => Ok(()),
         }
@@ -91,13 +96,13 @@ impl Session {
     fn conclude<T: Send + Sync + 'static>(
         &mut self,
         answer: Answer<T>,
-        end: Result<T, WireEnd>,
+        end: Result<Result<T, RequestError>, WireEnd>,
         lost: Result<T, RequestError>,
     ) -> Result<(), WireEnd> {
         self.leaves_line = false;
         match end {
             Ok(end) => {
-                let _told = answer.send(Ok(end));
+                let _told = answer.send(end);
                 Ok(())
             }
             Err(end) => {
@@ -198,6 +203,25 @@ impl Session {
         Ok(written(Verdict::Unverified { why }, None))
     }
 
+    /// Writes a group once. The hand may answer elsewhere then, or not at all.
+    async fn write_unread(
+        &mut self,
+        bus: &mut dyn Bus,
+        setting: Setting,
+    ) -> Result<Result<(), RequestError>, WireEnd> {
+        if let Some(why) = self.refusal(bus).await? {
+            return Ok(Err(RequestError::NotNow(why)));
+        }
+        for write in setting.writes() {
+            self.give_way(bus).await?;
+            if let Err(error) = self.write(bus, &write, WriteCause::Setting).await {
+                self.failed(bus, &error).await?;
+                return Ok(Err(request_error(&error, write.span())));
+            }
+        }
+        Ok(Ok(()))
+    }
+
     /// Sends all writes of a group: the first refusal, and whether an answer is missing. Over CAN a part of the group may
     /// be written and the rest not.
     async fn write_group(
@@ -206,7 +230,7 @@ impl Session {
         setting: Setting,
     ) -> Result<(Option<String>, bool), WireEnd> {
         let (mut refused, mut is_unanswered) = (None, false);
-        for write in setting.command().writes() {
+        for write in setting.writes() {
             self.give_way(bus).await?;
             let Err(error) = self.write(bus, &write, WriteCause::Setting).await else {
                 continue;
@@ -240,7 +264,7 @@ impl Session {
         while bus.take_save_result().is_some() {}
         self.saving.send(self.now(), frame);
         self.leave_line();
-        let sent = self.trigger(bus, &HandCommand::Save).await;
+        let sent = self.trigger(bus, Trigger::Save).await;
         self.saving.written(match &sent {
             Ok(()) => Ack::Acknowledged,
             Err(BusError::Refused { reason }) => Ack::Refused {
@@ -273,7 +297,7 @@ impl Session {
         if let Some(why) = self.trigger_refusal(bus).await? {
             return Ok(Reset::NotSent(why));
         }
-        match self.trigger(bus, &HandCommand::ResetParameters).await {
+        match self.trigger(bus, Trigger::ResetParameters).await {
             Ok(()) => Ok(Reset::Acknowledged),
             Err(BusError::Refused { reason }) => Ok(Reset::Refused { reason }),
             Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
@@ -290,7 +314,7 @@ impl Session {
         let _earlier = bus.take_calibration_end();
         let over = self.now().plus(CALIBRATION_TAKES);
         self.leave_line();
-        let is_acknowledged = match self.trigger(bus, &HandCommand::CalibrateForce).await {
+        let is_acknowledged = match self.trigger(bus, Trigger::CalibrateForce).await {
             Ok(()) => true,
             Err(BusError::Refused { reason }) => return Ok(Calibrated::Refused { reason }),
             Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
@@ -319,11 +343,8 @@ impl Session {
         self.tell_rest();
     }
 
-    async fn trigger(&mut self, bus: &mut dyn Bus, command: &HandCommand) -> Result<(), BusError> {
-        match command.writes().into_iter().next() {
-            Some(write) => self.write(bus, &write, WriteCause::Setting).await,
-            None => Err(BusError::TooLong),
-        }
+    async fn trigger(&mut self, bus: &mut dyn Bus, what: Trigger) -> Result<(), BusError> {
+        self.write(bus, &what.write(), WriteCause::Setting).await
     }
 
     /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.

@@ -64,9 +64,10 @@ pub(crate) fn exception(error: &RequestError) -> ModbusException {
             ModbusException::NoAnswer
         }
         RequestError::Refused { reason, .. } => refused(reason),
-        RequestError::NotArmed | RequestError::NotOwner(_) | RequestError::Full { .. } => {
-            ModbusException::Busy
-        }
+        RequestError::NotArmed
+        | RequestError::NotOwner(_)
+        | RequestError::NotNow(_)
+        | RequestError::Full { .. } => ModbusException::Busy,
         RequestError::TooLong { .. } | RequestError::OutOfRange(_) => ModbusException::IllegalValue,
         RequestError::WrongLength { .. } => ModbusException::Failure,
     }

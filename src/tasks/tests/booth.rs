@@ -374,6 +374,10 @@ impl Hand for BoothHand {
         Err(RequestError::NotConnected)
     }
 
+    async fn set_unread(&self, _setting: Setting) -> Result<(), RequestError> {
+        Err(RequestError::NotConnected)
+    }
+
     async fn save(&self) -> Result<Saved, RequestError> {
         Err(RequestError::NotConnected)
     }

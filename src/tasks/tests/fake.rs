@@ -29,7 +29,7 @@ const RECORDS: usize = 64;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Asked {
     Read(Span),
-    Write(HandCommand),
+    SetUnread(Setting),
     Keep(Setting),
     Save,
     Reset,
@@ -107,7 +107,7 @@ impl FakeHand {
             }
         }
         for setting in plan_writes(&params, &Params::default()).settings {
-            hand.facts().take(&setting.command());
+            hand.facts().take(&setting);
         }
         hand.facts().burn();
         hand
@@ -144,7 +144,7 @@ impl FakeHand {
         let mut wanted = Params::default();
         wanted.put(id, value);
         for setting in plan_writes(&wanted, &Params::default()).settings {
-            self.facts().take(&setting.command());
+            self.facts().take(&setting);
         }
     }
 
@@ -213,8 +213,8 @@ impl Facts {
         self.memory[from..from + write.bytes().len()].copy_from_slice(write.bytes());
     }
 
-    fn take(&mut self, command: &HandCommand) {
-        for write in command.writes() {
+    fn take(&mut self, setting: &Setting) {
+        for write in setting.writes() {
             self.take_write(&write);
         }
     }
@@ -277,11 +277,15 @@ impl Hand for FakeHand {
     }
 
     async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
-        let address = command.writes()[0].address();
-        match self.ask(Asked::Write(command)).await {
-            Fate::Answered => self.facts().take(&command),
+        panic!("no task here asks for {command:?}")
+    }
+
+    async fn set_unread(&self, setting: Setting) -> Result<(), RequestError> {
+        let address = setting.span().address;
+        match self.ask(Asked::SetUnread(setting)).await {
+            Fate::Answered => self.facts().take(&setting),
             Fate::AnswerLost => {
-                self.facts().take(&command);
+                self.facts().take(&setting);
                 return Err(timeout(address));
             }
             Fate::Unheard => return Err(timeout(address)),
@@ -299,7 +303,7 @@ impl Hand for FakeHand {
         let span = setting.span();
         let verdict = match self.ask(Asked::Keep(setting)).await {
             Fate::Answered => {
-                self.facts().take(&setting.command());
+                self.facts().take(&setting);
                 Verdict::Applied
             }
             Fate::Takes(value) => {
@@ -348,7 +352,7 @@ impl Hand for FakeHand {
         if matches!(fate, Fate::Answered | Fate::AnswerLost) {
             let settings = plan_writes(&Params::factory(), &Params::default()).settings;
             for setting in settings {
-                self.facts().take(&setting.command());
+                self.facts().take(&setting);
             }
         }
         match fate {
@@ -489,7 +493,7 @@ impl<F: FnMut(&Endpoint) -> bool + Send> Reach for FakeReach<F> {
     }
 }
 
-/// The command that writes a row by which a hand is found.
+/// The write of a row by which a hand is found.
 pub(crate) fn place_write(id: ParamId, value: Value) -> Asked {
-    Asked::Write(place::command(id, value).unwrap())
+    Asked::SetUnread(place::setting(id, value).unwrap())
 }

@@ -139,7 +139,7 @@ impl World {
     fn fate(&mut self, asked: &Asked) -> Fate {
         let address = ParamId::HandId.register().address;
         match asked {
-            Asked::Write(_) => {
+            Asked::SetUnread(_) => {
                 self.step();
                 let way = self.loss(4);
                 self.writes += usize::from(way < 2);
@@ -421,7 +421,7 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
 }
 
 fn is_write(asked: &Asked) -> bool {
-    matches!(asked, Asked::Write(_))
+    matches!(asked, Asked::SetUnread(_))
 }
 
 #[tokio::test(start_paused = true)]

@@ -1,6 +1,6 @@
 //! A hand of which it is not known whether it rests is not written, whichever task wants to.
 
-use crate::hand::{Dof, HandCommand};
+use crate::hand::{Dof, Setting};
 use crate::params::backups::Backups;
 use crate::params::changes::RowVerdict;
 use crate::params::place::PlacePair;
@@ -158,7 +158,7 @@ async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
         let end = change_place(&mut reach, &change, &backups, eager, |_| ()).await;
         assert_eq!(end.unwrap().end, PlaceEnd::NotWritten, "{rest:?}");
         let asked = hand.asked();
-        let is_write = |one: &Asked| matches!(one, Asked::Write(HandCommand::Id(_)));
+        let is_write = |one: &Asked| matches!(one, Asked::SetUnread(Setting::Id(_)));
         assert!(!asked.iter().any(is_write), "{rest:?}");
     }
 }

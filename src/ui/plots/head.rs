@@ -118,8 +118,7 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
         .weight(weight);
     let button = if is_narrow { button.icon(icon) } else { button };
     if button.ui(ui, look).clicked() {
-        pane.actions
-            .push(Action::PausePlots(view.view.time.toggle()));
+        view.view.time.toggle();
     }
 }
 

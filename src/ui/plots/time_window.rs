@@ -54,13 +54,12 @@ impl TimeWindow {
     }
 
     /// Holds what follows, and lets follow what holds; true if it holds now.
-    pub(crate) fn toggle(&mut self) -> bool {
+    pub(crate) fn toggle(&mut self) {
         if self.is_held() {
             self.follow();
         } else {
             self.hold();
         }
-        self.is_held()
     }
 
     /// Follows the newest again.

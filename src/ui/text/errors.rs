@@ -7,6 +7,7 @@ use crate::hand::OutOfRange;
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
+use crate::record::NotSent;
 use crate::share::gateway::WriteRefusal;
 use crate::store::{FileCause, FileError};
 use crate::tasks::TaskError;
@@ -87,11 +88,20 @@ chinese! {
         LinkTrouble::Suspended { slept_s } => "本机休眠了 {slept_s} 秒：之前显示的数据已过时。";
     }
 
+    fn not_sent_zh(&NotSent) {
+        NotSent::Armed => "灵巧手已使能，请先取消使能";
+        NotSent::Holding => "停止尚待确认";
+        NotSent::Moving => "灵巧手正在运动，请等待其静止";
+        NotSent::RestUnknown => "不确定灵巧手是否静止：状态或角度缺失或过时";
+        NotSent::TooSoon { wait } => "刚刚保存过，请等待 {} 秒", wait.as_secs_f64().ceil();
+    }
+
     fn request_zh(&RequestError) {
         RequestError::NotConnected => "没有连接：未发送任何内容。";
         RequestError::NotArmed => "未使能：未发送任何内容。";
         RequestError::NotOwner(LeaseRefusal::Taken(_)) => "灵巧手现由其他来源控制：未发送任何内容。";
         RequestError::NotOwner(LeaseRefusal::Ended(_)) => "目前没有人获准控制灵巧手，需由人授权：未发送任何内容。";
+        RequestError::NotNow(why) => "{}：未发送任何内容。", not_sent_zh(why);
         RequestError::Full { limit } => "已有 {limit} 个请求在等待：未发送。";
         RequestError::TooLong { address, len } => "此线路无法一次读写地址 {address} 起的 {len} 字节。";
         RequestError::Timeout { address, after_ms } => "地址 {address} 在 {after_ms} ms 内没有应答：不确定灵巧手是否已执行。";
@@ -500,6 +510,13 @@ mod tests {
             RequestError::NotConnected,
             RequestError::NotArmed,
             RequestError::NotOwner(LeaseRefusal::Taken(Owner::Gamepad)),
+            RequestError::NotNow(NotSent::Armed),
+            RequestError::NotNow(NotSent::Holding),
+            RequestError::NotNow(NotSent::Moving),
+            RequestError::NotNow(NotSent::RestUnknown),
+            RequestError::NotNow(NotSent::TooSoon {
+                wait: std::time::Duration::from_secs(3),
+            }),
             RequestError::Full { limit: 8 },
             RequestError::TooLong {
                 address: 1000,

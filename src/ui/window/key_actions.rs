@@ -43,7 +43,10 @@ pub(super) fn key_action(
         Wish::UndoTare => state.hand().tare.can_undo().then_some(Action::UndoTare),
         Wish::Language => Some(Action::Language(state.settings.language.other())),
         Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
-        Wish::Pause => Some(Action::PausePlots(views.plots.view.time.toggle())),
+        Wish::Pause => {
+            views.plots.view.time.toggle();
+            None
+        }
         // With the pointer still held, the next hand would go on with what was begun at this one.
         Wish::Hand(_) if ui.input(|input| input.pointer.any_down()) => None,
         Wish::Hand(at) if state.timeline.is_none() => {

@@ -339,7 +339,12 @@ async fn nothing_is_set_saved_or_reset_while_armed() {
     assert_eq!(save(&mut link).await, Saved::NotSent(armed));
     let reset = ask(&mut link, Request::Reset).await;
     assert_eq!(reset, Ok(Outcome::Reset(Reset::NotSent(armed))));
-    assert_eq!(line.writes_to(SPEEDS) + line.writes_to(SAVE), 0);
+    let moved = link.set_unread(Setting::Id(HandId::nearest(7))).await;
+    assert_eq!(moved, Err(RequestError::NotNow(armed)));
+    assert_eq!(
+        line.writes_to(SPEEDS) + line.writes_to(SAVE) + line.writes_to(1000),
+        0
+    );
 }
 
 #[tokio::test(start_paused = true)]
