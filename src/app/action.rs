@@ -28,7 +28,7 @@ use crate::transport::Endpoint;
 use std::path::PathBuf;
 
 /// One thing a person asked for. Returned by the views, carried out by `App::act`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Action {
     /// Hold every hand now, from anywhere, armed or not.
     Stop,

@@ -59,7 +59,7 @@ pub enum StaffPanel {
 }
 
 /// What a person does at an exhibition.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ExhibitAction {
     /// Staff, in the window: show the exhibition that is built in.
     Enter,

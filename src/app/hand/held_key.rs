@@ -8,7 +8,7 @@ use std::time::Duration;
 const HELD_FOR: Duration = Duration::from_millis(250);
 
 /// What a person does with the key.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HoldKey {
     /// It was pressed just now: a person's wish to arm.
     Pressed,

@@ -7,7 +7,7 @@ use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
 
 /// What a person does with a sequence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Play {
     /// Run a sequence or a reaction from its start. Needs arming.
     Start(EntryId),

@@ -3,7 +3,7 @@
 use crate::app::hand::slot::SlotId;
 
 /// What a person does with the list of hands. None of it moves a hand.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HandsAction {
     /// Another slot, without a hand so far, that is shown from now on.
     Add,

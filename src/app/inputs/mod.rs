@@ -26,7 +26,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
 
 /// What a person asks of inputs and of the gateway.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum InputAction {
     /// Listen for lines here, or no more.
     Listen(Option<StreamPlace>),

@@ -4,7 +4,7 @@ use crate::params::rows::ParamId;
 use std::path::PathBuf;
 
 /// One thing that a person asks for.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ParamAction {
     /// Read all rows. Writes nothing.
     Read,

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use tokio::sync::oneshot;
 
 /// What a person decides on a card.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ProcedureAction {
     /// Do it.
     Begin,

@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use std::path::PathBuf;
 
 /// What a person asks about sessions.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum SessionAction {
     /// Record hands from now on, or no longer.
     Record(bool),

@@ -5,7 +5,7 @@ use crate::trials::{Criterion, TrialPlan};
 use std::path::PathBuf;
 
 /// What a person asks for about trials.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum TrialAction {
     /// This is the plan now. Sends nothing.
     Plan(Box<TrialPlan>),
