@@ -160,14 +160,9 @@ impl Action {
     /// gestures and notes are in the history already.
     #[must_use]
     pub fn person_act(&self, is_armed: bool, poses: &PoseState) -> Option<PersonAct> {
-        match self {
+        let act = match self {
             Self::Disarm => return Some(PersonAct::Disarm),
             Self::ClearErrors => return Some(PersonAct::ClearErrors),
-            // The rest passes only while armed.
-            _ if !is_armed => return None,
-            _ => {}
-        }
-        Some(match self {
             Self::Target(dof, angle) => PersonAct::Target(*dof, *angle),
             Self::Force(dof, force) => PersonAct::Force(*dof, *force),
             Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
@@ -175,7 +170,60 @@ impl Action {
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(poses.pose(*id)?.name.as_str().into()),
             Self::Play(play) => PersonAct::Play(*play),
-            _ => return None,
-        })
+            Self::Stop
+            | Self::Arm
+            | Self::HoldToRun(_)
+            | Self::HoldKey(_)
+            | Self::Gesture(_)
+            | Self::Capture(_)
+            | Self::Recapture(_)
+            | Self::Library(_)
+            | Self::HideShipped(..)
+            | Self::DryRun(_)
+            | Self::Session(_)
+            | Self::Exhibit(_)
+            | Self::Input(_)
+            | Self::Trial(_)
+            | Self::ImportPoses(_)
+            | Self::ExportPoses
+            | Self::NameGesture(..)
+            | Self::GestureRoute(_)
+            | Self::ChangePlace(..)
+            | Self::FactoryReset
+            | Self::CalibrateForce
+            | Self::Procedure(_)
+            | Self::Connect(_)
+            | Self::Disconnect
+            | Self::Hands(_)
+            | Self::FindPorts
+            | Self::Scan(_)
+            | Self::CancelScan
+            | Self::FindShared(_)
+            | Self::SeenFault(..)
+            | Self::SeenFaults
+            | Self::Save(_)
+            | Self::SavePicture(_)
+            | Self::Stay
+            | Self::Leave
+            | Self::Dismiss(_)
+            | Self::Theme(_)
+            | Self::Side(_)
+            | Self::Language(_)
+            | Self::Layout(_)
+            | Self::Zoom(_)
+            | Self::ReadFirst(_)
+            | Self::AngleUnit(_)
+            | Self::PlotWindow(_)
+            | Self::ShowPlot(..)
+            | Self::Note(..)
+            | Self::RemoveMark(_)
+            | Self::Tare(_)
+            | Self::Stage(..)
+            | Self::Param(_)
+            | Self::UndoTare
+            | Self::TakeKeptTare => return None,
+        };
+        // The rest passes only while armed.
+        is_armed.then_some(act)
     }
 }

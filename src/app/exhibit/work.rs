@@ -57,10 +57,15 @@ impl ExhibitWork {
                         self.enter(start, state, env, now);
                     }
                 }
-                ExhibitAction::EnterFile if self.opening.is_none() => {
-                    self.opening = Some(exhibit_file::open(env));
+                ExhibitAction::EnterFile => {
+                    self.opening.get_or_insert_with(|| exhibit_file::open(env));
                 }
-                _ => {}
+                // They belong to one that goes on.
+                ExhibitAction::Wish(_)
+                | ExhibitAction::AskPin
+                | ExhibitAction::Pin(_)
+                | ExhibitAction::CloseStaff
+                | ExhibitAction::Leave => {}
             }
             return false;
         };

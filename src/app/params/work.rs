@@ -33,17 +33,20 @@ impl HandState {
     /// Carries out what a person asked for.
     pub(crate) fn param_action(&mut self, action: ParamAction, env: &Env) {
         match action {
-            ParamAction::Read if self.read_refusal().is_none() => self.read_rows(env),
-            ParamAction::Apply if self.apply_refusal().is_none() => {
-                self.apply_rows(self.params.to_apply(), Vec::new(), env);
-            }
-            ParamAction::Undo if self.undo_refusal().is_none() => {
+            ParamAction::Read if self.read_refusal().is_some() => {}
+            ParamAction::Read => self.read_rows(env),
+            ParamAction::Apply if self.apply_refusal().is_some() => {}
+            ParamAction::Apply => self.apply_rows(self.params.to_apply(), Vec::new(), env),
+            ParamAction::Undo if self.undo_refusal().is_some() => {}
+            ParamAction::Undo => {
                 let undo = self.params.undo.clone();
                 self.stage_all(&undo);
                 self.apply_rows(undo, Vec::new(), env);
             }
-            ParamAction::Save if self.save_refusal().is_none() => self.ask_save(env),
-            ParamAction::Agree if self.write_refusal().is_none() => {
+            ParamAction::Save if self.save_refusal().is_some() => {}
+            ParamAction::Save => self.ask_save(env),
+            ParamAction::Agree if self.write_refusal().is_some() => {}
+            ParamAction::Agree => {
                 let Some(WriteQuestion { what, dangers }) = self.params.question.take() else {
                     return;
                 };
@@ -73,7 +76,8 @@ impl HandState {
                 }
             }
             ParamAction::CloseFile => self.params.compared = None,
-            _ => {}
+            // Carried out by the program, which has the files.
+            ParamAction::Dump => {}
         }
     }
 

@@ -104,11 +104,13 @@ impl HandState {
             (ProcedureAction::Close, own) if own.may_close() => self.close_procedure(),
             (ProcedureAction::Close, _) => {}
             (action, Procedure::Place(card)) => {
-                let answer = match action {
-                    ProcedureAction::Keep | ProcedureAction::GoBack => card.keeps.take(),
-                    _ => card.saves.take(),
+                let (answer, agrees) = match action {
+                    ProcedureAction::Begin | ProcedureAction::Close => return,
+                    ProcedureAction::Keep => (card.keeps.take(), true),
+                    ProcedureAction::GoBack => (card.keeps.take(), false),
+                    ProcedureAction::Save => (card.saves.take(), true),
+                    ProcedureAction::LeaveUnsaved => (card.saves.take(), false),
                 };
-                let agrees = matches!(action, ProcedureAction::Keep | ProcedureAction::Save);
                 // A task that is over has no ears.
                 let _heard = answer.map(|answer| answer.send(agrees));
             }

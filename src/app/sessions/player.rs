@@ -403,7 +403,24 @@ impl SessionPlayer {
                     (beside.own, beside.other) = (*own, *other);
                 }
             }
-            _ => {}
+            // They are about the list, about files, or about what is recorded now.
+            SessionAction::Record(_)
+            | SessionAction::RecordSimulated(_)
+            | SessionAction::ChooseFolder(_)
+            | SessionAction::DefaultFolder
+            | SessionAction::Look
+            | SessionAction::Open(_)
+            | SessionAction::OpenAt(..)
+            | SessionAction::Close
+            | SessionAction::Reveal(_)
+            | SessionAction::Name(..)
+            | SessionAction::Star(..)
+            | SessionAction::AskDelete(_)
+            | SessionAction::Delete
+            | SessionAction::KeepIt
+            | SessionAction::MakeRoom
+            | SessionAction::KeepPlanned
+            | SessionAction::EditNote(..) => {}
         }
     }
 

@@ -226,8 +226,9 @@ impl SessionWork {
                 state.settings.sessions.record_simulated = on;
                 state.settings.sessions.record |= on;
             }
-            SessionAction::ChooseFolder(typed) if self.choosing_folder.is_none() => {
-                self.choosing_folder = Some(folder::choose(typed, env));
+            SessionAction::ChooseFolder(typed) => {
+                self.choosing_folder
+                    .get_or_insert_with(|| folder::choose(typed, env));
             }
             SessionAction::DefaultFolder => self.record_into(None, state),
             SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
@@ -265,7 +266,13 @@ impl SessionWork {
                     self.say(state, &path, |about| about.notes = Some(notes));
                 }
             }
-            action => {
+            action @ (SessionAction::Seek(_)
+            | SessionAction::Run(_)
+            | SessionAction::Pace(_)
+            | SessionAction::Step(_)
+            | SessionAction::Loop(_)
+            | SessionAction::Beside(_)
+            | SessionAction::Align(..)) => {
                 if let (SessionAction::Beside(Some(path)), [_, beside]) =
                     (&action, &mut self.opened)
                 {

@@ -21,8 +21,8 @@ const RATE_OVER: Duration = Duration::from_secs(1);
 /// Changes of who may move the hand that are kept for whoever tells them: clients come and go between two looks.
 const EVENTS_MAX: usize = 256;
 
-/// One connection to a gateway. None is ever given twice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// One connection to a gateway. None is ever given twice, and the first one is not the default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ClientId(u64);
 
 /// One client as a person sees it.

@@ -74,9 +74,14 @@ pub(crate) fn notice_of(look: Look, notice: &Notice) -> String {
 }
 
 /// A message as one or two sentences.
+#[expect(clippy::too_many_lines, reason = "one arm for each message")]
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
     let told = |text: Text, more: &str| look.told(text, more);
+    let system = |text: Text, message: &str| told(text, &errors::system(look, message));
+    let of = |text: Text, path: &Path, why: &str| {
+        look.pair(&told(text, &path.display().to_string()), why)
+    };
     match what {
         NoticeKind::LinkLost(why) => told(panels::NOTICE_LOST, &errors::trouble(look, why)),
         NoticeKind::NoLink(why) => told(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
@@ -143,18 +148,6 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             last_seen,
         } => differing(look, differences, last_seen),
         NoticeKind::EndpointIgnored { text } => told(panels::NOTICE_ENDPOINT, text),
-        what => of_files(look, what),
-    }
-}
-
-/// What became of files; empty for everything else.
-fn of_files(look: Look, what: &NoticeKind) -> String {
-    let told = |text: Text, more: &str| look.told(text, more);
-    let system = |text: Text, message: &str| told(text, &errors::system(look, message));
-    let of = |text: Text, path: &Path, why: &str| {
-        look.pair(&told(text, &path.display().to_string()), why)
-    };
-    match what {
         NoticeKind::PosesImported {
             poses: count,
             sequences,
@@ -212,7 +205,6 @@ fn of_files(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
         NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
-        _ => String::new(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The whole program without its window, in virtual time, in front of a simulated hand on a wire: what a person asks, what
 //! reaches the hand, and what is told.
 
+mod actions;
 mod exhibit_report;
 mod keeping;
 mod lost_replies;

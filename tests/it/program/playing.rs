@@ -14,7 +14,7 @@ use handscope::poses::starter::starter;
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
-fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
+pub(super) fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
     let mut ids = Vec::new();
     for (name, angle) in [("A", 700), ("B", 300)] {
         bench.act(Action::Capture(name.into()));

@@ -287,7 +287,7 @@ fn another_controller_is_a_banner_disarms_and_goes_away_again() {
     bench.hand(|hand, now| hand.write(SPEED_SET, &slow, now).map(drop).unwrap());
     bench.until(2000, |bench| bench.shows("ANOTHER CONTROLLER"));
     assert_eq!(bench.state().hand().link.armed, None);
-    let told = bench.texts_with("another controller wrote SPEED_SET: little 7");
+    let told = bench.texts_with("another controller wrote SPEED_SET Little: 7");
     assert_eq!(told.len(), 1, "{told:?}");
     bench.until(7000, |bench| !bench.shows("ANOTHER CONTROLLER"));
 }

@@ -6,7 +6,7 @@ use crate::setup::body::{Protocol, STAMPS_END, stamped};
 use crate::setup::client::{Client, LinkEvent, Outcome, Request, Ticket};
 use handscope::hand::register::{Access, Element, by_address};
 use handscope::hand::{
-    AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, Target, Timed,
+    AngleReading, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Target, Timed,
 };
 use handscope::link::{LinkStatus, RequestError};
 use handscope::record::{Disarmed, Hold, LinkState};
@@ -20,7 +20,7 @@ const HOLD_GAP_MAX: Duration = Duration::from_millis(40 + 350);
 /// … which over CAN is a read of eleven pieces through an adapter, and a hold of two.
 const HOLD_GAP_MAX_PIECES: Duration = Duration::from_millis(40 + 500 + 160);
 /// Without faults every group is newer than this, on the slowest wire: forty pieces of a fingertip sweep at 15 ms each.
-const FRESH_WITHIN: Duration = Duration::from_millis(2000);
+const FRESH_WITHIN: Duration = Duration::from_millis(2200);
 /// Without faults the pose is newer than this …
 const POSE_WITHIN: Duration = Duration::from_millis(300);
 /// … and in pieces, between which that sweep lies.
@@ -29,6 +29,8 @@ const POSE_WITHIN_PIECES: Duration = Duration::from_millis(1300);
 /// After a stop that is called confirmed no joint moves by more than this, counts of ANGLE_ACT: a joint whose feedback froze
 /// right before the stop is held where it was seen last.
 const RESTS_WITHIN: f64 = 60.0;
+/// A joint that another controller moves arrives within this.
+const UNSEEN_MOVE: Duration = Duration::from_secs(2);
 /// Writes through a wire that is gone may act so long afterwards.
 const LATE: Duration = Duration::from_millis(2500);
 
@@ -158,7 +160,7 @@ impl Witness {
     }
 
     /// What is called a confirmed stop is one: the joints stay, until somebody moves the hand again.
-    fn check_rests(&mut self) {
+    fn check_rests(&mut self, sent: &[Sent]) {
         let confirmed = self.states.windows(2).filter(|two| {
             two[0].1 == LinkState::Holding
                 && matches!(two[1].1, LinkState::Monitoring | LinkState::Fault)
@@ -168,6 +170,11 @@ impl Witness {
                 *state == LinkState::Offline && *since <= at && at.since(*since) < LATE
             };
             if self.states.iter().skip(1).any(lost) {
+                continue;
+            }
+            // Where another moves a hand whose feedback is frozen, nobody can know that it moves, nor from where.
+            let unseen = |told: &Moment| *told <= at && at.since(*told) < UNSEEN_MOVE;
+            if self.freezes && self.foreign_writes.iter().any(unseen) {
                 continue;
             }
             let moved = |(since, state): &&(Moment, LinkState)| {
@@ -184,15 +191,42 @@ impl Witness {
             };
             for (t, joints) in after {
                 for (dof, angle) in joints.iter() {
+                    let stays = (angle - rest[dof]).abs() <= RESTS_WITHIN;
+                    if !stays {
+                        self.tell_way(dof, *t, sent);
+                    }
                     assert!(
-                        (angle - rest[dof]).abs() <= RESTS_WITHIN,
+                        stays,
                         "seed {}: a stop was called confirmed at {at:?}, and {dof:?} moves from {} to {angle} at {t:?}",
-                        self.seed,
-                        rest[dof]
+                        self.seed, rest[dof]
                     );
                 }
             }
             self.seen.rests += 1;
+        }
+    }
+
+    /// Prints where a joint was in the last second before this moment, where it was seen, and what it was told.
+    fn tell_way(&self, dof: Dof, until: Moment, sent: &[Sent]) {
+        let is_near = |at: Moment| at <= until && until.since(at) < Duration::from_secs(1);
+        let mut lines = Vec::new();
+        for (at, joints) in self.reality.iter().filter(|(at, _)| is_near(*at)) {
+            lines.push((*at, format!("is at {:.0}", joints[dof])));
+        }
+        for (at, seen) in self.poses.iter().filter(|(at, _)| is_near(*at)) {
+            lines.push((*at, format!("seen at {}", seen[dof].raw())));
+        }
+        for (at, state) in self.states.iter().filter(|(at, _)| is_near(*at)) {
+            lines.push((*at, format!("{state:?}")));
+        }
+        for sent in sent.iter().filter(|sent| is_near(sent.at)) {
+            if let Some(bytes) = &sent.written {
+                lines.push((sent.at, format!("{} {bytes:?}", sent.address)));
+            }
+        }
+        lines.sort();
+        for (at, what) in lines {
+            println!("{at:?} {what}");
         }
     }
 
@@ -342,7 +376,7 @@ impl Witness {
         }
         self.check_stops(&sent);
         self.check_recovery(link, now);
-        self.check_rests();
+        self.check_rests(&sent);
         self.story(&sent, now).check();
         let stats = link.stats();
         self.seen.reconnects += stats.reconnects;
