@@ -25,9 +25,11 @@ const STARVED_AFTER: Duration = Duration::from_secs(1);
 const TEMPERATURE_HZ: f64 = 5.0;
 /// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
 /// three of them show another controller within a second.
-const WATCHED_HZ: f64 = 10.0;
+const WATCHED_HZ: f64 = 25.0;
 /// A write this long after the one before is none of a stream.
 const ALONE: Duration = Duration::from_millis(100);
+/// Once one of them is doubtful, they are read before each write for so long.
+const DOUBTFUL_FOR: Duration = Duration::from_secs(1);
 /// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
 const RECENT: usize = 3;
 /// Reckoned with before the first answer: that of a quick hand.
@@ -120,8 +122,10 @@ pub(crate) struct PollPlan {
     rates: PollRates,
     /// Whether setpoints are read often enough to see another controller's.
     watched: bool,
-    /// When a setpoint was written last.
-    wrote: Option<Moment>,
+    /// When a setpoint was written last, and whether it was one of a stream.
+    wrote: Option<(Moment, bool)>,
+    /// Setpoints are read before each write until then.
+    doubtful_until: Moment,
     parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
@@ -138,6 +142,7 @@ impl PollPlan {
             rates,
             watched: false,
             wrote: None,
+            doubtful_until: now,
             parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
@@ -256,7 +261,8 @@ impl PollPlan {
 
     /// What is to be read now, if anything is due.
     pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<NextRead> {
-        let due = || self.wanted(tempo).filter(|due| due.at() <= now);
+        let is_due = |due: &&Due| due.at() <= now && !self.waits_for_write(due.part, now);
+        let due = || self.wanted(tempo).filter(is_due);
         let motion = || {
             due()
                 .filter(|due| due.part.is_motion())
@@ -304,14 +310,16 @@ impl PollPlan {
     /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
     pub(crate) fn others(&self, now: Moment) -> Option<NextRead> {
         let due = self.parts.iter().filter(|due| due.at() <= now);
+        let due = due.filter(|due| !self.waits_for_write(due.part, now));
         due.filter(|due| !self.goes_with_motion(due.part, Tempo::Motion))
             .reduce(|a, b| a.later(b, now))
             .map(|first| self.question(first, now, Tempo::Motion))
     }
 
     /// When something is due next.
-    pub(crate) fn next_due(&self, tempo: Tempo) -> Moment {
-        let next = self.wanted(tempo).map(Due::at).min();
+    pub(crate) fn next_due(&self, now: Moment, tempo: Tempo) -> Moment {
+        let waits = |due: &&Due| !self.waits_for_write(due.part, now);
+        let next = self.wanted(tempo).filter(waits).map(Due::at).min();
         next.unwrap_or(Moment::ZERO)
     }
 
@@ -331,11 +339,39 @@ impl PollPlan {
 
     /// A setpoint was written: one that stands alone is read back at once, so that nobody else's comes between.
     pub(crate) fn wrote_setpoint(&mut self, now: Moment) {
-        let before = self.wrote.replace(now);
-        let stands_alone = before.is_none_or(|at| now.since(at) >= ALONE);
-        if self.watched && stands_alone {
+        let in_stream = self.wrote.is_some_and(|(at, _)| now.since(at) < ALONE);
+        self.wrote = Some((now, in_stream));
+        if self.watched && !in_stream {
             self.look_at_settings(now);
         }
+    }
+
+    /// The setpoints that the hand holds, if they are to be read before the next write of a stream: what another wrote since the
+    /// last one is there until then.
+    pub(crate) fn before_write(&self, now: Moment) -> Option<NextRead> {
+        let (wrote, _) = self.wrote.filter(|_| self.watched_in_stream(now))?;
+        let targets = self
+            .parts
+            .iter()
+            .find(|due| due.part == ReadPart::Targets)?;
+        let is_doubtful = now < self.doubtful_until && targets.held_until <= now;
+        let is_due = targets.at() <= now || is_doubtful && targets.asked <= wrote;
+        is_due.then(|| self.question(targets, now, Tempo::Motion))
+    }
+
+    fn waits_for_write(&self, part: ReadPart, now: Moment) -> bool {
+        matches!(part, ReadPart::Targets | ReadPart::Speeds) && self.watched_in_stream(now)
+    }
+
+    /// True while setpoints are read before writes, and only there.
+    fn watched_in_stream(&self, now: Moment) -> bool {
+        let streams = |(at, in_stream): (Moment, bool)| in_stream && now.since(at) < ALONE;
+        self.watched && self.wrote.is_some_and(streams)
+    }
+
+    /// A setpoint that the hand holds may be another controller's.
+    pub(crate) fn doubt_setpoints(&mut self, now: Moment) {
+        self.doubtful_until = now.plus(DOUBTFUL_FOR);
     }
 
     /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.

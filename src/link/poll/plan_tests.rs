@@ -43,7 +43,7 @@ fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: T
     let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; ReadPart::ALL.len()]);
     while now < end {
         let Some(question) = plan.next(now, tempo) else {
-            now = plan.next_due(tempo);
+            now = plan.next_due(now, tempo);
             continue;
         };
         let window = *question

@@ -88,6 +88,13 @@ impl Motion {
         }))
     }
 
+    /// True if a round of setpoints begins with the next write, which is due.
+    pub(crate) fn begins_round(&self, now: Moment) -> bool {
+        let is_due = self.next_send(now).is_some_and(|at| at <= now);
+        let may_begin = self.round.is_empty() && !self.pose_due && self.rounds < ROUNDS_MAX;
+        is_due && may_begin && self.hold.is_none() && self.setpoints.is_some()
+    }
+
     /// The next setpoint write, if one is due: speed before force before angle, so that no motion
     /// starts with older limits.
     pub(crate) fn next_write(&mut self, now: Moment) -> Option<RegisterWrite> {

@@ -43,7 +43,8 @@ impl Session {
 
     /// When the next read is due.
     pub(crate) fn next_read(&self) -> Moment {
-        self.plan.next_due(self.tempo(self.now()))
+        let now = self.now();
+        self.plan.next_due(now, self.tempo(now))
     }
 
     fn tempo(&self, now: Moment) -> Tempo {
@@ -109,6 +110,7 @@ impl Session {
         let fresh = self.sample.take(reply);
         if self.others.read(&self.sample, fresh) {
             self.plan.look_at_settings(now.plus(LOOK_AGAIN));
+            self.plan.doubt_setpoints(now);
         }
         self.moving.take(&self.sample, fresh, now);
         self.feedback.take(&self.sample, fresh);

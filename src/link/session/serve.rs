@@ -86,6 +86,10 @@ impl Session {
         let hold = self.motion.hold;
         if hold.is_some_and(|hold| hold.next_frame(now) <= now) {
             self.send_hold(bus).await?;
+        } else if self.motion.begins_round(now)
+            && let Some(question) = self.plan.before_write(now)
+        {
+            self.poll(bus, &question).await?;
         } else if let Some(write) = self.motion.next_write(now) {
             self.send_setpoint(bus, write).await?;
             self.motion.took(self.now().since(now));

@@ -132,7 +132,7 @@ async fn three_programs_and_two_viewers_at_one_hand_do_not_notice_each_other() {
     ] {
         assert!(before > 190, "{who}: {before}");
         assert!(
-            before.saturating_sub(now) <= before / 50,
+            before.saturating_sub(now) <= before / 15,
             "{who}: {before}, then {now}"
         );
     }
