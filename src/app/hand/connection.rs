@@ -7,7 +7,7 @@ use crate::app::notices::{NoticeKind, Notices};
 use crate::hand::Moment;
 use crate::history::History;
 use crate::link::{self, LinkConfig, LinkStatus, PollPriority, PollRates, Traffic};
-use crate::record::{Hold, LinkState};
+use crate::record::{Hold, LinkState, Rest};
 use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
@@ -114,14 +114,12 @@ impl HandState {
         }
     }
 
-    /// True if closing or leaving now could leave a hand in motion that this program set in motion.
+    /// True if closing or leaving now could leave a hand in motion that this program set in motion: also where feedback is too old
+    /// to tell.
     pub(crate) fn may_move(&self) -> bool {
-        let moves = self
-            .sample
-            .status
-            .is_some_and(|all| all.value.iter().any(|(_, status)| status.is_moving()));
+        let may_still_move = self.commanded && self.link.rest != Rest::Resting;
         let holding = self.link.state == LinkState::Holding;
-        self.link.state.is_live() && (self.is_armed() || holding || self.commanded && moves)
+        self.link.state.is_live() && (self.is_armed() || holding || may_still_move)
     }
 
     /// True once nothing more can be done for a hand that was told to hold at this moment: it rests, or is gone.

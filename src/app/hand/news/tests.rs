@@ -3,7 +3,7 @@
 use super::*;
 use crate::app::notices::Level;
 use crate::hand::{Angle, AngleReading, ArmEpoch, Faults, Timed};
-use crate::record::ArmRefusal;
+use crate::record::{ArmRefusal, Rest};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -283,6 +283,23 @@ fn stop_without_a_live_link_says_that_nothing_was_sent() {
         bench.hand.now = bench.now();
         bench.hand.stop(&mut bench.notices);
         assert_eq!(bench.told(), [NoticeKind::StopNotSent], "{state:?}");
+    }
+}
+
+#[test]
+fn a_hand_that_was_moved_and_is_not_known_to_rest_is_stopped_before_it_is_left() {
+    let mut bench = Bench::monitoring(400);
+    for (rest, may_move) in [
+        (Rest::Moving, true),
+        (Rest::Unknown, true),
+        (Rest::Resting, false),
+    ] {
+        bench.hand.commanded = true;
+        bench.status(LinkStatus {
+            rest,
+            ..bench.in_state(LinkState::Monitoring)
+        });
+        assert_eq!(bench.hand.may_move(), may_move, "{rest:?}");
     }
 }
 
