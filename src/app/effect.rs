@@ -93,6 +93,7 @@ impl Effect {
 impl Action {
     /// What this does.
     #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one list of all actions")]
     pub const fn effect(&self) -> Effect {
         match self {
             Self::Stop => Effect::StopsAll,

@@ -184,7 +184,6 @@ impl App {
         self.carry_out(action);
     }
 
-    #[expect(clippy::too_many_lines, reason = "one arm for each action")]
     fn carry_out(&mut self, action: Action) {
         let (state, env) = (&mut self.state, &self.env);
         match action {
