@@ -13,7 +13,6 @@ mod cli;
 mod fuzz;
 mod inputs;
 #[cfg(unix)]
-mod journal;
 mod layers;
 mod licences;
 mod link;

@@ -20,6 +20,8 @@ const BRAKES_WITHIN: Duration = Duration::from_millis(400);
 const GOES_ON: i16 = 150;
 /// Closer is the fist.
 const FIST: i16 = 40;
+/// Who insists says it so often.
+const INSISTS: usize = 4;
 /// The index finger: it moves in every row that moves joints.
 pub(super) const INDEX: usize = 3;
 
@@ -235,7 +237,16 @@ impl Seen {
                 self.held(ms)?;
                 self.has_ended()?;
             }
-            Verdict::Insists => self.is_not_led_on_after(500)?,
+            Verdict::Insists => {
+                let told = self
+                    .writes
+                    .iter()
+                    .filter(|write| !targets(write).is_empty());
+                if told.count() < INSISTS {
+                    return Err(format!("it was hardly told to stay: {:?}", self.writes));
+                }
+                self.is_not_led_on_after(500)?;
+            }
             Verdict::Ends => {
                 self.has_ended()?;
                 let rested = Duration::from_millis(800).as_micros() as u64;
@@ -260,6 +271,101 @@ impl Seen {
         match words.split('|').all(|word| self.said.contains(word)) {
             true => Ok(()),
             false => Err(format!("'{words}' was not said: {}", self.said)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What was seen of a hand whose joints went so, each 20 ms from 1 s on, where the event was; it was told these targets then.
+    fn seen(angle: impl Fn(u64) -> i16, told: &[(u64, i16)]) -> Seen {
+        let at = |ms: u64| Moment::from_micros((1000 + ms) * 1000);
+        let points = (0..200).map(|nth| (at(nth * 20), [angle(nth * 20); 6]));
+        let write = |(ms, target): &(u64, i16)| JournalEntry {
+            at: at(*ms),
+            address: ANGLE_SET,
+            bytes: target.to_le_bytes().repeat(6),
+        };
+        Seen {
+            event: at(0),
+            points: points.collect(),
+            writes: told.iter().map(write).collect(),
+            said: "ended: held".into(),
+            has_ended: true,
+            defaults: 500_i16.to_le_bytes().repeat(6),
+        }
+    }
+
+    /// Closes at 100 counts in 100 ms.
+    fn closes(ms: u64) -> i16 {
+        (900 - i16::try_from(ms).unwrap()).max(0)
+    }
+
+    fn stays_at(angle: i16) -> impl Fn(u64) -> i16 {
+        move |ms| closes(ms).max(angle)
+    }
+
+    #[test]
+    fn what_goes_well_is_called_so() {
+        let holds = [(20, 880), (60, 840), (100, 800), (140, 800)];
+        let held = seen(stays_at(800), &holds);
+        for verdict in [
+            Verdict::Held(100),
+            Verdict::HeldAtTheEnd(100),
+            Verdict::NothingMore(0),
+            Verdict::NothingWrong,
+            Verdict::Insists,
+            Verdict::Ends,
+            Verdict::Settled,
+        ] {
+            assert_eq!(held.judge(verdict, "ended|held"), Ok(()), "{verdict:?}");
+        }
+        let rests = seen(|_| 900, &[]);
+        for verdict in [Verdict::Rests, Verdict::Still] {
+            assert_eq!(rests.judge(verdict, ""), Ok(()), "{verdict:?}");
+        }
+        assert_eq!(seen(closes, &[]).judge(Verdict::GoesOn, ""), Ok(()));
+    }
+
+    #[test]
+    fn what_goes_wrong_is_noticed() {
+        let runs = || seen(closes, &[]);
+        let late = || seen(stays_at(800), &[(20, 880), (2000, 300)]);
+        let led_on = || {
+            let steps: Vec<(u64, i16)> = (0..20).map(|nth| (nth * 100, closes(nth * 50))).collect();
+            seen(|ms| closes(ms / 2), &steps)
+        };
+        let goes_on = Seen {
+            has_ended: false,
+            ..seen(stays_at(800), &[(20, 880)])
+        };
+        let odd = Seen {
+            defaults: 7_i16.to_le_bytes().repeat(6),
+            ..runs()
+        };
+        for (what, seen, verdict, words) in [
+            ("runs to the fist", runs(), Verdict::Held(1000), ""),
+            ("runs to the fist", runs(), Verdict::Rests, ""),
+            ("runs to the fist", runs(), Verdict::Still, ""),
+            ("is told nothing", runs(), Verdict::Insists, ""),
+            ("is told late", late(), Verdict::Held(1000), ""),
+            ("is told late", late(), Verdict::NothingMore(1000), ""),
+            (
+                "is told what nobody asked for",
+                late(),
+                Verdict::NothingWrong,
+                "",
+            ),
+            ("is led on", led_on(), Verdict::NothingMore(500), ""),
+            ("is led on", led_on(), Verdict::Insists, ""),
+            ("does not end", goes_on, Verdict::HeldAtTheEnd(100), ""),
+            ("stays", seen(|_| 900, &[]), Verdict::GoesOn, ""),
+            ("keeps an odd default", odd, Verdict::Settled, ""),
+            ("says nothing of it", runs(), Verdict::GoesOn, "held|lost"),
+        ] {
+            assert!(seen.judge(verdict, words).is_err(), "{what}: {verdict:?}");
         }
     }
 }
