@@ -15,7 +15,7 @@ use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 /// Share of pixels that may differ: lines in plots run on, live numbers flicker, a list of frames scrolls. Which
-/// view it is, the nearest of all pictures tells.
+/// view it is, the nearest picture tells.
 const TOLERANCE: f64 = 0.03;
 /// A picture that is not there by then does not come, on a machine with other work.
 const WITHIN: Duration = Duration::from_secs(30);
@@ -49,12 +49,18 @@ impl Session {
         }
     }
 
-    /// Waits until the display shows this view and language more than any other, and nothing else than it should.
+    /// Waits until the display shows this view and language more than what was shown before or the other language, and nothing else
+    /// than it should.
     fn looks(&mut self, step: &str, view: View, language: Language) {
+        let mut among = vec![(view, language), (view, language.other())];
+        if self.twin.view != view {
+            among.push((self.twin.view, language));
+        }
         let begun = Instant::now();
         loop {
             self.twin.pass(Duration::from_millis(200));
-            let (nearest, words, differs) = self.twin.nearest(&self.display.pixels());
+            let pixels = self.display.pixels();
+            let (nearest, words, differs) = self.twin.nearest(&pixels, &among);
             if (nearest, words) == (view, language) && differs <= TOLERANCE {
                 println!("{step}: {:.2} % of the pixels differ", differs * 100.0);
                 return;

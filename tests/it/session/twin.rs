@@ -101,16 +101,20 @@ impl Twin {
         [left + width / 2.0, top + height / 2.0]
     }
 
-    /// The view and language whose picture is nearest to these pixels, and the share of pixels that differ from it.
-    pub(crate) fn nearest(&mut self, pixels: &[[u8; 3]]) -> (View, Language, f64) {
+    /// Of these views and languages the one whose picture is nearest to these pixels, and the share of pixels that differ from it.
+    pub(crate) fn nearest(
+        &mut self,
+        pixels: &[[u8; 3]],
+        among: &[(View, Language)],
+    ) -> (View, Language, f64) {
         let before = self.driver.cockpit().state().settings.language;
         let mut all = Vec::new();
-        for language in [Language::En, Language::Zh] {
-            self.act(Action::Language(language));
-            for view in View::ALL {
-                let differs = difference(&self.picture(view), pixels);
-                all.push((view, language, differs));
+        for (view, language) in among.iter().copied() {
+            if self.driver.cockpit().state().settings.language != language {
+                self.act(Action::Language(language));
             }
+            let differs = difference(&self.picture(view), pixels);
+            all.push((view, language, differs));
         }
         self.act(Action::Language(before));
         all.sort_by(|one, other| one.2.total_cmp(&other.2));
