@@ -75,7 +75,7 @@ fn params() -> Vec<ParamAction> {
         ParamAction::CopyLive,
         ParamAction::UnstageAll,
         ParamAction::Dump,
-        ParamAction::Open(Some("/nonexistent".into())),
+        ParamAction::Open(Some("/dev/null/none".into())),
         ParamAction::Tick(INDEX),
         ParamAction::StageTicked,
         ParamAction::CloseFile,
@@ -103,17 +103,18 @@ fn trials() -> Vec<TrialAction> {
         TrialAction::Forget(id),
         TrialAction::ConfirmForget,
         TrialAction::CancelForget,
-        TrialAction::Open(Some("/nonexistent".into())),
+        TrialAction::Open(Some("/dev/null/none".into())),
         TrialAction::Save(id, None),
     ]
 }
 
 fn sessions() -> Vec<SessionAction> {
-    let (path, at) = (|| "/nonexistent.mcap".into(), Moment::ZERO);
+    let (path, at) = (|| "/dev/null/none.mcap".into(), Moment::ZERO);
     vec![
         SessionAction::Record(true),
         SessionAction::RecordSimulated(false),
-        SessionAction::ChooseFolder(Some("/nonexistent".into())),
+        // Below a file no folder can be.
+        SessionAction::ChooseFolder(Some("/dev/null/none".into())),
         SessionAction::DefaultFolder,
         SessionAction::Look,
         SessionAction::Open(path()),
@@ -200,7 +201,7 @@ fn all(things: Things) -> Vec<Action> {
         Action::Recall(things.pose),
         Action::HideShipped("Fist".into(), true),
         Action::DryRun(Some(things.sequence)),
-        Action::ImportPoses(Some("/nonexistent".into())),
+        Action::ImportPoses(Some("/dev/null/none".into())),
         Action::ExportPoses,
         Action::NameGesture(Gesture::MIN, "name".into()),
         Action::GestureRoute(GestureRoute::ActionLibrary),

@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn what_goes_well_is_called_so() {
-        let holds = [(20, 880), (60, 840), (100, 800), (140, 800)];
+        let holds = [(20, 850), (60, 820), (100, 800), (140, 800)];
         let held = seen(stays_at(800), &holds);
         for verdict in [
             Verdict::Held(100),
