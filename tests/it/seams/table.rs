@@ -144,7 +144,7 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
     match (column, row) {
         // The second master of this table writes without a wire, as one on another connection does. On a bus its frames are heard.
         (Column::SecondMaster, Row::Trial | Row::Follow | Row::FollowDds | Row::Share)
-            if is_port =>
+            if !matches!(protocol, Protocol::Tcp) =>
         {
             CannotBe("the frames of a second master are heard on a bus: tried with the link")
         }
