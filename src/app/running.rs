@@ -4,7 +4,7 @@ use crate::app::env::Env;
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
 use tokio::sync::mpsc;
-use tokio::task::AbortHandle;
+use tokio_util::task::AbortOnDrop;
 
 /// A task under way. Dropping it breaks it off.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Running<S, E> {
     // As many as a task tells: some ten for each thing it does.
     steps: mpsc::UnboundedReceiver<(Moment, S)>,
     end: Option<BackgroundJob<E>>,
-    abort: AbortHandle,
+    _task: AbortOnDrop,
 }
 
 /// Where a task tells its steps.
@@ -42,13 +42,13 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
             env: env.clone(),
         });
         let task = env.runtime.spawn(work);
-        let abort = task.abort_handle();
+        let abort = AbortOnDrop::new(task.abort_handle());
         let end =
             BackgroundJob::start_fallible(&env.runtime, &env.wake, async move { task.await.ok() });
         Self {
             steps,
             end: Some(end),
-            abort,
+            _task: abort,
         }
     }
 
@@ -57,11 +57,5 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
         let end = BackgroundJob::take_from(&mut self.end);
         let steps = std::iter::from_fn(|| self.steps.try_recv().ok()).collect();
         (steps, end)
-    }
-}
-
-impl<S, E> Drop for Running<S, E> {
-    fn drop(&mut self) {
-        self.abort.abort();
     }
 }

@@ -8,7 +8,7 @@ use crate::link::Records;
 use crate::link::rate::EventRate;
 use crate::record::Record;
 use tokio::sync::{mpsc, watch};
-use tokio::task::AbortHandle;
+use tokio_util::task::AbortOnDropHandle;
 
 /// Which share of each bend of the other hand is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,13 +73,7 @@ impl MirrorView {
 pub struct MirrorSource {
     view: watch::Receiver<MirrorView>,
     outlet: OfferOutlet,
-    abort: AbortHandle,
-}
-
-impl Drop for MirrorSource {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    task: AbortOnDropHandle<()>,
 }
 
 impl MirrorSource {
@@ -92,7 +86,7 @@ impl MirrorSource {
         Self {
             view,
             outlet,
-            abort: tokio::spawn(watching).abort_handle(),
+            task: AbortOnDropHandle::new(tokio::spawn(watching)),
         }
     }
 
@@ -105,7 +99,7 @@ impl MirrorSource {
     /// True once its link was closed: nothing is heard of it any more.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.abort.is_finished()
+        self.task.is_finished()
     }
 
     /// Its angles as targets from now on, for whoever follows; whoever did before does no more.

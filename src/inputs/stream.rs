@@ -12,8 +12,9 @@ use std::time::Duration;
 use tokio::io::AsyncReadExt as _;
 use tokio::net::{TcpListener, TcpStream, UdpSocket};
 use tokio::sync::{mpsc, watch};
-use tokio::task::{AbortHandle, JoinSet};
+use tokio::task::JoinSet;
 use tokio::time::{interval, timeout};
+use tokio_util::task::AbortOnDropHandle;
 
 /// Connections at once; more are closed at once.
 const CONNECTIONS_MAX: usize = 8;
@@ -68,13 +69,7 @@ pub struct StreamSource {
     local: SocketAddr,
     view: watch::Receiver<StreamView>,
     outlet: OfferOutlet,
-    abort: AbortHandle,
-}
-
-impl Drop for StreamSource {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl StreamSource {
@@ -114,7 +109,7 @@ impl StreamSource {
             local,
             view,
             outlet,
-            abort: task.abort_handle(),
+            _task: AbortOnDropHandle::new(task),
         })
     }
 

@@ -114,6 +114,25 @@ impl Disarmed {
     }
 }
 
+/// In words, to be followed by what that did to the hand.
+impl fmt::Display for Disarmed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stop => "it was told to stop",
+            Self::Person => "it was disarmed",
+            Self::Fault => "a drive reports a fault",
+            Self::LinkLost => "the link was lost",
+            Self::Stale => "feedback grew old",
+            Self::FrozenFeedback => "feedback stands still though motion was asked for",
+            Self::Resume => "this computer slept",
+            Self::OtherController => "another controller talks to the hand",
+            Self::Released => "it was let go",
+            Self::Silent => "it asked nothing for too long",
+            Self::Hot => "a drive is too hot",
+        })
+    }
+}
+
 /// Why the hand cannot be armed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

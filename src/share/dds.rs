@@ -13,7 +13,7 @@ use crate::transport::dds::{DdsError, DdsNode, DdsPlace, DdsTopic, DdsWriter};
 use serde::Serialize;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::watch;
-use tokio::task::AbortHandle;
+use tokio_util::task::AbortOnDropHandle;
 
 /// No part of a state is older: the slowest part is read twice a second.
 pub const OLDEST: Duration = Duration::from_secs(1);
@@ -98,13 +98,7 @@ pub struct DdsTold {
 #[derive(Debug)]
 pub struct DdsPublisher {
     told: watch::Receiver<DdsTold>,
-    abort: AbortHandle,
-}
-
-impl Drop for DdsPublisher {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl DdsPublisher {
@@ -125,7 +119,7 @@ impl DdsPublisher {
         };
         Ok(Self {
             told: view,
-            abort: tokio::spawn(telling.run(link.records())).abort_handle(),
+            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(link.records()))),
         })
     }
 

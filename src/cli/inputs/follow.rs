@@ -305,24 +305,24 @@ fn ended(end: FollowEnd, sender: &str) -> String {
         }
         FollowEnd::Lease(LeaseRefusal::Ended(why)) => match why {
             Disarmed::LinkLost => {
-                return "the link was lost: nothing reached the hand, which may still finish its move"
-                    .into();
+                return format!("{why}: nothing reached the hand, which may still finish its move");
             }
             Disarmed::Resume => {
-                return "this computer slept: nothing reached the hand, which may have finished its move"
-                    .into();
+                return format!(
+                    "{why}: nothing reached the hand, which may have finished its move"
+                );
             }
-            Disarmed::OtherController => {
-                return "another controller talks to the hand, and may move it".into();
-            }
-            Disarmed::Stop => "it was told to stop".into(),
-            Disarmed::Fault => "a drive reports a fault".into(),
-            Disarmed::Stale => "feedback grew old".into(),
+            Disarmed::OtherController => return format!("{why}, and may move it"),
             Disarmed::FrozenFeedback => {
-                return "its feedback stands still though motion was asked for: the hand is held where it must be, look at it"
-                    .into();
+                return format!("{why}: the hand is held where it must be, look at it");
             }
-            _ => "it may not be moved any more".into(),
+            Disarmed::Stop
+            | Disarmed::Person
+            | Disarmed::Fault
+            | Disarmed::Stale
+            | Disarmed::Released
+            | Disarmed::Silent
+            | Disarmed::Hot => why.to_string(),
         },
     };
     format!("{why}: the hand was stopped")

@@ -2,7 +2,7 @@
 //! up.
 
 use crate::cli::out::say;
-use crate::cli::recordings::record::tell_parameters;
+use crate::cli::recordings::record::{FileTold, tell_parameters};
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LinkHandle};
 use crate::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
@@ -89,23 +89,14 @@ impl SideRecording {
     }
 }
 
-/// Asks once what the hand keeps, and then says when the disk fails and when it is well again.
+/// Asks once what the hand keeps, and then says what becomes of the file.
 async fn watch(recorder: Arc<Recorder>, link: LinkHandle, hand: Endpoint, clock: Clock) {
     tell_parameters(&link, &hand, &recorder.input(), clock).await;
     drop(link);
-    let mut told = None;
+    let mut told = FileTold::default();
     let mut tick = interval(LOOK_EACH);
     loop {
         tick.tick().await;
-        let trouble = recorder.status().trouble;
-        if told != trouble {
-            say(&match &trouble {
-                Some(trouble) => {
-                    format!("the recording cannot be written: {trouble}; trying again")
-                }
-                None => "the recording is written again".to_owned(),
-            });
-            told = trouble;
-        }
+        told.tell(&recorder);
     }
 }

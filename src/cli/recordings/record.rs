@@ -173,23 +173,10 @@ pub(crate) async fn tell_parameters(
 
 /// Says once each when the disk or the hand fails, and when they are well again. Never ends by itself.
 async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
-    let (mut disk, mut lost, mut told) = (None, None, 0);
+    let (mut told, mut lost) = (FileTold::default(), None);
     loop {
         sleep(LOOK_EACH).await;
-        let RecorderStatus {
-            trouble, notices, ..
-        } = recorder.status();
-        for notice in notices.iter().skip(told) {
-            say(&notice.to_string());
-        }
-        told = notices.len();
-        if disk != trouble {
-            say(&match &trouble {
-                Some(trouble) => format!("the file cannot be written: {trouble}; trying again"),
-                None => "the file is written again".to_owned(),
-            });
-            disk = trouble;
-        }
+        told.tell(recorder);
         let status = link.status();
         let trouble = session::trouble(&status).map(ToString::to_string);
         if lost != trouble && (trouble.is_some() || status.state.is_live()) {
@@ -198,6 +185,36 @@ async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyho
                 None => "the hand answers again".to_owned(),
             });
             lost = trouble;
+        }
+    }
+}
+
+/// What was said of the file that is being written.
+#[derive(Default)]
+pub(crate) struct FileTold {
+    trouble: Option<String>,
+    notices: usize,
+}
+
+impl FileTold {
+    /// Says what is new: that it was moved or removed, that the disk fails, and that it is well again.
+    pub(crate) fn tell(&mut self, recorder: &Recorder) {
+        let RecorderStatus {
+            trouble, notices, ..
+        } = recorder.status();
+        for notice in notices.iter().skip(self.notices) {
+            say(&notice.to_string());
+        }
+        self.notices = notices.len();
+        let trouble = trouble.map(|trouble| trouble.to_string());
+        if self.trouble != trouble {
+            say(&match &trouble {
+                Some(trouble) => {
+                    format!("the recording cannot be written: {trouble}; trying again")
+                }
+                None => "the recording is written again".to_owned(),
+            });
+            self.trouble = trouble;
         }
     }
 }

@@ -220,7 +220,7 @@ fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
                 let by_other = end == LeaseRefusal::Ended(Disarmed::OtherController);
                 let foreign = link.status().foreign_setpoint.filter(|_| by_other);
                 let why = foreign.map_or_else(
-                    || ended(end).to_owned(),
+                    || ended(end),
                     |foreign| {
                         format!("another controller wrote {foreign}, and the hand is stopped")
                     },
@@ -231,25 +231,13 @@ fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
     }
 }
 
-fn ended(end: LeaseRefusal) -> &'static str {
+fn ended(end: LeaseRefusal) -> String {
     match end {
-        LeaseRefusal::Ended(why) => match why {
-            Disarmed::Silent => "it asked nothing for too long, and the hand is stopped",
-            Disarmed::Fault => "a drive reports a fault, and the hand is stopped",
-            Disarmed::LinkLost | Disarmed::Resume => {
-                "the link was lost, and the hand may still finish its move"
-            }
-            Disarmed::Hot => "a drive is too hot, and the hand is stopped",
-            Disarmed::Stale => "feedback grew old, and the hand is stopped",
-            Disarmed::FrozenFeedback => {
-                "its feedback stands still though motion was asked for, and the hand is stopped"
-            }
-            Disarmed::OtherController => {
-                "another controller talks to the hand, and the hand is stopped"
-            }
-            _ => "the hand was stopped",
-        },
-        LeaseRefusal::Taken(_) => "another may now",
+        LeaseRefusal::Taken(_) => "another may now".into(),
+        LeaseRefusal::Ended(why @ (Disarmed::LinkLost | Disarmed::Resume)) => {
+            format!("{why}, and the hand may still finish its move")
+        }
+        LeaseRefusal::Ended(why) => format!("{why}, and the hand is stopped"),
     }
 }
 

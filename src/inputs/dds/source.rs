@@ -10,8 +10,8 @@ use crate::transport::dds::{DdsMessage, DdsWriterId};
 use std::collections::BTreeMap;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::task::AbortHandle;
 use tokio::time::interval;
+use tokio_util::task::AbortOnDropHandle;
 
 /// How often it is told what came in.
 const TELL_EACH: Duration = Duration::from_millis(50);
@@ -47,13 +47,7 @@ pub struct DdsView {
 pub struct DdsSource {
     view: watch::Receiver<DdsView>,
     outlet: OfferOutlet,
-    abort: AbortHandle,
-}
-
-impl Drop for DdsSource {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl DdsSource {
@@ -72,7 +66,7 @@ impl DdsSource {
         Self {
             view,
             outlet,
-            abort: tokio::spawn(taking.run(messages)).abort_handle(),
+            _task: AbortOnDropHandle::new(tokio::spawn(taking.run(messages))),
         }
     }
 

@@ -11,8 +11,8 @@ use crate::record::Record;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::task::AbortHandle;
 use tokio::time::{MissedTickBehavior, interval};
+use tokio_util::task::AbortOnDropHandle;
 
 /// How often a gamepad says where it wants the hand, whether it was moved or not.
 const OFFER_EACH: Duration = Duration::from_millis(10);
@@ -57,13 +57,7 @@ pub struct PadSource {
     /// The poses of its buttons from now on, once they are others than it was opened with.
     poses: watch::Sender<PadPoses>,
     outlet: OfferOutlet,
-    abort: AbortHandle,
-}
-
-impl Drop for PadSource {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl PadSource {
@@ -78,7 +72,7 @@ impl PadSource {
             view,
             poses,
             outlet,
-            abort: task.abort_handle(),
+            _task: AbortOnDropHandle::new(task),
         }
     }
 

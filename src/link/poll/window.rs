@@ -2,7 +2,10 @@
 //! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
 
 use crate::hand::Span;
-use crate::hand::register::{ANGLE_SET, POS_SET, STATE, TOUCH, by_address};
+use crate::hand::register::{
+    ANGLE_ACT, ANGLE_SET, CURRENT, FORCE_ACT, FORCE_SET, POS_ACT, POS_SET, Register, SPEED_SET,
+    STATUS, TEMP, TOUCH, by_address,
+};
 use crate::link::poll::cost::WireCost;
 use crate::link::quirks::GapRead;
 use crate::link::stats::PollGroup;
@@ -65,13 +68,13 @@ impl ReadPart {
     /// Where it lies.
     pub(crate) fn span(self) -> Span {
         match self {
-            Self::Angle => Span::new(STATE.address, 12),
-            Self::Force => Span::new(1582, 12),
-            Self::Drives => Span::new(1594, 24),
-            Self::Temperature => Span::new(1618, 6),
-            Self::Position => Span::new(1534, 12),
-            Self::Targets => Span::new(ANGLE_SET.address, 24),
-            Self::Speeds => Span::new(1522, 12),
+            Self::Angle => ANGLE_ACT.span(),
+            Self::Force => FORCE_ACT.span(),
+            Self::Drives => through(&CURRENT, &STATUS),
+            Self::Temperature => TEMP.span(),
+            Self::Position => POS_ACT.span(),
+            Self::Targets => through(&ANGLE_SET, &FORCE_SET),
+            Self::Speeds => SPEED_SET.span(),
             Self::Tip(finger) => Span::new(TOUCH.address + TIP * u16::from(finger), TIP),
         }
     }
@@ -91,6 +94,12 @@ impl ReadPart {
     pub(crate) const fn is_motion(self) -> bool {
         matches!(self, Self::Angle | Self::Force)
     }
+}
+
+/// The memory of neighbouring registers, the first to the last.
+fn through(first: &Register, last: &Register) -> Span {
+    let from = first.address;
+    Span::new(from, last.address + last.len - from)
 }
 
 /// What is known of the gaps on this connection.

@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
-use tokio::task::JoinHandle;
+use tokio_util::task::AbortOnDropHandle;
 
 /// Events that may wait; a scan that is not listened to waits for its listener.
 const EVENTS_MAX: usize = 256;
@@ -59,7 +59,7 @@ pub struct ScanConfig {
 pub struct ScanHandle {
     events: mpsc::Receiver<ScanEvent>,
     board: Arc<Mutex<Board>>,
-    task: JoinHandle<()>,
+    task: AbortOnDropHandle<()>,
 }
 
 /// Begins a scan. It reads HAND_ID and nothing else, and writes nothing.
@@ -75,7 +75,7 @@ pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
         board: Arc::clone(&board),
         range_told: AtomicBool::new(false),
     };
-    let task = runtime.spawn(scan(config, Arc::new(room)));
+    let task = AbortOnDropHandle::new(runtime.spawn(scan(config, Arc::new(room))));
     ScanHandle {
         events,
         board,
@@ -99,12 +99,6 @@ impl ScanHandle {
     pub fn progress(&self) -> ScanProgress {
         let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
         board.progress()
-    }
-}
-
-impl Drop for ScanHandle {
-    fn drop(&mut self) {
-        self.task.abort();
     }
 }
 

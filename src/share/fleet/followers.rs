@@ -6,8 +6,8 @@ use crate::share::fleet::{FleetBook, FleetCard, FleetHand, topic};
 use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::task::AbortHandle;
 use tokio::time::{interval, timeout};
+use tokio_util::task::AbortOnDropHandle;
 
 /// Who tells of a hand is heard within this, with two of its notices lost.
 const HEARD_WITHIN: Duration = Duration::from_millis(2000);
@@ -20,13 +20,7 @@ const KEPT: u16 = 512;
 #[derive(Debug)]
 pub struct OtherFollowers {
     seen: watch::Receiver<Option<FleetCard>>,
-    abort: AbortHandle,
-}
-
-impl Drop for OtherFollowers {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl OtherFollowers {
@@ -45,7 +39,7 @@ impl OtherFollowers {
         };
         Ok(Self {
             seen,
-            abort: tokio::spawn(listening.run(messages)).abort_handle(),
+            _task: AbortOnDropHandle::new(tokio::spawn(listening.run(messages))),
         })
     }
 

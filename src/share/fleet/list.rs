@@ -6,8 +6,8 @@ use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
 use std::net::Ipv4Addr;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::task::AbortHandle;
 use tokio::time::interval;
+use tokio_util::task::AbortOnDropHandle;
 
 /// How often the list is looked through, and may change for those who look at it.
 const SHOWN_EACH: Duration = Duration::from_millis(100);
@@ -20,13 +20,7 @@ const KEPT: u16 = 512;
 pub struct FleetList {
     interface: Ipv4Addr,
     shown: watch::Receiver<Vec<FleetHand>>,
-    abort: AbortHandle,
-}
-
-impl Drop for FleetList {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl FleetList {
@@ -45,7 +39,7 @@ impl FleetList {
         Ok(Self {
             interface,
             shown,
-            abort: tokio::spawn(listening).abort_handle(),
+            _task: AbortOnDropHandle::new(tokio::spawn(listening)),
         })
     }
 

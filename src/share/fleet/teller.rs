@@ -5,20 +5,14 @@ use crate::share::fleet::{FleetCard, FleetHand, TOLD_EACH, reachable, topic};
 use crate::transport::dds::{DdsError, DdsNode, DdsWriter};
 use std::net::Ipv4Addr;
 use tokio::sync::watch;
-use tokio::task::AbortHandle;
 use tokio::time::sleep;
+use tokio_util::task::AbortOnDropHandle;
 
 /// Tells of a hand. Dropped, or once the link is closed, it tells nothing any more.
 #[derive(Debug)]
 pub struct FleetTeller {
     card: watch::Sender<FleetCard>,
-    abort: AbortHandle,
-}
-
-impl Drop for FleetTeller {
-    fn drop(&mut self) {
-        self.abort.abort();
-    }
+    _task: AbortOnDropHandle<()>,
 }
 
 impl FleetTeller {
@@ -36,7 +30,7 @@ impl FleetTeller {
         let (card, cards) = watch::channel(card);
         Ok(Self {
             card,
-            abort: tokio::spawn(telling.run(cards)).abort_handle(),
+            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(cards))),
         })
     }
 

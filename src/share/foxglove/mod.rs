@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::runtime;
-use tokio::task::{AbortHandle, JoinSet};
+use tokio::task::JoinSet;
 use tokio::time::sleep;
 
 /// After the system refused a connection, for want of something, the next is looked for.
@@ -41,7 +41,7 @@ pub struct FoxgloveServer {
     opening: Opening,
     outlet: Outlet,
     runtime: runtime::Handle,
-    tasks: Vec<AbortHandle>,
+    tasks: JoinSet<()>,
 }
 
 impl FoxgloveServer {
@@ -57,13 +57,14 @@ impl FoxgloveServer {
         let listener = TcpListener::from_std(listener)?;
         let outlet = Outlet::new();
         let greeting = Arc::new(protocol::greeting(&config.opening));
-        let serves = runtime.spawn(serve(listener, outlet.clone(), greeting));
+        let mut tasks = JoinSet::new();
+        tasks.spawn(serve(listener, outlet.clone(), greeting));
         Ok(Self {
             address,
             opening: config.opening,
             outlet,
             runtime: runtime.clone(),
-            tasks: vec![serves.abort_handle()],
+            tasks,
         })
     }
 
@@ -72,7 +73,7 @@ impl FoxgloveServer {
         let _inside = self.runtime.enter();
         let entries = LinkEntries::new(link.observe(), link.clock());
         let feeds = feed(entries, self.opening.clone(), self.outlet.clone());
-        self.tasks.push(self.runtime.spawn(feeds).abort_handle());
+        self.tasks.spawn(feeds);
     }
 
     /// Where it listens.
@@ -97,12 +98,6 @@ impl FoxgloveServer {
     #[must_use]
     pub fn turned_away(&self) -> u64 {
         self.outlet.turned_away()
-    }
-}
-
-impl Drop for FoxgloveServer {
-    fn drop(&mut self) {
-        self.tasks.iter().for_each(AbortHandle::abort);
     }
 }
 

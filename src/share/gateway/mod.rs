@@ -22,8 +22,9 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::runtime;
-use tokio::task::{AbortHandle, JoinSet};
+use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep};
+use tokio_util::task::AbortOnDropHandle;
 
 /// A client that may move the hand and asks nothing for so long may no more, unless a person says otherwise.
 pub const SILENCE: Duration = Duration::from_secs(10);
@@ -48,7 +49,7 @@ pub struct GatewayConfig {
 pub struct Gateway {
     address: SocketAddr,
     leases: ClientLeases,
-    task: AbortHandle,
+    _task: AbortOnDropHandle<()>,
 }
 
 impl Gateway {
@@ -67,11 +68,11 @@ impl Gateway {
         let _inside = runtime.enter();
         let listener = TcpListener::from_std(listener)?;
         let leases = ClientLeases::new(link, config.writers, config.silence);
-        let task = runtime.spawn(serve(listener, leases.clone()));
+        let task = AbortOnDropHandle::new(runtime.spawn(serve(listener, leases.clone())));
         Ok(Self {
             address,
             leases,
-            task: task.abort_handle(),
+            _task: task,
         })
     }
 
@@ -111,7 +112,6 @@ impl Gateway {
 impl Drop for Gateway {
     fn drop(&mut self) {
         self.leases.close();
-        self.task.abort();
     }
 }
 

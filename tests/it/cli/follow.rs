@@ -190,6 +190,24 @@ fn what_was_sent_stands_in_the_recording_and_a_disk_that_fails_holds_nothing_up(
 }
 
 #[test]
+fn a_recording_that_is_renamed_beside_a_command_is_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, other) = (folder.path().join("a.mcap"), folder.path().join("b.mcap"));
+    let args = ["--record", file.to_str().unwrap()];
+    let (mut running, _place) = following("sim:?scenario=free", &args);
+    while !file.exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    std::fs::rename(&file, &other).unwrap();
+    loop {
+        let told = running.complaint();
+        if told.contains("a.mcap was renamed while it is recorded") {
+            break;
+        }
+    }
+}
+
+#[test]
 fn a_second_hand_that_would_obey_the_same_sender_is_refused() {
     let dds = |more: &[&str]| {
         let args = ["follow", "--hand", "sim:", "--dds", "--domain", "47"];
