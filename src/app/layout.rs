@@ -131,6 +131,14 @@ impl Layout {
         self
     }
 
+    /// With a room shut or opened.
+    #[must_use]
+    pub const fn toggled(self, room: WindowRoom) -> Self {
+        let standing = self.room(room);
+        let shut = !standing.shut;
+        self.with(room, RoomLayout { shut, ..standing })
+    }
+
     /// All rooms as designed; the window keeps its size.
     #[must_use]
     pub fn reset(self) -> Self {

@@ -34,7 +34,7 @@ pub const fn words_for(span: Span) -> WordSpan {
 /// Memory bytes of the words that begin at `address`; words past [`READ_WORDS_MAX`] cannot come and are left out.
 ///
 /// The low byte comes first, but in registers of single bytes where [`BytePacking::HighFirst`] says otherwise. Words of
-/// [`BytePacking::OnePerWord`] are read by [`BytePacking::group`].
+/// [`BytePacking::OnePerWord`] are read by [`group_bytes`].
 #[must_use]
 pub fn bytes_from_words(address: u16, words: &[u16], packing: BytePacking) -> WordBytes {
     let addresses = (0u16..).map(|nth| address.saturating_add(2 * nth));
@@ -96,50 +96,48 @@ pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
     }
 }
 
-impl BytePacking {
-    /// Judges by the word at HAND_ID and six words at TEMP; `None` if they fit no packing, or more than one.
-    ///
-    /// Temperatures tell packed words from single ones. The id, whose neighbour 1001 is unused, tells which byte of a
-    /// word comes first: a hand 1 says 1 or 256.
-    #[must_use]
-    pub fn detect(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<Self> {
-        let [first, second, third, behind @ ..] = words_at_temp;
-        let small = words_at_temp.iter().all(|word| *word <= 0xFF);
-        if small && *first != 0 && behind.iter().all(|word| *word != 0) {
-            return Some(Self::OnePerWord);
-        }
-        let packed = [first, second, third].iter().any(|word| **word > 0xFF);
-        match word_at_id.to_le_bytes() {
-            [1..=254, 0] if packed => Some(Self::LowFirst),
-            [0, 1..=254] if packed => Some(Self::HighFirst),
-            _ => None,
-        }
+/// Judges by the word at HAND_ID and six words at TEMP; `None` if they fit no packing, or more than one.
+///
+/// Temperatures tell packed words from single ones. The id, whose neighbour 1001 is unused, tells which byte of a
+/// word comes first: a hand 1 says 1 or 256.
+#[must_use]
+pub fn detect_packing(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<BytePacking> {
+    let [first, second, third, behind @ ..] = words_at_temp;
+    let small = words_at_temp.iter().all(|word| *word <= 0xFF);
+    if small && *first != 0 && behind.iter().all(|word| *word != 0) {
+        return Some(BytePacking::OnePerWord);
     }
+    let packed = [first, second, third].iter().any(|word| **word > 0xFF);
+    match word_at_id.to_le_bytes() {
+        [1..=254, 0] if packed => Some(BytePacking::LowFirst),
+        [0, 1..=254] if packed => Some(BytePacking::HighFirst),
+        _ => None,
+    }
+}
 
-    /// Words that hold one group of six.
-    #[must_use]
-    pub const fn words_per_group(self) -> u16 {
-        match self {
-            Self::LowFirst | Self::HighFirst => 3,
-            Self::OnePerWord => 6,
-        }
+/// Words that hold one group of six.
+#[must_use]
+pub const fn words_per_group(packing: BytePacking) -> u16 {
+    match packing {
+        BytePacking::LowFirst | BytePacking::HighFirst => 3,
+        BytePacking::OnePerWord => 6,
     }
+}
 
-    /// The six bytes of a group from the words that begin at its address; `None` if there are too few words,
-    /// or a word of [`Self::OnePerWord`] holds no byte.
-    #[must_use]
-    pub fn group(self, words: &[u16]) -> Option<[u8; GROUP_LEN]> {
-        let words = words.get(..usize::from(self.words_per_group()))?;
-        let bytes: ArrayVec<u8, GROUP_LEN> = match self {
-            Self::LowFirst => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
-            Self::HighFirst => words.iter().flat_map(|word| word.to_be_bytes()).collect(),
-            Self::OnePerWord => words
-                .iter()
-                .map(|word| u8::try_from(*word).ok())
-                .collect::<Option<_>>()?,
-        };
-        bytes.into_inner().ok()
-    }
+/// The six bytes of a group from the words that begin at its address; `None` if there are too few words,
+/// or a word of [`BytePacking::OnePerWord`] holds no byte.
+#[must_use]
+pub fn group_bytes(packing: BytePacking, words: &[u16]) -> Option<[u8; GROUP_LEN]> {
+    let words = words.get(..usize::from(words_per_group(packing)))?;
+    let bytes: ArrayVec<u8, GROUP_LEN> = match packing {
+        BytePacking::LowFirst => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+        BytePacking::HighFirst => words.iter().flat_map(|word| word.to_be_bytes()).collect(),
+        BytePacking::OnePerWord => words
+            .iter()
+            .map(|word| u8::try_from(*word).ok())
+            .collect::<Option<_>>()?,
+    };
+    bytes.into_inner().ok()
 }
 
 #[cfg(test)]
@@ -238,7 +236,7 @@ mod tests {
             (0x0101, packed, None),
             (255, packed, None),
         ] {
-            assert_eq!(BytePacking::detect(id, &words), packing, "{id} {words:?}");
+            assert_eq!(detect_packing(id, &words), packing, "{id} {words:?}");
         }
     }
 
@@ -250,9 +248,12 @@ mod tests {
             (BytePacking::HighFirst, &[0x1E1F, 0x2021, 0x2223]),
             (BytePacking::OnePerWord, &[30, 31, 32, 33, 34, 35]),
         ] {
-            assert_eq!(packing.group(words), Some(six));
-            assert_eq!(packing.group(&words[1..]), None);
+            assert_eq!(group_bytes(packing, words), Some(six));
+            assert_eq!(group_bytes(packing, &words[1..]), None);
         }
-        assert_eq!(BytePacking::OnePerWord.group(&[1, 2, 3, 4, 5, 256]), None);
+        assert_eq!(
+            group_bytes(BytePacking::OnePerWord, &[1, 2, 3, 4, 5, 256]),
+            None
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 #[cfg(target_os = "linux")]
 use crate::transport::openers::Openers;
-use crate::transport::serial::permission::remedy;
+use crate::transport::permission::remedy;
 use crate::transport::wire::TransportError;
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::pty::openpty;

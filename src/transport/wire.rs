@@ -1,8 +1,8 @@
 //! What every wire is: a stream of bytes both ways, and how one is opened. No hand, no protocol.
 
 use crate::transport::endpoint::Endpoint;
-use crate::transport::serial::found::PortFound;
-use crate::transport::serial::permission::Remedy;
+use crate::transport::found::PortFound;
+use crate::transport::permission::Remedy;
 use futures::future::BoxFuture;
 use tokio::io::{AsyncRead, AsyncWrite};
 

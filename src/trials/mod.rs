@@ -20,6 +20,7 @@ pub mod series;
 #[cfg(test)]
 pub(crate) mod series_tests;
 pub mod session;
+pub mod session_writer;
 pub mod summary;
 
 pub use crate::trials::best::{Criterion, Score};

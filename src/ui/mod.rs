@@ -12,6 +12,7 @@ mod params;
 mod plots;
 mod poses;
 mod sessions;
+mod style;
 mod text;
 mod theme;
 mod touch;

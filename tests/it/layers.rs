@@ -20,6 +20,11 @@ const FLOORS: [&[&str]; 11] = [
     &["main"],
 ];
 
+/// The module whose folders still import one another: all of a hand is one type there, until it is made of parts.
+const TANGLED: &str = "app:";
+/// The types whose methods still stand in several folders.
+const SPREAD: [&str; 2] = ["HandState", "State"];
+
 /// Sources by their path below `src`, without comments, texts and tests.
 type Sources = BTreeMap<String, String>;
 
@@ -32,6 +37,20 @@ fn modules_import_only_from_floors_below_their_own() {
 #[test]
 fn no_files_import_one_another() {
     let found = circles(&sources());
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn no_folders_of_a_module_import_one_another() {
+    let mut found = folder_circles(&sources());
+    found.retain(|circle| !circle.starts_with(TANGLED));
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn the_methods_of_a_type_stand_in_one_folder() {
+    let mut found = spread(&sources());
+    found.retain(|(name, _)| !SPREAD.contains(&name.as_str()));
     assert!(found.is_empty(), "{found:#?}");
 }
 
@@ -70,6 +89,28 @@ fn what_is_forbidden_is_found_and_nothing_else() {
         ("codec/pdu.rs", "use crate::codec::slcan::Text;"),
     ]));
     assert_eq!(found, ["link/bus.rs link/plan.rs".to_owned()].into());
+    let rooms = tree(&[
+        (
+            "ui/kit/look.rs",
+            "use crate::ui::text::main::Text;\nstruct Look;",
+        ),
+        ("ui/text/main.rs", "struct Text;"),
+        (
+            "ui/text/words.rs",
+            "use crate::ui::kit::look::Look;\nimpl Look {\n}",
+        ),
+        (
+            "ui/plots.rs",
+            "use crate::ui::text::main::Text;\nimpl Display for Text {\n}",
+        ),
+    ]);
+    assert!(circles(&rooms).is_empty());
+    assert_eq!(folder_circles(&rooms), ["ui: kit text".to_owned()].into());
+    let spread = spread(&rooms);
+    assert_eq!(
+        spread,
+        [("Look".to_owned(), "ui/text/words.rs".to_owned())].into()
+    );
 }
 
 /// All sources of the program.
@@ -109,15 +150,92 @@ fn upward(sources: &Sources) -> BTreeSet<String> {
     wrong
 }
 
-/// Sets of files that import one another, each as its files in order.
-fn circles(sources: &Sources) -> BTreeSet<String> {
+/// What each file imports, as files.
+fn arrows(sources: &Sources) -> BTreeMap<&str, BTreeSet<&str>> {
     let names = Names::of(sources);
     let arrows = sources.iter().map(|(path, code)| {
         let imported = imports(code);
         let homes = imported.iter().filter_map(|name| names.home(name, 8));
         (path.as_str(), homes.collect::<BTreeSet<_>>())
     });
-    let arrows: BTreeMap<&str, BTreeSet<&str>> = arrows.collect();
+    arrows.collect()
+}
+
+/// Sets of files that import one another, each as its files in order.
+fn circles(sources: &Sources) -> BTreeSet<String> {
+    around(&arrows(sources))
+}
+
+/// Sets of folders and files of a module that import one another, each with its module.
+fn folder_circles(sources: &Sources) -> BTreeSet<String> {
+    let mut modules: BTreeMap<&str, BTreeMap<&str, BTreeSet<&str>>> = BTreeMap::new();
+    // The module, and what in it; what stands in `mod.rs` belongs to all.
+    let place = |path: &'_ str| -> Option<(usize, usize)> {
+        let module = path.find('/')?;
+        let inner = &path[module + 1..];
+        let end = inner.find('/').unwrap_or(inner.len());
+        (inner != "mod.rs").then_some((module, module + 1 + end))
+    };
+    for (path, imported) in &arrows(sources) {
+        let Some((module, end)) = place(path) else {
+            continue;
+        };
+        let (module, own) = (&path[..module], &path[module + 1..end]);
+        let rooms = modules.entry(module).or_default();
+        rooms.entry(own).or_default();
+        for other in imported {
+            if let Some((there, end)) = place(other)
+                && &other[..there] == module
+            {
+                let other = &other[there + 1..end];
+                rooms.entry(other).or_default();
+                rooms.entry(own).or_default().insert(other);
+            }
+        }
+    }
+    let named = |(module, rooms): (&str, BTreeMap<&str, BTreeSet<&str>>)| {
+        let circles = around(&rooms).into_iter();
+        let circles = circles.map(move |circle| format!("{module}: {circle}"));
+        circles.collect::<Vec<_>>()
+    };
+    modules.into_iter().flat_map(named).collect()
+}
+
+/// Types with methods of their own in another folder than theirs, and the file that has them.
+fn spread(sources: &Sources) -> BTreeSet<(String, String)> {
+    let names = Names::of(sources);
+    let folder = |path: &str| path.rsplit_once('/').map(|(folder, _)| folder.to_owned());
+    let mut found = BTreeSet::new();
+    for (path, code) in sources {
+        let imported = imports(code);
+        for (at, start) in code.match_indices("\nimpl") {
+            let rest = &code[at + start.len()..];
+            let head = rest.split('{').next().unwrap_or_default();
+            let of = head.rsplit('>').next().filter(|_| head.starts_with('<'));
+            let name: String = of
+                .unwrap_or(head)
+                .trim()
+                .chars()
+                .take_while(|c| is_word(*c))
+                .collect();
+            if name.is_empty() || head.contains(" for ") {
+                continue;
+            }
+            let is_it = |imported: &&String| imported.rsplit("::").next() == Some(&name);
+            let home = imported
+                .iter()
+                .find(is_it)
+                .and_then(|whole| names.home(whole, 8));
+            if home.is_some_and(|home| folder(home) != folder(path)) {
+                found.insert((name, path.clone()));
+            }
+        }
+    }
+    found
+}
+
+/// Sets of what is in one another's reach, each in order.
+fn around(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> BTreeSet<String> {
     let mut reach: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for path in arrows.keys() {
         let (mut seen, mut open) = (BTreeSet::new(), vec![*path]);

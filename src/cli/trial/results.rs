@@ -9,7 +9,7 @@ use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::SeriesStep;
 use crate::trials::session::SessionHead;
-use crate::trials::session::writer::TrialSessionWriter;
+use crate::trials::session_writer::TrialSessionWriter;
 use crate::trials::{Abort, EarlyEnd, Trial, TrialPlan, TrialSummary};
 use anyhow::{Context as _, anyhow};
 use std::io;

@@ -2,7 +2,7 @@
 
 use crate::inputs::pad::facts::PadFacts;
 use crate::inputs::pad::report::{KernelEvent, PadClock, PadId, PadNews, PadReport, PadTrouble};
-use crate::transport::serial::permission::remedy;
+use crate::transport::permission::remedy;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, Metadata};

@@ -4,6 +4,7 @@
 use crate::codec::modbus::{
     ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
 };
+use crate::codec::modbus::{group_bytes, words_per_group};
 use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 
@@ -73,10 +74,10 @@ pub(crate) fn take_group(
     skip: usize,
     take: usize,
 ) -> Result<(), BusError> {
-    let group = BytePacking::OnePerWord.group(words);
+    let group = group_bytes(BytePacking::OnePerWord, words);
     let group = group.ok_or(BusError::WrongLength {
         got: words.len() * 2,
-        want: 2 * usize::from(BytePacking::OnePerWord.words_per_group()),
+        want: 2 * usize::from(words_per_group(BytePacking::OnePerWord)),
     })?;
     bytes.extend(group.into_iter().skip(skip).take(take));
     Ok(())

@@ -2,6 +2,7 @@
 //! no length is asked for again while a reply of that length may still come.
 
 use crate::codec::modbus::words_for;
+use crate::codec::modbus::words_per_group;
 use crate::hand::register::BytePacking;
 use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::late_replies::LateReplies;
@@ -12,7 +13,7 @@ use crate::link::bus::modbus;
 use crate::link::bus::packing::{ReadPiece, WordUse};
 use crate::link::bus::rtu_line::RtuLine;
 use crate::link::clock::Clock;
-use crate::link::poll::cost::{WireCost, byte_time};
+use crate::link::poll::cost::{WireCost, byte_time, rtu_gap};
 use crate::link::poll::window::SHAPES_MAX;
 use crate::transport::{BoxedWire, Endpoint, Timer, TransportError};
 use arrayvec::ArrayVec;
@@ -30,9 +31,6 @@ const QUIET: Duration = Duration::from_millis(8);
 const SETTLE_MAX: Duration = Duration::from_millis(60);
 /// Bytes of a read request, and of a reply's frame around its data.
 const FRAMING: u32 = 8 + 5;
-/// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
-const FIXED_GAP_ABOVE: u32 = 19_200;
-const FIXED_GAP: Duration = Duration::from_micros(1750);
 /// Lengths in which a group of single bytes is asked for: three groups in a row, and some that are still open.
 const GROUP_SHAPES: usize = 10;
 
@@ -75,7 +73,7 @@ impl ModbusRtu {
 
     /// Six words as they come, or more: so many that no late reply can be taken for this one.
     async fn group_words(&mut self, address: u16, limit: Duration) -> Result<Vec<u16>, BusError> {
-        let least = BytePacking::OnePerWord.words_per_group();
+        let least = words_per_group(BytePacking::OnePerWord);
         let shapes: ArrayVec<Span, GROUP_SHAPES> = (least..)
             .map(|count| Span::new(address, 2 * count))
             .take(GROUP_SHAPES)
@@ -204,7 +202,7 @@ impl Bus for ModbusRtu {
         loop {
             self.take_waiting()?;
             let now = Instant::now();
-            let quiet_at = self.line.heard().map_or(now, |at| at + gap(self.baud));
+            let quiet_at = self.line.heard().map_or(now, |at| at + rtu_gap(self.baud));
             if quiet_at <= now || now >= end {
                 break;
             }
@@ -216,7 +214,7 @@ impl Bus for ModbusRtu {
 
     async fn quiet(&mut self) -> Result<(), BusError> {
         self.line.abandon();
-        let quiet = QUIET.max(gap(self.baud));
+        let quiet = QUIET.max(rtu_gap(self.baud));
         let end = Instant::now() + SETTLE_MAX;
         while Instant::now() < end {
             match timeout(quiet, self.line.hear()).await {
@@ -252,11 +250,11 @@ impl Bus for ModbusRtu {
     }
 
     fn cost(&self) -> WireCost {
-        WireCost::rtu(self.baud, gap(self.baud))
+        WireCost::rtu(self.baud, rtu_gap(self.baud))
     }
 
     fn wire_time(&self, bytes: u16) -> Duration {
-        byte_time(self.baud) * (u32::from(bytes) + FRAMING) + gap(self.baud)
+        byte_time(self.baud) * (u32::from(bytes) + FRAMING) + rtu_gap(self.baud)
     }
 
     fn counts(&self) -> BusCounts {
@@ -283,21 +281,13 @@ const fn seen(span: Span) -> Span {
     Span::new(0, words_for(span).count.saturating_mul(2))
 }
 
-/// Silence between frames: 3.5 characters.
-pub(crate) fn gap(baud: u32) -> Duration {
-    if baud > FIXED_GAP_ABOVE {
-        FIXED_GAP
-    } else {
-        byte_time(baud) * 7 / 2
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::codec::modbus_rtu::crc16;
     use crate::hand::register::STATE;
     use crate::hand::{Angle, HandCommand, PerDof, Target};
+    use crate::link::poll::cost::FIXED_GAP;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
 
     const LIMIT: Duration = Duration::from_millis(50);
@@ -464,8 +454,8 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn frames_are_three_and_a_half_characters_apart() {
-        assert_eq!(gap(9600), Duration::from_nanos(3_645_831));
-        assert_eq!(gap(115_200), FIXED_GAP);
+        assert_eq!(rtu_gap(9600), Duration::from_nanos(3_645_831));
+        assert_eq!(rtu_gap(115_200), FIXED_GAP);
         let (mut bus, mut far) = line();
         far.write_all(&[0]).await.unwrap();
         let before = Instant::now();

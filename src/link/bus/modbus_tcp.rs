@@ -1,5 +1,6 @@
 //! Requests over Modbus TCP (manual 2.5), through tokio-modbus. Replies carry a number, which the filter checks.
 
+use crate::codec::modbus::words_per_group;
 use crate::hand::register::BytePacking;
 use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::client::Bus;
@@ -70,7 +71,7 @@ impl Bus for ModbusTcp {
     }
 
     async fn words(&mut self, address: u16, limit: Duration) -> Result<Option<Vec<u16>>, BusError> {
-        let least = BytePacking::OnePerWord.words_per_group();
+        let least = words_per_group(BytePacking::OnePerWord);
         self.group_words(address, least, limit).await.map(Some)
     }
 
@@ -94,7 +95,7 @@ impl Bus for ModbusTcp {
                     bytes.extend(modbus::read_response(part, &response, packing)?);
                 }
                 ReadPiece::Group { group, skip, take } => {
-                    let count = BytePacking::OnePerWord.words_per_group();
+                    let count = words_per_group(BytePacking::OnePerWord);
                     let words = self.group_words(group.address, count, limit).await?;
                     modbus::take_group(&mut bytes, &words, skip, take)?;
                 }

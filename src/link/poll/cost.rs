@@ -6,6 +6,9 @@ use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::collections::VecDeque;
 use std::time::Duration;
 
+/// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
+const FIXED_GAP_ABOVE: u32 = 19_200;
+pub(crate) const FIXED_GAP: Duration = Duration::from_micros(1750);
 /// Bits of a byte on a serial line: start, eight, stop.
 const BITS: u64 = 10;
 /// Longest reply frame of a serial line while a stop waits to be confirmed: one fingertip in the private framing.
@@ -255,6 +258,15 @@ impl Turnaround {
             return TURNAROUND_MAX;
         }
         self.longest.min(TURNAROUND_MAX)
+    }
+}
+
+/// Silence between frames of Modbus RTU: 3.5 characters.
+pub(crate) fn rtu_gap(baud: u32) -> Duration {
+    if baud > FIXED_GAP_ABOVE {
+        FIXED_GAP
+    } else {
+        byte_time(baud) * 7 / 2
     }
 }
 

@@ -1,7 +1,6 @@
 //! What one read costs on the line alone, if hand and adapter took no time. Needs no open wire.
 
-use crate::link::bus::modbus_rtu::gap;
-use crate::link::poll::cost::WireCost;
+use crate::link::poll::cost::{WireCost, rtu_gap};
 use crate::transport::Endpoint;
 use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::time::Duration;
@@ -12,7 +11,7 @@ pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
     let cost = match endpoint {
         Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,
         Endpoint::Rs485(line) => WireCost::rs485(Some(line.baud)),
-        Endpoint::Rtu(line) => WireCost::rtu(line.baud, gap(line.baud)),
+        Endpoint::Rtu(line) => WireCost::rtu(line.baud, rtu_gap(line.baud)),
         // Manual: 2.3 gives the rate as delivered; that of an interface is set outside of this program.
         Endpoint::Can { .. } => WireCost::can(DEFAULT_BITRATE),
         Endpoint::Slcan { bitrate, .. } => WireCost::can(*bitrate),

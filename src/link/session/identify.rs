@@ -1,6 +1,7 @@
 //! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
 //! cut short by a stop; nothing is written.
 
+use crate::codec::modbus::{detect_packing, words_per_group};
 use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::error::id_of;
@@ -123,7 +124,7 @@ impl Session {
                 break;
             }
             self.turn(bus).await?;
-            let limit = self.reply_limit(bus, 2 * BytePacking::OnePerWord.words_per_group());
+            let limit = self.reply_limit(bus, 2 * words_per_group(BytePacking::OnePerWord));
             match bus.words(TEMP.address, limit).await {
                 Ok(Some(words)) => return Ok(judged_packing(id, &words)),
                 Ok(None) => break,
@@ -255,7 +256,7 @@ impl Session {
 
 fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
     let at_id = u16::from_le_bytes(*id?.first_chunk()?);
-    BytePacking::detect(at_id, words.first_chunk()?)
+    detect_packing(at_id, words.first_chunk()?)
 }
 
 fn judged(heard: &IdentityReply) -> Option<TouchVariant> {

@@ -1,6 +1,7 @@
 //! Sets what comes in against what was asked: which request a reply answers, and what is out of place. One request is
 //! open at a time, as the link has it.
 
+use crate::codec::modbus::{detect_packing, group_bytes};
 use crate::codec::rs485::SaveResult;
 use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
@@ -227,12 +228,12 @@ impl Matching {
             return;
         };
         if span.address == TEMP.address {
-            self.packing = BytePacking::detect(ANY_ID, six).unwrap_or_default();
+            self.packing = detect_packing(ANY_ID, six).unwrap_or_default();
         }
         let groups = [ERROR.address, STATUS.address, TEMP.address];
         if self.packing == BytePacking::OnePerWord
             && groups.contains(&span.address)
-            && let Some(bytes) = self.packing.group(six)
+            && let Some(bytes) = group_bytes(self.packing, six)
         {
             frame.memory = Box::from(bytes);
             frame.span = Some(Span::new(span.address, 6));

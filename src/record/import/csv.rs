@@ -119,7 +119,7 @@ pub fn import(
     let mut values = CsvValues::new(csv)?;
     let output = Unfinished::new(to)?;
     let written = |error: Broken| error.of(&output);
-    let opening = Opening::imported();
+    let opening = imported_opening();
     let mut copy = SessionCopy::new(&opening, output.private_file()?).map_err(written)?;
     let monitoring = Entry::Heard(Record::State {
         at: opening.began,
@@ -213,17 +213,15 @@ fn read<R: BufRead>(
     })
 }
 
-impl Opening {
-    /// What is known of a session that is read from values: not the day, and not the hand.
-    fn imported() -> Self {
-        Self {
-            base_nanos: Self::NO_DATE,
-            began: Moment::ZERO,
-            hand: String::new(),
-            simulated: false,
-            side: Side::Right,
-            version: format!("{} {}", env!("CARGO_PKG_VERSION"), Self::IMPORTED),
-        }
+/// What is known of a session that is read from values: not the day, and not the hand.
+fn imported_opening() -> Opening {
+    Opening {
+        base_nanos: Opening::NO_DATE,
+        began: Moment::ZERO,
+        hand: String::new(),
+        simulated: false,
+        side: Side::Right,
+        version: format!("{} {}", env!("CARGO_PKG_VERSION"), Opening::IMPORTED),
     }
 }
 

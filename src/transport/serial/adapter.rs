@@ -1,7 +1,7 @@
 //! A USB serial adapter by what stays the same when it is plugged in again: its serial number, else its place. Lists and
 //! opens nothing.
 
-use crate::transport::serial::{PortFound, UsbFound};
+use crate::transport::found::{PortFound, UsbFound};
 use std::path::{Path, PathBuf};
 
 /// What an adapter is known again by.

@@ -1,16 +1,14 @@
 //! Serial ports: which there are, and how one is opened. What is said over them is not known here.
 pub mod adapter;
-pub(crate) mod found;
 pub(crate) mod holder;
-pub mod permission;
 pub mod port_facts;
 pub mod sysfs;
 pub mod timer;
 
 use crate::transport::endpoint::SerialLine;
 
-pub use crate::transport::serial::found::{PortFound, UsbFound};
-use crate::transport::serial::permission::remedy;
+use crate::transport::found::{PortFound, UsbFound};
+use crate::transport::permission::remedy;
 use crate::transport::serial::sysfs::Sysfs;
 use crate::transport::wire::TransportError;
 use std::path::Path;

@@ -1,9 +1,10 @@
 //! What can be told of a serial port without opening it: adapter, driver, rights, who holds it. Opens and changes nothing.
 
+use crate::transport::found::UsbFound;
 use crate::transport::serial::adapter::is_same_port;
 use crate::transport::serial::holder;
+use crate::transport::serial::ports;
 use crate::transport::serial::sysfs::Sysfs;
-use crate::transport::serial::{UsbFound, ports};
 use serde::Serialize;
 use std::path::Path;
 

@@ -10,7 +10,6 @@
 
 #[cfg(test)]
 pub(crate) mod session_tests;
-pub mod writer;
 
 use crate::record::QuirkSheet;
 use crate::store::calendar::day;

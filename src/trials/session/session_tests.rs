@@ -7,8 +7,8 @@ use crate::trials::limits::Abort;
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{SampleRow, TrialEvent, TrialRecording, csv};
-use crate::trials::session::writer::TrialSessionWriter;
 use crate::trials::session::{SessionHead, load};
+use crate::trials::session_writer::TrialSessionWriter;
 use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
 use std::time::Duration;
 

@@ -4,10 +4,10 @@ use crate::app::exhibit::ExhibitState;
 use crate::hand::{Finger, PerFinger};
 use crate::ui::exhibit::large::PageLook;
 use crate::ui::exhibit::places::{PagePlaces, above};
+use crate::ui::hand::fingertip::{self, Tip};
 use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::{Label, Pane};
 use crate::ui::text::{exhibit, main, words};
-use crate::ui::touch::fingertip::{self, Tip};
 use crate::ui::touch::heat;
 use egui::{Align2, Rect, Ui, vec2};
 

@@ -6,6 +6,7 @@
 
 mod bars;
 mod camera;
+pub(crate) mod fingertip;
 mod light;
 pub(crate) mod panel;
 mod part;

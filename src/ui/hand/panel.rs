@@ -6,6 +6,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Finger, PerDof, PerFinger};
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
+use crate::ui::hand::fingertip::{Sense as Meant, Tip};
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::hand::scene::{HandPicture, TipLoad};
 use crate::ui::hand::shape::Held;
@@ -14,7 +15,6 @@ use crate::ui::hand::view::HandView;
 use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
-use crate::ui::touch::fingertip::{Sense as Meant, Tip};
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
 /// The drawn hand, turned as a person wants it.

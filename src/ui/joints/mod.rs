@@ -1,5 +1,4 @@
 //! The six joint rows: target over actual, threshold over force, speed, lamp, lock. Sends nothing by itself.
-pub(crate) mod drive_lamp;
 pub(crate) mod rail;
 pub(crate) mod readings;
 pub(crate) mod row;

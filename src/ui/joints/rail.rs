@@ -3,15 +3,14 @@
 use crate::app::action::Action;
 use crate::app::layout::WindowRoom;
 use crate::hand::Dof;
+use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::joints::age_ui;
-use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::row::JointRow;
 use crate::ui::joints::row_view::explain_ui;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{main, window};
 use crate::ui::theme;
-use crate::ui::window::rooms::toggled;
 use egui::{Align, Frame, Layout, Margin, Ui, vec2};
 
 /// Draws the rail. Where joints can be set, its head opens their column.
@@ -25,7 +24,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
             let button = Button::new(title, look.tip(window::OPEN)).named(&name);
             let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {
-                let layout = toggled(&pane.state.settings.layout, WindowRoom::Joints);
+                let layout = pane.state.settings.layout.toggled(WindowRoom::Joints);
                 pane.actions.push(Action::Layout(layout));
             }
         } else {

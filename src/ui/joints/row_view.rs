@@ -3,9 +3,9 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, impact};
+use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
-use crate::ui::joints::drive_lamp::DriveWords;
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Opens, Pane};

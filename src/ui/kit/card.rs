@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::ui::kit::controls;
 use crate::ui::kit::controls::{Button, Label, Weight};
-use crate::ui::kit::look::Look;
+use crate::ui::style::Look;
 use crate::ui::text::{Text, cards};
 use crate::ui::theme;
 use egui::{

@@ -5,7 +5,7 @@ use crate::app::params::action::ParamAction;
 use crate::app::settings::{Language, Theme};
 use crate::ui::kit::card::{Card, CardView, Choice, Manner};
 use crate::ui::kit::controls::{Button, pressed};
-use crate::ui::kit::look::Look;
+use crate::ui::style::Look;
 use crate::ui::text::{Text, cards};
 use crate::ui::theme::{self, Palette};
 use crate::ui::window;

@@ -1,7 +1,8 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::app::action::Action;
-use crate::ui::kit::look::{Look, Pane};
+use crate::ui::kit::pane::Pane;
+use crate::ui::style::Look;
 use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};

@@ -2,8 +2,9 @@
 //! nothing of what they name.
 
 use crate::ui::kit::controls;
-use crate::ui::kit::format::UNKNOWN;
-use crate::ui::kit::look::{Look, Pane, Typing};
+use crate::ui::kit::pane::{Pane, Typing};
+use crate::ui::style::Look;
+use crate::ui::style::format::UNKNOWN;
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::text::{CCursor, CCursorRange};

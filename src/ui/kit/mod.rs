@@ -6,11 +6,11 @@ mod card_tests;
 mod controls;
 pub(crate) mod dash;
 mod field;
-pub(crate) mod format;
-mod look;
+mod pane;
 pub(crate) mod path_field;
 pub(crate) mod reorder;
 
+pub(crate) use crate::ui::style::{Look, format};
 pub(crate) use card::{Card, CardView, Choice, Manner};
 pub(crate) use controls::{
     Button, Label, Weight, bare, card_ui, cell_ui, choose_ui, edit_ui, focus_ring, full_card_ui,
@@ -18,4 +18,4 @@ pub(crate) use controls::{
     text_width, warning_ui, wide_ui,
 };
 pub(crate) use field::{NumberField, TextField, refused_ui};
-pub(crate) use look::{Look, Opens, Pane, Typing};
+pub(crate) use pane::{Opens, Pane, Typing};

@@ -1,7 +1,7 @@
 //! A field for the path of a file, for where the system offers no dialog. Opens nothing.
 
 use crate::ui::kit::controls::{self, Button};
-use crate::ui::kit::look::Look;
+use crate::ui::style::Look;
 use crate::ui::text::{Text, sessions, window};
 use crate::ui::theme;
 use egui::{Align, Id, Key, Layout, Ui};

@@ -1,7 +1,7 @@
 //! Things that a person puts in another order, by dragging one to the place of another.
 //! Knows nothing of what they are.
 
-use crate::ui::kit::look::Look;
+use crate::ui::style::Look;
 use crate::ui::theme;
 use egui::{CursorIcon, Id, Key, Rect, Sense, Stroke, StrokeKind, Ui};
 

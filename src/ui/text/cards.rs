@@ -1,7 +1,7 @@
 //! Sentences of the cards over the window. No layout, no numbers.
 
 use crate::tasks::calibrate::Check;
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     CANCEL: "Cancel", "取消", "Closes this card. Nothing is written.", "关闭此卡片，不写入任何内容。";

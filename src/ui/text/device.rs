@@ -5,8 +5,8 @@ use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
-use crate::ui::kit::Look;
-use crate::ui::text::phrase::{Text, texts};
+use crate::ui::style::Look;
+use crate::ui::style::phrase::{Text, texts};
 use crate::ui::text::{errors, main, words};
 
 texts! {

@@ -14,7 +14,7 @@ use crate::tasks::TaskError;
 use crate::transport::dds::DdsError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError};
-use crate::ui::kit::{Look, format};
+use crate::ui::style::{Look, format};
 use crate::ui::text::inputs;
 use std::fmt::Display;
 

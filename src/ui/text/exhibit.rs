@@ -1,7 +1,7 @@
 //! Sentences of an exhibition: what visitors read from two metres away, and what staff do.
 
 use crate::exhibit::run::HaltReason;
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     ENTER: "Exhibition", "展览模式", "Shows the page for visitors over the whole screen. Nothing moves before you arm on it; leaving needs a PIN.", "全屏显示观众页面。在该页面上使能之前不会有任何动作；退出需要 PIN 码。";

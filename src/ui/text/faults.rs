@@ -1,6 +1,6 @@
 //! Sentences of the faults, the recordings around them and the message log.
 
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     EXPLAIN: "status, explained", "状态说明", "Click: what this means and what to do.", "点击：查看含义与处理建议。";

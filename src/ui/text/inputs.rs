@@ -3,7 +3,7 @@
 use crate::inputs::dds::ctrl::CtrlFault;
 use crate::inputs::line::LineFault;
 use crate::inputs::pad::{PadAction, PadControl};
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     TITLE: "Inputs", "输入";

@@ -1,7 +1,7 @@
 //! Sentences of the top bar, the banners, the tabs and the joints.
 
 use crate::record::LinkState;
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     TAB_COMPARE: "Compare", "对比";

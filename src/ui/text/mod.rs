@@ -9,7 +9,6 @@ pub(crate) mod inputs;
 pub(crate) mod main;
 pub(crate) mod notices;
 pub(crate) mod panels;
-mod phrase;
 pub(crate) mod poses;
 pub(crate) mod scan;
 pub(crate) mod sessions;
@@ -18,4 +17,4 @@ pub(crate) mod tune;
 pub(crate) mod window;
 pub(crate) mod words;
 
-pub(crate) use phrase::Text;
+pub(crate) use crate::ui::style::Text;

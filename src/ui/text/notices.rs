@@ -7,8 +7,8 @@ use crate::hand::Words;
 use crate::record::Disarmed;
 use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
-use crate::ui::kit::{Look, format};
-use crate::ui::text::phrase::Text;
+use crate::ui::style::phrase::Text;
+use crate::ui::style::{Look, format};
 use crate::ui::text::{errors, main, panels, poses, scan, sessions, tune, window, words};
 use std::path::Path;
 

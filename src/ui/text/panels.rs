@@ -6,8 +6,8 @@ use crate::app::settings::Language;
 use crate::hand::Moment;
 use crate::link::PollGroup;
 use crate::sim::Scenario;
-use crate::ui::kit::{Look, format};
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
+use crate::ui::style::{Look, format};
 use std::time::Duration;
 
 texts! {

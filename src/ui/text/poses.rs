@@ -1,6 +1,6 @@
 //! Sentences of the poses, the sequences and the hand's own gestures.
 
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     MY_POSES: "My poses", "我的姿态";

@@ -6,8 +6,8 @@ use crate::link::scan::ScanEvent;
 use crate::link::{Owner, TouchDoubt, TouchVariant};
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
-use crate::ui::kit::{Look, format};
-use crate::ui::text::phrase::{Text, texts};
+use crate::ui::style::phrase::{Text, texts};
+use crate::ui::style::{Look, format};
 use crate::ui::text::{errors, panels, words};
 
 texts! {

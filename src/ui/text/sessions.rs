@@ -1,6 +1,6 @@
 //! Sentences of recorded sessions: the list, the time line, the lamp in the header.
 
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     TITLE: "Sessions", "会话";

@@ -3,8 +3,8 @@
 use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::ui::kit::Look;
-use crate::ui::text::phrase::texts;
+use crate::ui::style::Look;
+use crate::ui::style::phrase::texts;
 
 texts! {
     SHOWN_OF: "of", "/";

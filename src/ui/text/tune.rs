@@ -7,8 +7,8 @@ use crate::hand::{Dof, Fault};
 use crate::trials::Stage;
 use crate::trials::plan::PlanField;
 use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
-use crate::ui::kit::{Look, format};
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
+use crate::ui::style::{Look, format};
 use crate::ui::text::words;
 
 texts! {

@@ -1,6 +1,6 @@
 //! Sentences of the window's frame: status line, menu, rooms, the list of keys, and what became of files.
 
-use crate::ui::text::phrase::texts;
+use crate::ui::style::phrase::texts;
 
 texts! {
     MENU: "Window menu", "窗口菜单", "Rooms of the window: shut, open, put back.", "窗口各区域：收起、展开、恢复。";

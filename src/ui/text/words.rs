@@ -4,8 +4,8 @@ use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::link::Owner;
 use crate::record::{ArmRefusal, SetpointConflict};
-use crate::ui::kit::Look;
-use crate::ui::text::phrase::Text;
+use crate::ui::style::Look;
+use crate::ui::style::phrase::Text;
 use crate::ui::text::{inputs, main};
 
 /// The name of a joint.

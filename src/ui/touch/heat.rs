@@ -2,9 +2,9 @@
 
 use crate::app::hand::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::ui::hand::fingertip::{Sense, Tip};
 use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::panels;
-use crate::ui::touch::fingertip::{Sense, Tip};
 use egui::{CornerRadius, Rect, Ui, vec2};
 
 /// Counts above the zero of the hottest colour: about a firm grip of 15 N on one pad.

@@ -1,5 +1,4 @@
 //! The five fingertips: small under the drawn hand in the overview, large in their own view with one of them in detail.
-pub(crate) mod fingertip;
 pub(crate) mod heat;
 pub(crate) mod table;
 pub(crate) mod tip_channels;
@@ -8,11 +7,11 @@ pub(crate) mod tip_detail;
 use crate::app::action::Action;
 use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
+use crate::ui::hand::fingertip::{self, Sense, Tip};
 use crate::ui::hand::panel::HandPanel;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
-use crate::ui::touch::fingertip::{Sense, Tip};
 use crate::ui::touch::tip_detail::TipDetail;
 use egui::{
     Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,

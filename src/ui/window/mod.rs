@@ -21,7 +21,6 @@ pub(crate) mod header;
 mod key_actions;
 pub(crate) mod key_list;
 pub(crate) mod keys;
-pub(crate) mod message_log;
 pub(crate) mod rooms;
 pub(crate) mod status;
 mod stop_first;

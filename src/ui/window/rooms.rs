@@ -38,13 +38,6 @@ pub(crate) const fn title(room: WindowRoom) -> Text {
     }
 }
 
-/// The layout with a room shut or opened.
-pub(crate) fn toggled(layout: &Layout, room: WindowRoom) -> Layout {
-    let standing = layout.room(room);
-    let shut = !standing.shut;
-    layout.with(room, RoomLayout { shut, ..standing })
-}
-
 impl Rooms {
     /// Begins a frame in which the rooms stand so.
     pub(crate) fn begin(&mut self, layout: Layout) {
@@ -88,7 +81,7 @@ impl Rooms {
                 add(ui, pane);
             });
         if open == standing.shut {
-            let layout = toggled(&self.layout, room);
+            let layout = self.layout.toggled(room);
             pane.actions.push(Action::Layout(layout));
         } else if let Some(shown) = shown {
             let now = along(shown.response.rect.size(), is_upright);
@@ -131,7 +124,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         for room in WindowRoom::ALL {
             let mut open = !before.room(room).shut;
             if ui.checkbox(&mut open, look.say(title(room))).changed() {
-                after = toggled(&before, room);
+                after = before.toggled(room);
             }
         }
         ui.separator();

@@ -6,6 +6,7 @@ use handscope::app::settings::Settings;
 use handscope::codec::can::{self, CanRecord, from_record, to_record};
 use handscope::codec::mbap::{self, MbapSplitter};
 use handscope::codec::modbus::{bytes_from_words, words_for};
+use handscope::codec::modbus::{detect_packing, group_bytes};
 use handscope::codec::modbus_rtu::{self, RtuSplitter, crc16};
 use handscope::codec::rs485::{
     BUFFER_LEN, ReplyDecoder, RequestDecoder, Rs485Reply, Rs485Request, client, device, encode_read,
@@ -384,8 +385,8 @@ fn words(state: &mut State, bytes: &[u8]) {
     let again = back.iter().map(|pair| u16::from_le_bytes(*pair));
     assert!(again.eq(words.iter().copied().take(125)));
     if let Some(six) = words.first_chunk::<6>() {
-        if let Some(packing) = BytePacking::detect(1, six) {
-            assert!(packing.group(&words).is_some());
+        if let Some(packing) = detect_packing(1, six) {
+            assert!(group_bytes(packing, &words).is_some());
         }
         state.accepted += 1;
     }

@@ -1,19 +1,15 @@
-//! What every part of the window is given: the state, the colours, the language, and where to put actions.
+//! Colours and language of a frame, and sentences in that language.
 
-use crate::app::action::Action;
 use crate::app::hand::Freshness;
 use crate::app::notices::Level;
 use crate::app::poses::PoseState;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
-use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::poses::library::EntryId;
-use crate::record::ArmRefusal;
-use crate::ui::text::{Text, inputs, main};
+use crate::ui::style::Text;
 use crate::ui::theme::Palette;
-use crate::ui::view::View;
-use egui::{Color32, Id};
+use egui::Color32;
 use std::fmt::Display;
 
 /// Colours, language and hand of this frame.
@@ -104,79 +100,4 @@ impl Look {
             Freshness::Stale | Freshness::Unknown => self.palette.faint,
         }
     }
-}
-
-/// One pass over one part of the window.
-pub(crate) struct Pane<'a> {
-    /// What is shown.
-    pub(crate) state: &'a State,
-    /// How it looks.
-    pub(crate) look: Look,
-    /// What the person asked for.
-    pub(crate) actions: &'a mut Vec<Action>,
-    /// The field being typed into.
-    pub(crate) typing: &'a mut Typing,
-    /// What is to be opened after this frame.
-    pub(crate) opens: &'a mut Option<Opens>,
-}
-
-/// What a person opens from another part of the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Opens {
-    /// A view.
-    View(View),
-    /// What is and was wrong.
-    Faults,
-    /// What a drive says, with its faults.
-    Drive(Dof),
-    /// A note of this moment.
-    Note,
-    /// The list of keys, or away with it.
-    Keys,
-}
-
-impl Pane<'_> {
-    /// Opens this after the frame.
-    pub(crate) const fn open(&mut self, opens: Opens) {
-        *self.opens = Some(opens);
-    }
-
-    /// Why nothing that moves the hand can be asked for now.
-    pub(crate) fn unready(&self) -> Option<&'static str> {
-        if self.state.hand().runs_series() {
-            return Some(self.look.say(main::SERIES_RUNS));
-        }
-        if self.state.hand().outside_owner().is_some() {
-            return Some(self.look.say(inputs::TAKEN));
-        }
-        let advice = match self.state.hand().arm_refusal() {
-            Some(ArmRefusal::LetGo) => main::REFUSED_LET_GO,
-            _ => main::NOT_ARMED,
-        };
-        (!self.state.hand().is_armed()).then(|| self.look.say(advice))
-    }
-
-    /// How fresh something asked for at `asked` is.
-    pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
-        self.state.hand().freshness(asked)
-    }
-
-    /// The newest value of one joint, and how fresh it is.
-    pub(crate) fn newest<T: Copy>(
-        &self,
-        dof: Dof,
-        group: Option<Timed<PerDof<T>>>,
-    ) -> (Option<T>, Freshness) {
-        let freshness = self.freshness(group.map(|group| group.asked));
-        (group.map(|group| group.value[dof]), freshness)
-    }
-}
-
-/// The one field that is being typed into, or whose text was refused.
-#[derive(Debug, Default)]
-pub(crate) struct Typing {
-    /// Which, and what was typed so far.
-    pub(crate) field: Option<(Id, String)>,
-    /// Why that was refused.
-    pub(crate) refused: Option<String>,
 }

@@ -62,25 +62,25 @@ macro_rules! texts {
     ) => {
         $(
             #[doc = $en]
-            pub(crate) const $name: $crate::ui::text::Text = $crate::ui::text::Text::new($en, $zh)$(.with_tip($tip_en, $tip_zh))?;
+            pub(crate) const $name: $crate::ui::style::Text = $crate::ui::style::Text::new($en, $zh)$(.with_tip($tip_en, $tip_zh))?;
         )*
         $(
             $(#[$doc])+
-            pub(crate) fn $of(of: $type) -> $crate::ui::text::Text {
+            pub(crate) fn $of(of: $type) -> $crate::ui::style::Text {
                 match of {
-                    $($value => $crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*
+                    $($value => $crate::ui::style::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*
                 }
             }
         )*
         #[cfg(test)]
-        pub(crate) const ALL: &[$crate::ui::text::Text] = &[$($name,)* $($($crate::ui::text::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*)*];
+        pub(crate) const ALL: &[$crate::ui::style::Text] = &[$($name,)* $($($crate::ui::style::Text::new($of_en, $of_zh)$(.with_tip($of_tip_en, $of_tip_zh))?,)*)*];
     };
 }
 pub(crate) use texts;
 
 #[cfg(test)]
 mod tests {
-    use crate::ui::text::phrase::Text;
+    use crate::ui::style::phrase::Text;
     use crate::ui::text::{
         cards, device, exhibit, faults, inputs, main, panels, poses, scan, sessions, traffic, tune,
         window,
