@@ -45,7 +45,6 @@ topics! {
 }
 
 /// The topic of this name.
-#[must_use]
 pub fn topic(name: &str) -> Option<&'static HelpTopic> {
     TOPICS.iter().find(|topic| topic.name == name)
 }

@@ -158,7 +158,6 @@ pub enum Action {
 impl Action {
     /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
     /// gestures and notes are in the history already.
-    #[must_use]
     pub fn person_act(&self, is_armed: bool, poses: &PoseState) -> Option<PersonAct> {
         let act = match self {
             Self::Disarm => return Some(PersonAct::Disarm),

@@ -25,7 +25,6 @@ pub struct SimDial {
 
 impl SimDial {
     /// No hand is built before it is dialled.
-    #[must_use]
     pub const fn new(clock: Clock) -> Self {
         Self {
             clock,
@@ -36,7 +35,6 @@ impl SimDial {
     }
 
     /// As [`SimDial::new`], and every RS485 line ends at this built-in hand: for pictures of what only a line has.
-    #[must_use]
     pub const fn at_lines(clock: Clock, hand: Endpoint) -> Self {
         Self {
             clock,

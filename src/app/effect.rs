@@ -40,7 +40,6 @@ pub enum Effect {
 
 impl Effect {
     /// True for what is carried out while a series of trials runs. All else would come between it and the hand.
-    #[must_use]
     pub const fn passes_in_series(self) -> bool {
         matches!(
             self,
@@ -58,7 +57,6 @@ impl Effect {
 
     /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All
     /// else is about a live hand, and is refused.
-    #[must_use]
     pub const fn passes_in_replay(self) -> bool {
         matches!(
             self,
@@ -67,14 +65,12 @@ impl Effect {
     }
 
     /// True for what is carried out during an exhibition: nothing on its page asks for more.
-    #[must_use]
     pub const fn passes_in_exhibit(self) -> bool {
         matches!(self, Self::StopsAll | Self::Exhibits | Self::Dresses)
     }
 
     /// True for what may still be carried out after a stop that was asked for in the same frame: nothing that moves a hand or
     /// writes what it keeps.
-    #[must_use]
     pub const fn passes_with_stop(self) -> bool {
         matches!(
             self,
@@ -92,7 +88,6 @@ impl Effect {
 
 impl Action {
     /// What this does.
-    #[must_use]
     #[expect(clippy::too_many_lines, reason = "one list of all actions")]
     pub const fn effect(&self) -> Effect {
         match self {

@@ -18,7 +18,6 @@ pub struct FleetState {
 
 impl FleetState {
     /// Where it is listened, if it is.
-    #[must_use]
     pub fn interface(&self) -> Option<Ipv4Addr> {
         self.list.as_ref().map(FleetList::interface)
     }

@@ -109,7 +109,6 @@ pub struct Layout {
 
 impl Layout {
     /// How a room stands.
-    #[must_use]
     pub const fn room(&self, room: WindowRoom) -> RoomLayout {
         match room {
             WindowRoom::Joints => self.joints,

@@ -260,7 +260,6 @@ impl NoticeKind {
     }
 
     /// How much it matters.
-    #[must_use]
     pub const fn level(&self) -> Level {
         match self {
             Self::LinkLost(_) | Self::HoldAlarm | Self::StopNotSent => Level::Alarm,
@@ -389,7 +388,6 @@ impl Notices {
     }
 
     /// True if there is nothing to read.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
@@ -418,7 +416,6 @@ impl Notices {
     }
 
     /// Entries of the log that went because there were too many.
-    #[must_use]
     pub const fn log_dropped(&self) -> u64 {
         self.log_dropped
     }

@@ -33,7 +33,6 @@ pub struct PoseState {
 
 impl PoseState {
     /// With the library that was kept.
-    #[must_use]
     pub fn new(library: PoseLibrary) -> Self {
         Self {
             library,
@@ -42,26 +41,22 @@ impl PoseState {
     }
 
     /// A pose of the person's or a shipped one.
-    #[must_use]
     pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.library.pose(id).or_else(|| starter().pose(id))
     }
 
     /// A sequence of the person's or a shipped one.
-    #[must_use]
     pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
         self.library_of(id).sequence(id)
     }
 
     /// A reaction of the person's or a shipped one.
-    #[must_use]
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         let shipped = || starter().reaction(id);
         self.library.reaction(id).or_else(shipped)
     }
 
     /// The library that has this sequence: the person's, or what is shipped.
-    #[must_use]
     pub fn library_of(&self, id: SequenceId) -> &PoseLibrary {
         match self.library.sequence(id) {
             Some(_) => &self.library,
@@ -70,14 +65,12 @@ impl PoseState {
     }
 
     /// What is needed to play an entry of the person's or a shipped one.
-    #[must_use]
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let shipped = || starter().plan(entry);
         self.library.plan(entry).or_else(shipped)
     }
 
     /// What an entry of the person's or a shipped one is called.
-    #[must_use]
     pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
         let shipped = || starter().named(entry);
         self.library.named(entry).or_else(shipped)
@@ -104,7 +97,6 @@ impl PoseState {
     }
 
     /// Those that the buttons of a gamepad name.
-    #[must_use]
     pub fn on_pad(&self, map: &PadMap, hidden: &BTreeSet<String>) -> PadPoses {
         let all: Vec<&LibraryPose> = self.poses(hidden).collect();
         let named = map.poses().filter_map(|name| {
@@ -116,7 +108,6 @@ impl PoseState {
 
     /// What can be started with one press: poses but those that only demos need, then sequences and reactions; a person's own
     /// before those that are shipped.
-    #[must_use]
     pub fn ready(&self, hidden: &BTreeSet<String>) -> Vec<EntryId> {
         let is_demo = |entry: &EntryId| match entry {
             EntryId::Pose(id) => self.pose(*id).is_some_and(LibraryPose::is_for_demos),
@@ -133,7 +124,6 @@ impl PoseState {
     }
 
     /// What a key starts.
-    #[must_use]
     pub fn by_key(&self, key: EntryKey, hidden: &BTreeSet<String>) -> Option<EntryId> {
         let ready = self.ready(hidden);
         let has = |id: &EntryId| self.named(*id).is_some_and(|names| names.key == Some(key));
@@ -141,7 +131,6 @@ impl PoseState {
     }
 
     /// True if a deletion or an import can be taken back.
-    #[must_use]
     pub const fn can_undo(&self) -> bool {
         self.before.is_some()
     }

@@ -78,7 +78,6 @@ pub struct ScanState {
 
 impl ScanState {
     /// True while a scan is under way.
-    #[must_use]
     pub fn is_running(&self) -> bool {
         self.stage == ScanStage::Running
     }

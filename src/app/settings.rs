@@ -120,7 +120,6 @@ impl PlotWindow {
     ];
 
     /// Seconds shown.
-    #[must_use]
     pub const fn seconds(self) -> f64 {
         match self {
             Self::S5 => 5.0,
@@ -188,13 +187,11 @@ impl From<BTreeSet<PlotKind>> for ShownPlots {
 
 impl ShownPlots {
     /// True if this plot is drawn.
-    #[must_use]
     pub fn shows(&self, kind: PlotKind) -> bool {
         self.0.contains(&kind)
     }
 
     /// How many are drawn.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
     }
@@ -282,7 +279,6 @@ impl Default for SessionSettings {
 
 impl SessionSettings {
     /// What all sessions together may need, in bytes.
-    #[must_use]
     pub fn budget_bytes(&self) -> u64 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -352,13 +348,11 @@ pub struct Settings {
 
 impl Settings {
     /// Whether a hand is recorded, built-in or not.
-    #[must_use]
     pub const fn records(&self, is_simulated: bool) -> bool {
         self.sessions.record && (!is_simulated || self.sessions.record_simulated)
     }
 
     /// What the controls of a gamepad do.
-    #[must_use]
     pub fn pad_map(&self) -> PadMap {
         let own = self.pad_map.as_deref();
         let own = own.and_then(|text| pad::file::read(text).ok());
@@ -366,7 +360,6 @@ impl Settings {
     }
 
     /// Where sessions lie; `None` = nowhere.
-    #[must_use]
     pub fn sessions_folder(&self, documents: Option<&Path>) -> Option<PathBuf> {
         let own = self.sessions.folder.clone();
         own.or_else(|| documents.map(day_folder::of_all))
@@ -382,14 +375,12 @@ impl Settings {
     }
 
     /// Left or right, as the person said of this hand, or last of any.
-    #[must_use]
     pub fn side_of(&self, endpoint: Option<&Endpoint>) -> Side {
         let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
         known.and_then(|known| known.side).unwrap_or(self.side)
     }
 
     /// What a person calls this hand.
-    #[must_use]
     pub fn hand_name(&self, endpoint: &Endpoint) -> Option<&str> {
         let name = &self.hands.get(&endpoint.to_string())?.name;
         (!name.is_empty()).then_some(name)
@@ -430,7 +421,6 @@ impl Settings {
     }
 
     /// The name that a person gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
-    #[must_use]
     pub fn gesture_name(&self, gesture: Gesture) -> Option<&str> {
         let name = self.gesture_names.get(&gesture.get().to_string())?.trim();
         (!name.is_empty()).then_some(name)

@@ -57,7 +57,6 @@ pub struct State {
 
 impl State {
     /// The hand that is shown.
-    #[must_use]
     pub fn hand(&self) -> &HandState {
         self.hands.shown()
     }

@@ -40,7 +40,6 @@ const WRONG_USAGE: u8 = 2;
 /// Runs the command line. Errors go to standard error as one sentence each.
 ///
 /// The exit status is 0 when done, 1 on failure, 2 on wrong usage.
-#[must_use]
 pub fn run() -> ExitCode {
     let Cli { command, window } = Cli::parse();
     holder::use_this_program(out::say);

@@ -64,7 +64,6 @@ pub struct CanId {
 
 impl CanId {
     /// The identifier; `None` if the hand or the address has too many bits.
-    #[must_use]
     pub fn raw(self) -> Option<u32> {
         if self.hand > HAND_ID_MAX || self.address > ADDRESS_MAX {
             return None;
@@ -77,7 +76,6 @@ impl CanId {
     }
 
     /// The parts of a 29-bit identifier; `None` for the wrist's flags and unknown ones.
-    #[must_use]
     pub fn from_raw(id: u32) -> Option<Self> {
         let way = match id >> 26 {
             0 => CanFunction::Read,
@@ -93,7 +91,6 @@ impl CanId {
 }
 
 /// The request that reads 1 to 8 bytes (manual 2.3.1): one byte of data, which is the length.
-#[must_use]
 pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
     if span.len == 0 || span.len > PIECE_MAX {
         return None;
@@ -103,7 +100,6 @@ pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
 }
 
 /// A frame about this address: the reply to a read, a write (manual 2.3.2) or its reply; `None` for more than 8 bytes.
-#[must_use]
 pub fn frame(way: CanFunction, hand: u16, address: u16, data: &[u8]) -> Option<CanFrame> {
     let id = CanId { way, address, hand }.raw()?;
     let data = CanData::try_from(data).ok()?;
@@ -111,7 +107,6 @@ pub fn frame(way: CanFunction, hand: u16, address: u16, data: &[u8]) -> Option<C
 }
 
 /// The frames that write these bytes, in the order of addresses; each is answered by itself.
-#[must_use]
 pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFrame, 4>> {
     let span = write.span();
     split(span)?
@@ -130,7 +125,6 @@ pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFr
 /// Cuts a run into pieces of 1 to 8 bytes, never through a short, nor through a number of a fingertip block (manual 2.6.21).
 /// `None` for an empty run, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
 // Manual: 2.3 says nothing of more than 8 bytes; others cut by address too.
-#[must_use]
 pub fn split(span: Span) -> Option<ReadPieces> {
     let end = u16::try_from(span.end()).ok()?;
     if span.len == 0 || end > ADDRESS_MAX + 1 {
@@ -151,7 +145,6 @@ pub fn split(span: Span) -> Option<ReadPieces> {
 }
 
 /// True if no number lies across this address.
-#[must_use]
 pub fn may_cut(at: u16) -> bool {
     if at <= TOUCH.address || u32::from(at) >= TOUCH.end() {
         return at.is_multiple_of(2);
@@ -179,7 +172,6 @@ pub enum CanRecord {
 }
 
 /// The frame as Linux's `struct can_frame`.
-#[must_use]
 pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
     let mut record = [0; RECORD_LEN];
     let id = ((frame.id & ID_MASK) | EXTENDED).to_ne_bytes();
@@ -195,7 +187,6 @@ pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
 }
 
 /// What a `struct can_frame` says.
-#[must_use]
 pub fn from_record(record: &[u8; RECORD_LEN]) -> CanRecord {
     let [a, b, c, d, len, _, _, _, data @ ..] = record;
     let id = u32::from_ne_bytes([*a, *b, *c, *d]);

@@ -27,19 +27,16 @@ pub struct Adu {
 
 impl Adu {
     /// Function code; the top bit marks an exception.
-    #[must_use]
     pub fn function(&self) -> u8 {
         self.pdu().first().copied().unwrap_or_default()
     }
 
     /// What it says: function code and data.
-    #[must_use]
     pub fn pdu(&self) -> &[u8] {
         self.bytes.get(HEADER_LEN + 1..).unwrap_or_default()
     }
 
     /// The message that answers this one as `unit`, saying `pdu`.
-    #[must_use]
     pub fn reply(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
         let len = u16::try_from(pdu.len() + 1).unwrap_or(u16::MAX);
         let head = [self.transaction, 0, len].map(u16::to_be_bytes);
@@ -119,7 +116,6 @@ impl MbapSplitter {
     }
 
     /// Bytes kept because their message is not whole.
-    #[must_use]
     pub const fn buffered(&self) -> usize {
         self.buffer.len()
     }

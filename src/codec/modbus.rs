@@ -22,7 +22,6 @@ pub struct WordSpan {
 }
 
 /// The words that hold these bytes; an odd length takes one byte more.
-#[must_use]
 pub const fn words_for(span: Span) -> WordSpan {
     // Manual: 2.5 does not say what an address counts; drivers of real hands agree on bytes, two a word.
     WordSpan {
@@ -35,7 +34,6 @@ pub const fn words_for(span: Span) -> WordSpan {
 ///
 /// The low byte comes first, but in registers of single bytes where [`BytePacking::HighFirst`] says otherwise. Words of
 /// [`BytePacking::OnePerWord`] are read by [`group_bytes`].
-#[must_use]
 pub fn bytes_from_words(address: u16, words: &[u16], packing: BytePacking) -> WordBytes {
     let addresses = (0u16..).map(|nth| address.saturating_add(2 * nth));
     words
@@ -73,7 +71,6 @@ pub enum ModbusWrite {
 }
 
 /// The Modbus form of a write: one byte by function 6, words by function 16.
-#[must_use]
 pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
     let address = write.address();
     match write.bytes() {
@@ -100,7 +97,6 @@ pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
 ///
 /// Temperatures tell packed words from single ones. The id, whose neighbour 1001 is unused, tells which byte of a
 /// word comes first: a hand 1 says 1 or 256.
-#[must_use]
 pub fn detect_packing(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<BytePacking> {
     let [first, second, third, behind @ ..] = words_at_temp;
     let small = words_at_temp.iter().all(|word| *word <= 0xFF);
@@ -116,7 +112,6 @@ pub fn detect_packing(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<ByteP
 }
 
 /// Words that hold one group of six.
-#[must_use]
 pub const fn words_per_group(packing: BytePacking) -> u16 {
     match packing {
         BytePacking::LowFirst | BytePacking::HighFirst => 3,
@@ -126,7 +121,6 @@ pub const fn words_per_group(packing: BytePacking) -> u16 {
 
 /// The six bytes of a group from the words that begin at its address; `None` if there are too few words,
 /// or a word of [`BytePacking::OnePerWord`] holds no byte.
-#[must_use]
 pub fn group_bytes(packing: BytePacking, words: &[u16]) -> Option<[u8; GROUP_LEN]> {
     let words = words.get(..usize::from(words_per_group(packing)))?;
     let bytes: ArrayVec<u8, GROUP_LEN> = match packing {

@@ -24,7 +24,6 @@ const READ_HEAD_LEN: usize = 3;
 const READ_BYTES_MAX: u8 = 250;
 
 /// The check over all bytes before it; on the wire its low byte comes first (manual 2.4: CRC).
-#[must_use]
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |mut crc, byte| {
         crc ^= u16::from(*byte);
@@ -44,7 +43,6 @@ pub struct RtuReply {
 
 impl RtuReply {
     /// Memory bytes in the reply to a read; `None` for all others.
-    #[must_use]
     pub fn read_len(&self) -> Option<u16> {
         match self.bytes.as_slice() {
             [_, 3, len, ..] => Some(u16::from(*len)),
@@ -92,7 +90,6 @@ enum ReplyStart {
 
 impl RtuSplitter {
     /// Replies of this unit; those of others are skipped.
-    #[must_use]
     pub const fn new(unit: u8) -> Self {
         Self {
             unit,
@@ -123,7 +120,6 @@ impl RtuSplitter {
     }
 
     /// Requests met so far.
-    #[must_use]
     pub const fn requests(&self) -> RtuRequests {
         self.requests
     }
@@ -169,13 +165,11 @@ impl RtuSplitter {
     }
 
     /// What was skipped so far.
-    #[must_use]
     pub const fn noise(&self) -> NoiseCounts {
         self.noise
     }
 
     /// Bytes kept because their reply is not whole.
-    #[must_use]
     pub const fn buffered(&self) -> usize {
         self.buffer.len()
     }

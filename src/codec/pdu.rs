@@ -85,7 +85,6 @@ pub enum ModbusException {
 
 impl ModbusException {
     /// The message that says so, in answer to this function.
-    #[must_use]
     pub const fn reply(self, function: u8) -> [u8; 2] {
         [function | 0x80, self as u8]
     }
@@ -103,7 +102,6 @@ pub enum Len {
 }
 
 /// The length of the message that begins here.
-#[must_use]
 pub fn len(side: ModbusRole, pdu: &[u8]) -> Len {
     match (side, pdu) {
         (_, []) => Len::Open,
@@ -127,7 +125,6 @@ const fn is_words(bytes: u8, max: u8) -> bool {
 }
 
 /// What a whole message says.
-#[must_use]
 pub fn parse(side: ModbusRole, pdu: &[u8]) -> Pdu<'_> {
     let word = |high: &u8, low: &u8| u16::from_be_bytes([*high, *low]);
     match (side, pdu) {

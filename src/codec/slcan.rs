@@ -56,14 +56,12 @@ pub enum SlcanAnswer {
 }
 
 /// The code of a bit rate, if it has one.
-#[must_use]
 pub fn bitrate_code(bitrate: u32) -> Option<u8> {
     let at = BITRATES.iter().position(|known| *known == bitrate)?;
     u8::try_from(at).ok()
 }
 
 /// The line that says this to an adapter; `None` for codes past 8, and for what is told by its letter alone.
-#[must_use]
 pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
     let mut line = SlcanLine::new();
     match command {
@@ -85,7 +83,6 @@ pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
 }
 
 /// What an adapter sends for this; `None` for [`SlcanAnswer::Other`].
-#[must_use]
 pub fn encode_answer(answer: &SlcanAnswer) -> Option<SlcanLine> {
     let mut line = SlcanLine::new();
     match answer {
@@ -179,7 +176,6 @@ impl AnswerDecoder {
     }
 
     /// What was no good line.
-    #[must_use]
     pub const fn counts(&self) -> NoiseCounts {
         self.0.counts
     }
@@ -205,7 +201,6 @@ impl CommandDecoder {
     }
 
     /// What was no good line.
-    #[must_use]
     pub const fn counts(&self) -> NoiseCounts {
         self.0.counts
     }

@@ -65,7 +65,6 @@ pub enum PacketStart {
 }
 
 /// The packet that carries a frame.
-#[must_use]
 pub fn encode(frame: &CanFrame) -> Packet {
     let len = u8::try_from(frame.data.len()).unwrap_or_default();
     let data = frame.data.iter().copied().chain(std::iter::repeat(0));
@@ -84,7 +83,6 @@ pub fn encode(frame: &CanFrame) -> Packet {
 }
 
 /// Looks at the beginning of some bytes: for a packet with A5 put in, and for one without.
-#[must_use]
 pub fn inspect(bytes: &[u8]) -> PacketStart {
     let rest = match bytes {
         [] | [HEAD] => return PacketStart::Open,
@@ -204,7 +202,6 @@ impl PacketDecoder {
     }
 
     /// What was no good packet.
-    #[must_use]
     pub const fn counts(&self) -> NoiseCounts {
         self.counts
     }

@@ -71,7 +71,6 @@ struct AttractRow {
 }
 
 /// What is shown without a file.
-#[must_use]
 pub fn built_in() -> Option<ExhibitPlan> {
     let file = ExhibitFile::parse(BUILT_IN, Path::new(""));
     let plan = file.and_then(|file| file.plan(&PoseLibrary::default()));
@@ -98,7 +97,6 @@ pub struct NamedFile<'a> {
 
 impl NamedFile<'_> {
     /// The error of the file that names it, because of this one.
-    #[must_use]
     pub fn refused(&self, why: &dyn std::fmt::Display) -> FileError {
         let what = format!("{}: {why}", self.path.display());
         let cause = FileCause::Unreadable(what);
@@ -106,7 +104,6 @@ impl NamedFile<'_> {
     }
 
     /// The error of the file that names it, because it does not lie below that one's folder.
-    #[must_use]
     pub fn outside(&self) -> FileError {
         let got = quoted(&self.path.display().to_string());
         let cause = FileCause::Outside { got };

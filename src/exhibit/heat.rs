@@ -89,7 +89,6 @@ impl HeatGovernor {
     }
 
     /// What the heat allows now.
-    #[must_use]
     pub fn level(&self, now: Moment) -> HeatLevel {
         let Some(celsius) = self.fresh(now) else {
             return HeatLevel::Unknown;
@@ -103,7 +102,6 @@ impl HeatGovernor {
     }
 
     /// True once a rest has done its work.
-    #[must_use]
     pub fn is_rested(&self, now: Moment) -> bool {
         let cool = |celsius: PerDof<f32>| celsius.iter().all(|(_, at)| *at <= RESTED_AT);
         self.fresh(now).is_some_and(cool)

@@ -64,7 +64,6 @@ pub struct WrongPins {
 
 impl WrongPins {
     /// How long nothing is taken after these: nothing but after each [`TRIES`], then a minute and twice as long each time.
-    #[must_use]
     pub fn wait(self) -> Option<Duration> {
         let rounds = self.count / u32::from(TRIES);
         let is_due = rounds > 0 && self.count.is_multiple_of(u32::from(TRIES));
@@ -83,7 +82,6 @@ pub struct PinGate {
 
 impl PinGate {
     /// Opens to this PIN only.
-    #[must_use]
     pub const fn new(pin: Pin) -> Self {
         Self {
             pin,
@@ -94,7 +92,6 @@ impl PinGate {
 
     /// The same after wrong PINs in an earlier run of the program. A wait that was not over then begins anew: no clock tells how
     /// much of it passed that a person could not have set.
-    #[must_use]
     pub fn resumed(pin: Pin, earlier: WrongPins, now: Moment) -> Self {
         let wait = earlier.wait().filter(|_| !earlier.waited);
         Self {
@@ -105,7 +102,6 @@ impl PinGate {
     }
 
     /// What an exhibition that begins later has to know.
-    #[must_use]
     pub fn wrong_pins(&self, now: Moment) -> WrongPins {
         let count = self.wrong;
         WrongPins {
@@ -115,7 +111,6 @@ impl PinGate {
     }
 
     /// When the next try counts, if that is not now.
-    #[must_use]
     pub fn locked_until(&self, now: Moment) -> Option<Moment> {
         self.locked.filter(|until| now < *until)
     }

@@ -42,7 +42,6 @@ pub struct ExhibitPiece {
 
 impl ExhibitPiece {
     /// What its tile shows: a pose of it that says most, the one that is furthest from open.
-    #[must_use]
     pub fn shown(&self) -> Targets {
         let cues = self.plan.cues.iter().map(|cue| &cue.targets);
         let touched = self.plan.reaction.iter().map(|cue| &cue.touched.targets);
@@ -93,7 +92,6 @@ pub struct ExhibitPlan {
 
 impl MotionLimits {
     /// What the link sets before anything moves.
-    #[must_use]
     pub const fn arm_request(self) -> ArmRequest {
         ArmRequest {
             speed: PerDof::splat(self.speed),
@@ -111,7 +109,6 @@ impl MotionLimits {
     }
 
     /// A plan that keeps within them. What is slower then has so much longer to arrive.
-    #[must_use]
     pub fn limited(self, plan: &PlayPlan) -> PlayPlan {
         let mut plan = plan.clone();
         let touched = plan.reaction.iter_mut().map(|cue| &mut cue.touched);

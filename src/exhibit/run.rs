@@ -242,7 +242,6 @@ pub struct ExhibitRun {
 
 impl ExhibitRun {
     /// Begins without a permission to move.
-    #[must_use]
     pub fn new(plan: Arc<ExhibitPlan>, now: Moment) -> Self {
         Self {
             plan,
@@ -274,7 +273,6 @@ impl ExhibitRun {
     }
 
     /// What the page shows.
-    #[must_use]
     pub fn view(&self, now: Moment) -> ExhibitView {
         let (stage, tile) = match self.phase {
             Phase::Halted(why) => (ExhibitStage::Halted(why), None),

@@ -4,19 +4,16 @@ use crate::hand::dof::{Dof, Finger};
 use crate::hand::quantity::{Quantity, QuantityRow, Touch};
 
 /// The column of a joint's quantity: what, of which joint, unit.
-#[must_use]
 pub fn joint_column(quantity: Quantity, dof: Dof) -> String {
     named(quantity.row(), dof.name())
 }
 
 /// The column of a fingertip's quantity.
-#[must_use]
 pub fn tip_column(touch: Touch, finger: Finger) -> String {
     named(touch.row(), finger.name())
 }
 
 /// The column of one of a fingertip's eight channels, from 0.
-#[must_use]
 pub fn channel_column(channel: u8, finger: Finger) -> String {
     format!("channel_{}_{}", channel + 1, finger.name())
 }
@@ -27,7 +24,6 @@ fn named(row: &QuantityRow, part: &str) -> String {
 }
 
 /// A cell of free text in comma-separated values. One that a spreadsheet would take for a formula is made a text.
-#[must_use]
 pub fn text_cell(words: &str) -> String {
     let formula = words.starts_with(['=', '+', '-', '@']);
     let lead = if formula { "\'" } else { "" };

@@ -51,25 +51,21 @@ pub struct RegisterWrite {
 
 impl RegisterWrite {
     /// Where it goes.
-    #[must_use]
     pub const fn span(&self) -> Span {
         self.span
     }
 
     /// First byte's address.
-    #[must_use]
     pub const fn address(&self) -> u16 {
         self.span.address
     }
 
     /// The bytes in memory order, 1..=12.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// True if the hand moves because of it.
-    #[must_use]
     pub fn is_motion(&self) -> bool {
         [
             register::ANGLE_SET,
@@ -82,7 +78,6 @@ impl RegisterWrite {
     }
 
     /// What it says of each joint, if it lies within this row of six shorts.
-    #[must_use]
     pub fn shorts(&self, row: &Register) -> PerDof<Option<i16>> {
         let (pairs, _odd) = self.bytes.as_chunks::<2>();
         let first = usize::from(self.span.address.saturating_sub(row.address) / 2);
@@ -111,13 +106,11 @@ pub type Writes = ArrayVec<RegisterWrite, WRITES_MAX>;
 
 impl HandCommand {
     /// True if the hand moves because of it.
-    #[must_use]
     pub fn is_motion(&self) -> bool {
         self.writes().iter().any(RegisterWrite::is_motion)
     }
 
     /// The register writes, in order. Joints that are not given are not written.
-    #[must_use]
     pub fn writes(&self) -> Writes {
         let mut out = Writes::new();
         match self {

@@ -32,13 +32,11 @@ impl Dof {
     ];
 
     /// Position in a register group, 0..=5.
-    #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Little => "little",
@@ -54,7 +52,6 @@ impl Dof {
     ///
     /// Manual: §2.6.11 prints only the little finger (20..176). The other figures come from
     /// the sister manual of the same family, and the map between them is taken as linear.
-    #[must_use]
     pub const fn degrees(self) -> (f32, f32) {
         match self {
             Self::Little | Self::Ring | Self::Middle | Self::Index => (20.0, 176.0),
@@ -64,7 +61,6 @@ impl Dof {
     }
 
     /// The fingertip sensor that this joint moves.
-    #[must_use]
     pub const fn finger(self) -> Finger {
         match self {
             Self::Little => Finger::Little,
@@ -103,13 +99,11 @@ impl Finger {
     ];
 
     /// Position in the tactile map, 0..=4.
-    #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Little => "little",
@@ -121,7 +115,6 @@ impl Finger {
     }
 
     /// The joint that bends this finger.
-    #[must_use]
     pub const fn bend(self) -> Dof {
         match self {
             Self::Little => Dof::Little,

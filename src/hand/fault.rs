@@ -21,7 +21,6 @@ pub enum Fault {
 
 impl Fault {
     /// From a bit number, 0..=7.
-    #[must_use]
     pub const fn from_bit(bit: u8) -> Self {
         match bit {
             0 => Self::Stall,
@@ -34,7 +33,6 @@ impl Fault {
     }
 
     /// The bit number, 0..=7.
-    #[must_use]
     pub const fn bit(self) -> u8 {
         match self {
             Self::Stall => 0,
@@ -47,7 +45,6 @@ impl Fault {
     }
 
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Stall => "stall",
@@ -62,7 +59,6 @@ impl Fault {
     }
 
     /// Whether CLEAR_ERROR can clear it (manual 2.6.3); unknown bits: not said.
-    #[must_use]
     pub const fn clearable(self) -> Option<bool> {
         match self {
             Self::OverTemperature => Some(false),
@@ -72,7 +68,6 @@ impl Fault {
     }
 
     /// What it means and what to do, in English.
-    #[must_use]
     pub const fn words(self) -> Words {
         match self {
             Self::Stall => Words::new(
@@ -119,25 +114,21 @@ pub struct Faults(u8);
 
 impl Faults {
     /// Keeps the register's byte.
-    #[must_use]
     pub const fn from_raw(raw: u8) -> Self {
         Self(raw)
     }
 
     /// The register's byte.
-    #[must_use]
     pub const fn raw(self) -> u8 {
         self.0
     }
 
     /// True if no bit is set.
-    #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
     /// True if this fault's bit is set.
-    #[must_use]
     pub const fn contains(self, fault: Fault) -> bool {
         self.0 >> fault.bit() & 1 == 1
     }

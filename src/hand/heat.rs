@@ -24,7 +24,6 @@ pub struct DriveHeat {
 
 impl DriveHeat {
     /// The warmest drive, if one is warm by what was read last.
-    #[must_use]
     pub fn warmest(sample: &HandSample, now: Moment) -> Option<Self> {
         let read = sample
             .temperature
@@ -36,7 +35,6 @@ impl DriveHeat {
     }
 
     /// Whether it is too hot to go on.
-    #[must_use]
     pub const fn is_hot(self) -> bool {
         self.celsius >= HOT
     }

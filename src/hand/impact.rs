@@ -33,7 +33,6 @@ const ROWS: [(f64, f64); 5] = [
 ];
 
 /// Peak above the threshold in g, on a rigid block, for a contact at `speed` (units of SPEED_SET).
-#[must_use]
 pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     let at_row = |row: &[f64; 5]| interpolate(THRESHOLDS.into_iter().zip(*row), threshold_g);
     let [slow, middle, fast] = &PEAKS;
@@ -50,7 +49,6 @@ pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
 }
 
 /// The same where the finger came fast and was slowed down to `speed` before the contact.
-#[must_use]
 pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     if speed > SLOWEST {
         return overshoot_g(speed, threshold_g);
@@ -64,7 +62,6 @@ pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
 pub const NOTABLE_G: f64 = 500.0;
 
 /// The smallest speed at which a contact on a rigid block goes [`NOTABLE_G`] past this threshold, if any does.
-#[must_use]
 pub fn rough_from_speed(threshold: Force) -> Option<Speed> {
     let threshold = f64::from(threshold.get());
     let rough = |speed: i16| overshoot_g(f64::from(speed), threshold) >= NOTABLE_G;
@@ -72,7 +69,6 @@ pub fn rough_from_speed(threshold: Force) -> Option<Speed> {
 }
 
 /// The smallest threshold that a contact on a rigid block at this speed goes [`NOTABLE_G`] past, if any is.
-#[must_use]
 pub fn rough_from_threshold(speed: Speed) -> Option<Force> {
     let speed = f64::from(speed.get());
     let rough = |threshold: i16| overshoot_g(speed, f64::from(threshold)) >= NOTABLE_G;

@@ -32,7 +32,6 @@ impl Side {
     }
 
     /// The palm's own frame. A left hand's frames are mirrored, so that one shape fits both hands.
-    #[must_use]
     pub fn frame(self) -> Affine3 {
         let x = if self == Self::Left { -1.0 } else { 1.0 };
         Affine3::from_scale(Vec3::new(x, 1.0, 1.0))
@@ -69,7 +68,6 @@ impl Segment {
     ];
 
     /// The drive that moves this segment against the one it hangs on.
-    #[must_use]
     pub const fn dof(self) -> Option<Dof> {
         Some(match self {
             Palm => return None,
@@ -83,13 +81,11 @@ impl Segment {
     }
 
     /// The finger it belongs to.
-    #[must_use]
     pub fn finger(self) -> Option<Finger> {
         self.dof().map(Dof::finger)
     }
 
     /// The segment that carries the tip of a finger.
-    #[must_use]
     pub const fn tip(finger: Finger) -> Self {
         match finger {
             Finger::Little => Self::Little2,
@@ -146,7 +142,6 @@ const JOINT_NAMES: [&str; 12] = [
 ];
 
 /// The names of the twelve joints as the maker's model has them.
-#[must_use]
 pub fn joint_names(side: Side) -> Vec<String> {
     let side = match side {
         Side::Right => "right",
@@ -157,7 +152,6 @@ pub fn joint_names(side: Side) -> Vec<String> {
 }
 
 /// How far each of the twelve joints is turned, in radians, at these angles of the drives, 0..=1000; NaN where one is not known.
-#[must_use]
 pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
     let turned = |(segment, joint): (Segment, &SegmentJoint)| {
         let dof = segment.dof()?;
@@ -174,7 +168,6 @@ pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
 const SECOND: [f32; 3] = [-3.426, 32.596, -0.55];
 
 /// The middle of a fingertip's pad, in the frame of [`Segment::tip`]. This hand (capacitive) has no other pads.
-#[must_use]
 pub const fn tip_pad(finger: Finger) -> Vec3 {
     match finger {
         Finger::Little => Vec3::new(-6.40, 42.71, -6.12),
@@ -190,7 +183,6 @@ pub struct SegmentFrames([Affine3; 13]);
 
 impl SegmentFrames {
     /// From the angles of the six drives in radians, 0 = open. Beyond [`RANGE`] the drives do not go.
-    #[must_use]
     pub fn of_radians(side: Side, angles: &PerDof<f32>) -> Self {
         let mut pose = Self([side.frame(); 13]);
         for (segment, joint) in Segment::ALL.into_iter().skip(1).zip(&JOINTS) {
@@ -210,20 +202,17 @@ impl SegmentFrames {
     }
 
     /// From shares of the way from bent (0) to open (1): ANGLE_ACT / 1000 (manual 2.6.11).
-    #[must_use]
     pub fn of_shares(side: Side, shares: &PerDof<f32>) -> Self {
         let angles = PerDof::from_fn(|dof| (1.0 - shares[dof]) * RANGE[dof]);
         Self::of_radians(side, &angles)
     }
 
     /// Where a segment is.
-    #[must_use]
     pub fn frame(&self, segment: Segment) -> Affine3 {
         self.0.get(segment as usize).copied().unwrap_or_default()
     }
 
     /// The middle of a fingertip's pad.
-    #[must_use]
     pub fn tip(&self, finger: Finger) -> Vec3 {
         self.frame(Segment::tip(finger))
             .transform_point3(tip_pad(finger))

@@ -15,31 +15,26 @@ impl Moment {
     pub const ZERO: Self = Self(0);
 
     /// From microseconds since the start.
-    #[must_use]
     pub const fn from_micros(micros: u64) -> Self {
         Self(micros)
     }
 
     /// From a duration since the start, cut to microseconds.
-    #[must_use]
     pub fn from_duration(since_start: Duration) -> Self {
         Self(u64::try_from(since_start.as_micros()).unwrap_or(u64::MAX))
     }
 
     /// Microseconds since the start.
-    #[must_use]
     pub const fn micros(self) -> u64 {
         self.0
     }
 
     /// Seconds since the start, for axes and files.
-    #[must_use]
     pub fn secs(self) -> f64 {
         self.since(Self::ZERO).as_secs_f64()
     }
 
     /// Time passed since `earlier`; zero if `earlier` is in fact later.
-    #[must_use]
     pub const fn since(self, earlier: Self) -> Duration {
         Duration::from_micros(self.0.saturating_sub(earlier.0))
     }
@@ -64,7 +59,6 @@ pub struct Timed<T> {
 
 impl<T> Timed<T> {
     /// Age at `now`, counted from the request, so that it is never too small.
-    #[must_use]
     pub const fn age(&self, now: Moment) -> Duration {
         now.since(self.asked)
     }

@@ -103,7 +103,6 @@ impl Quantity {
     pub const MEASURED: [Self; 4] = [Self::Angle, Self::Force, Self::Current, Self::Temperature];
 
     /// Its row of the table.
-    #[must_use]
     pub const fn row(self) -> &'static QuantityRow {
         match self {
             Self::Angle => &ANGLE,
@@ -115,7 +114,6 @@ impl Quantity {
     }
 
     /// The group of a sample that holds it.
-    #[must_use]
     pub const fn group(self) -> Group {
         match self {
             Self::Angle => Group::Angle,
@@ -127,7 +125,6 @@ impl Quantity {
     }
 
     /// The numbers of a sample as the hand sent them; none of targets, which are no measurement.
-    #[must_use]
     pub fn raw(self, sample: &HandSample) -> Option<Timed<PerDof<i16>>> {
         match self {
             Self::Angle => six(sample.angle, AngleReading::raw),
@@ -139,7 +136,6 @@ impl Quantity {
     }
 
     /// The numbers of a sample that the manual knows; only these may feed logic.
-    #[must_use]
     pub fn documented(self, sample: &HandSample) -> Option<Timed<PerDof<Option<i16>>>> {
         match self {
             Self::Angle => six(sample.angle, AngleReading::documented),
@@ -171,7 +167,6 @@ impl Touch {
     pub const ALL: [Self; 2] = [Self::Normal, Self::Tangential];
 
     /// Its row of the table.
-    #[must_use]
     pub const fn row(self) -> &'static QuantityRow {
         match self {
             Self::Normal => &NORMAL,

@@ -14,19 +14,16 @@ macro_rules! reading {
             pub const RANGE: std::ops::RangeInclusive<$inner> = $min..=$max;
 
             /// Keeps the number as the hand sent it.
-            #[must_use]
             pub const fn new(raw: $inner) -> Self {
                 Self(raw)
             }
 
             /// The number as the hand sent it, also when it is out of range.
-            #[must_use]
             pub const fn raw(self) -> $inner {
                 self.0
             }
 
             /// The number if the manual knows it. Only this may feed logic.
-            #[must_use]
             pub fn documented(self) -> Option<$inner> {
                 Self::RANGE.contains(&self.0).then_some(self.0)
             }
@@ -60,7 +57,6 @@ impl AngleReading {
     const END_STOP_SLACK: i16 = 50;
 
     /// The target that keeps the joint where it is; none if the reading makes no sense.
-    #[must_use]
     pub fn hold(self) -> Option<Angle> {
         (-Self::END_STOP_SLACK..=1000 + Self::END_STOP_SLACK)
             .contains(&self.0)
@@ -68,7 +64,6 @@ impl AngleReading {
     }
 
     /// Degrees of this joint, if the reading is in range.
-    #[must_use]
     pub fn degrees(self, dof: Dof) -> Option<f32> {
         let angle = Angle::new(self.documented()?).ok()?;
         Some(angle.degrees(dof))

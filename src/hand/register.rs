@@ -14,25 +14,21 @@ pub struct Span {
 
 impl Span {
     /// A run of `len` bytes from `address`.
-    #[must_use]
     pub const fn new(address: u16, len: u16) -> Self {
         Self { address, len }
     }
 
     /// One past the last byte.
-    #[must_use]
     pub const fn end(self) -> u32 {
         self.address as u32 + self.len as u32
     }
 
     /// True if `inner` lies wholly inside.
-    #[must_use]
     pub const fn covers(self, inner: Self) -> bool {
         self.address <= inner.address && inner.end() <= self.end()
     }
 
     /// The part of `bytes`, which hold this run, that holds `inner`.
-    #[must_use]
     pub fn slice(self, bytes: &[u8], inner: Self) -> Option<&[u8]> {
         let from = usize::from(inner.address.checked_sub(self.address)?);
         bytes.get(from..from + usize::from(inner.len))
@@ -121,13 +117,11 @@ pub struct Register {
 
 impl Register {
     /// The bytes it covers.
-    #[must_use]
     pub const fn span(&self) -> Span {
         Span::new(self.address, self.len)
     }
 
     /// Bytes of one element.
-    #[must_use]
     pub const fn element_len(&self) -> u16 {
         match self.element {
             Element::Byte => 1,
@@ -137,13 +131,11 @@ impl Register {
     }
 
     /// Number of elements.
-    #[must_use]
     pub const fn count(&self) -> u16 {
         self.len / self.element_len()
     }
 
     /// True if one element may hold `value`.
-    #[must_use]
     pub fn allows(&self, value: i32) -> bool {
         self.also == Some(value)
             || self
@@ -463,7 +455,6 @@ pub const STATE: Span = Span::new(1546, 78);
 pub const SETPOINTS: Span = Span::new(1486, 48);
 
 /// The row of this name, in any letter case.
-#[must_use]
 pub fn by_name(name: &str) -> Option<&'static Register> {
     REGISTERS
         .iter()
@@ -471,7 +462,6 @@ pub fn by_name(name: &str) -> Option<&'static Register> {
 }
 
 /// The row that this byte belongs to.
-#[must_use]
 pub fn by_address(address: u16) -> Option<&'static Register> {
     REGISTERS
         .iter()
@@ -498,7 +488,6 @@ impl BytePacking {
     pub const ALL: [Self; 3] = [Self::LowFirst, Self::HighFirst, Self::OnePerWord];
 
     /// As a person writes it in an endpoint.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::LowFirst => "low",
@@ -508,7 +497,6 @@ impl BytePacking {
     }
 
     /// The packing that is written so.
-    #[must_use]
     pub fn by_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|packing| packing.key() == key)
     }

@@ -47,7 +47,6 @@ pub enum Group {
 
 impl Group {
     /// Where it stands in the hand's memory.
-    #[must_use]
     pub const fn span(self) -> Span {
         match self {
             Self::AngleSet => register::ANGLE_SET.span(),
@@ -117,7 +116,6 @@ impl Groups {
     }
 
     /// True if the group is in the set.
-    #[must_use]
     pub const fn contains(self, group: Group) -> bool {
         self.0 & group.bit() != 0
     }
@@ -129,13 +127,11 @@ impl Groups {
     }
 
     /// True if no group is in the set.
-    #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
     /// True if any fingertip is in the set.
-    #[must_use]
     pub const fn has_tactile(self) -> bool {
         self.0 >> 10 != 0
     }
@@ -278,7 +274,6 @@ impl HandSample {
     }
 
     /// When the request for a group left, and when its reply was there; `None` if it was never read.
-    #[must_use]
     pub fn times(&self, group: Group) -> Option<(Moment, Moment)> {
         fn of<T>(read: &Option<Timed<T>>) -> Option<(Moment, Moment)> {
             read.as_ref().map(|read| (read.asked, read.received))
@@ -300,7 +295,6 @@ impl HandSample {
 
     /// The bytes of a group as the hand sent them, in memory order; `None` if it was never read. Of set values outside their range the
     /// hand's own number is not kept: [`SET_OUT_OF_RANGE`] stands in its place.
-    #[must_use]
     pub fn memory(&self, group: Group) -> Option<Vec<u8>> {
         fn shorts<T: Copy>(
             read: &Option<Timed<PerDof<T>>>,
@@ -341,7 +335,6 @@ impl HandSample {
     }
 
     /// When the newest of these groups was received.
-    #[must_use]
     pub fn newest(&self, groups: Groups) -> Option<Moment> {
         let of = Group::all().filter(|group| groups.contains(*group));
         of.filter_map(|group| self.times(group))
@@ -350,13 +343,11 @@ impl HandSample {
     }
 
     /// True if every joint's angle is known and no older than `limit` at `now`.
-    #[must_use]
     pub fn angles_fresh(&self, now: Moment, limit: std::time::Duration) -> bool {
         self.angle.is_some_and(|angle| angle.age(now) <= limit)
     }
 
     /// The targets that keep every joint where it was last seen; joints without a sensible reading are left alone.
-    #[must_use]
     pub fn hold_targets(&self) -> PerDof<Target> {
         PerDof::from_fn(|dof| {
             self.angle
@@ -366,7 +357,6 @@ impl HandSample {
     }
 
     /// True if any drive reports a fault.
-    #[must_use]
     pub fn has_fault(&self) -> bool {
         self.faults
             .is_some_and(|faults| faults.value.iter().any(|(_, faults)| !faults.is_empty()))
@@ -374,7 +364,6 @@ impl HandSample {
 }
 
 /// Where a finger's block lies (manual 2.6).
-#[must_use]
 pub const fn touch_span(finger: Finger) -> Span {
     Span::new(register::TOUCH.address + 58 * finger as u16, 58)
 }

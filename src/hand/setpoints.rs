@@ -34,7 +34,6 @@ pub struct Setpoints {
 
 impl Setpoints {
     /// Nothing new, for one arming.
-    #[must_use]
     pub const fn none(epoch: ArmEpoch) -> Self {
         Self {
             epoch,
@@ -45,7 +44,6 @@ impl Setpoints {
     }
 
     /// True if there is nothing to send.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::none(self.epoch)
     }

@@ -27,7 +27,6 @@ pub enum Setting {
 
 impl Setting {
     /// The register writes, in order. Joints that are not given are not written.
-    #[must_use]
     pub fn writes(&self) -> Writes {
         let mut out = Writes::new();
         match self {
@@ -51,7 +50,6 @@ impl Setting {
     }
 
     /// The whole group, to be read back.
-    #[must_use]
     pub const fn span(&self) -> Span {
         match self {
             Self::DefaultSpeeds(_) => register::DEFAULT_SPEED_SET.span(),
@@ -63,7 +61,6 @@ impl Setting {
     }
 
     /// True if the group's bytes hold what was to be set, wherever something was.
-    #[must_use]
     pub fn is_held_by(&self, bytes: &[u8]) -> bool {
         let whole = self.span();
         self.writes()
@@ -86,7 +83,6 @@ pub enum Trigger {
 
 impl Trigger {
     /// The register write.
-    #[must_use]
     pub fn write(self) -> RegisterWrite {
         let row = match self {
             Self::Save => &register::SAVE,

@@ -23,7 +23,6 @@ pub enum Status {
 
 impl Status {
     /// Decodes the register's byte; every byte has a meaning or is kept.
-    #[must_use]
     pub const fn from_raw(raw: u8) -> Self {
         match raw {
             0 => Self::Releasing,
@@ -38,7 +37,6 @@ impl Status {
     }
 
     /// The register's byte.
-    #[must_use]
     pub const fn raw(self) -> u8 {
         match self {
             Self::Releasing => 0,
@@ -53,7 +51,6 @@ impl Status {
     }
 
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Releasing => "releasing",
@@ -68,7 +65,6 @@ impl Status {
     }
 
     /// True if the drive says that it has stopped. An unknown code says nothing.
-    #[must_use]
     pub const fn is_stopped(self) -> bool {
         matches!(
             self,
@@ -81,13 +77,11 @@ impl Status {
     }
 
     /// True if the drive says that it moves.
-    #[must_use]
     pub const fn is_moving(self) -> bool {
         matches!(self, Self::Releasing | Self::Grasping)
     }
 
     /// True if the drive stopped to protect itself.
-    #[must_use]
     pub const fn is_protective(self) -> bool {
         matches!(
             self,
@@ -96,7 +90,6 @@ impl Status {
     }
 
     /// What it means and what to do, in English.
-    #[must_use]
     pub const fn words(self) -> Words {
         match self {
             Self::Releasing => {
@@ -157,7 +150,6 @@ pub struct Words {
 
 impl Words {
     /// Puts the three together.
-    #[must_use]
     pub const fn new(title: &'static str, cause: &'static str, advice: &'static str) -> Self {
         Self {
             title,

@@ -35,7 +35,6 @@ pub struct TactileBlock {
 
 impl TactileBlock {
     /// Decodes a block of exactly 58 bytes in memory order; `None` for any other length.
-    #[must_use]
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; BLOCK_LEN] = bytes.try_into().ok()?;
         let mut at = Cursor(bytes.as_slice());
@@ -58,13 +57,11 @@ impl TactileBlock {
     }
 
     /// Encodes the block in memory order with a right check; for the simulated hand.
-    #[must_use]
     pub fn encode(&self) -> [u8; BLOCK_LEN] {
         self.with_check(sum16)
     }
 
     /// The block in memory order exactly as it was sent, a wrong check included.
-    #[must_use]
     pub fn as_sent(&self) -> [u8; BLOCK_LEN] {
         self.with_check(|_| self.check)
     }
@@ -88,25 +85,21 @@ impl TactileBlock {
 
     /// Direction of the tangential force in degrees, 0 towards the tip; `None` without contact
     /// and for words that mean no angle.
-    #[must_use]
     pub fn direction_deg(&self) -> Option<u16> {
         (self.direction_raw < 360).then_some(self.direction_raw)
     }
 
     /// Normal force if it is a finite number.
-    #[must_use]
     pub fn normal(&self) -> Option<f32> {
         self.normal_n.is_finite().then_some(self.normal_n)
     }
 
     /// Tangential force if it is a finite number.
-    #[must_use]
     pub fn tangential(&self) -> Option<f32> {
         self.tangential_n.is_finite().then_some(self.tangential_n)
     }
 
     /// Whether the check word equals the 16-bit sum of the first 54 bytes. Shown, never a reason to drop data.
-    #[must_use]
     pub const fn check_ok(&self) -> bool {
         self.check == self.sum
     }

@@ -77,7 +77,6 @@ impl HandSample {
 
 impl Undocumented {
     /// Its name without what was sent.
-    #[must_use]
     pub fn name(&self) -> String {
         let named = NAMES.iter().find(|(group, _)| *group == self.group);
         let name = named.map_or("", |(_, name)| name);
@@ -85,7 +84,6 @@ impl Undocumented {
     }
 
     /// Reads what [`fmt::Display`] writes.
-    #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let (name, raw) = match text.split_once('=') {
             Some((name, raw)) => (name, Some(raw.parse().ok()?)),

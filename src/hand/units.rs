@@ -44,14 +44,12 @@ macro_rules! bounded {
             }
 
             /// The nearest value in range, for a slider or a ramp that may run past its end.
-            #[must_use]
             pub fn nearest(value: impl Into<i64>) -> Self {
                 let value = value.into().clamp($min, $max);
                 Self::new(value).unwrap_or(Self::MIN)
             }
 
             /// The number as it stands in the register.
-            #[must_use]
             pub const fn get(self) -> $inner {
                 self.0
             }
@@ -116,7 +114,6 @@ impl Angle {
     /// A joint this near to its target, in counts, has arrived.
     pub const ARRIVED_WITHIN: u16 = 20;
     /// Degrees of this joint at this angle, by the linear map of [`Dof::degrees`].
-    #[must_use]
     pub fn degrees(self, dof: Dof) -> f32 {
         let (low, high) = dof.degrees();
         low + (high - low) * f32::from(self.0) / 1000.0
@@ -148,7 +145,6 @@ pub enum Target {
 
 impl Target {
     /// The number as it stands in ANGLE_SET.
-    #[must_use]
     pub const fn raw(self) -> i16 {
         match self {
             Self::Go(angle) => angle.get(),
@@ -157,7 +153,6 @@ impl Target {
     }
 
     /// The angle, unless the joint is left alone.
-    #[must_use]
     pub const fn angle(self) -> Option<Angle> {
         match self {
             Self::Go(angle) => Some(angle),
@@ -191,13 +186,11 @@ impl SerialSpeed {
     ];
 
     /// The number as it stands in REDU_RATIO.
-    #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
     }
 
     /// The speed of this number in REDU_RATIO, if it is one of the four.
-    #[must_use]
     pub fn of_code(code: i64) -> Option<Self> {
         Self::ALL
             .into_iter()
@@ -205,7 +198,6 @@ impl SerialSpeed {
     }
 
     /// Bits a second.
-    #[must_use]
     pub const fn baud(self) -> u32 {
         match self {
             Self::Baud115200 => 115_200,

@@ -34,7 +34,6 @@ pub enum MarkKind {
 
 impl MarkKind {
     /// A note of these words, cut to one line of [`NOTE_MAX`] characters; `None` if nothing is left.
-    #[must_use]
     pub fn note(words: &str) -> Option<Self> {
         let line: String = words
             .trim()
@@ -47,7 +46,6 @@ impl MarkKind {
     }
 
     /// Stable lower-case name for files; a note is followed by its words, a gesture by its number.
-    #[must_use]
     pub fn words(&self) -> String {
         match self {
             Self::Armed => "armed".into(),

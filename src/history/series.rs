@@ -43,7 +43,6 @@ pub enum Series {
 
 impl Series {
     /// The head of its column in a table: what, of which part, unit. Stable.
-    #[must_use]
     pub fn column_name(self) -> String {
         match self {
             Self::Joint(quantity, dof) => joint_column(quantity, dof),
@@ -106,7 +105,6 @@ fn empty_track(number: usize) -> HistoryTrack {
 
 impl History {
     /// Empty.
-    #[must_use]
     pub fn new() -> Self {
         Self {
             tracks: (0..TRACKS).map(empty_track).collect(),
@@ -243,20 +241,17 @@ impl History {
     }
 
     /// The measurement nearest to a time; `None` in a gap.
-    #[must_use]
     pub fn reading(&self, series: Series, at_s: f64) -> Option<Reading> {
         self.track(series)?.reading(series.place(), at_s)
     }
 
     /// What all measurements of a stretch of time come to, both ends included; `None` if there is none. The work grows
     /// with the logarithm of their number.
-    #[must_use]
     pub fn summary(&self, series: Series, from_s: f64, to_s: f64) -> Option<Summary> {
         self.track(series)?.summary(series.place(), from_s, to_s)
     }
 
     /// A copy of all measurements of some lines over a stretch of time, with the marks there.
-    #[must_use]
     pub fn table(&self, series: &[Series], from_s: f64, to_s: f64) -> Table {
         let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
         let groups = numbers.into_iter().filter_map(|number| {
@@ -285,7 +280,6 @@ impl History {
     }
 
     /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks. The work grows with their number.
-    #[must_use]
     pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
         let tracks = self.tracks.iter().take(FIRST_CHANNELS);
         let tracks = tracks.map(|track| track.slice(from_s, to_s));
@@ -304,7 +298,6 @@ impl History {
     }
 
     /// Measurements of some lines over a stretch of time, without copying them.
-    #[must_use]
     pub fn rows(&self, series: &[Series], from_s: f64, to_s: f64) -> usize {
         let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
         let tracks = numbers
@@ -316,7 +309,6 @@ impl History {
     }
 
     /// Time of the oldest measurement that is still held, in seconds.
-    #[must_use]
     pub fn first_secs(&self) -> Option<f64> {
         self.tracks
             .iter()

@@ -41,7 +41,6 @@ impl Table {
     }
 
     /// Lines of the text after its head. The work grows with the measurements.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.lines().count()
     }
@@ -49,7 +48,6 @@ impl Table {
     /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
     /// happened. A value that was not measured at that moment or is not known is an empty cell; a line of empty cells
     /// is a break.
-    #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from("time_s");
         for (name, _) in self.groups.iter().flat_map(|group| &group.columns) {

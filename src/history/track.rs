@@ -366,7 +366,6 @@ impl HistoryTrack {
 
 /// A line of at most so many points in which no extreme is lost, made as all plots make theirs. The points are in the order
 /// of time.
-#[must_use]
 pub fn decimated(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let (Some([from_s, _]), Some([to_s, _])) = (points.first(), points.last()) else {
         return Vec::new();

@@ -111,7 +111,6 @@ pub struct Follow {
 
 impl Follow {
     /// Begins with nothing offered.
-    #[must_use]
     pub fn new(limits: FollowLimits, now: Moment) -> Self {
         Self {
             limits: limits.within(),
@@ -127,13 +126,11 @@ impl Follow {
     }
 
     /// What goes on.
-    #[must_use]
     pub const fn phase(&self) -> FollowPhase {
         self.phase
     }
 
     /// Where the joints were sent last.
-    #[must_use]
     pub const fn sent(&self) -> &PerDof<Option<Angle>> {
         &self.sent
     }

@@ -32,7 +32,6 @@ pub struct Intake {
 
 impl Intake {
     /// For the hand of this side.
-    #[must_use]
     pub fn new(side: Side) -> Self {
         Self {
             side,

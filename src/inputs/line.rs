@@ -59,13 +59,11 @@ pub enum LineFault {
 
 impl LineFault {
     /// True for what is no message at all: who sends that speaks another language, as a web page does that sends a form.
-    #[must_use]
     pub const fn is_no_message(self) -> bool {
         matches!(self, Self::TooLong | Self::Malformed)
     }
 
     /// The word for it in JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::TooLong => "too_long",

@@ -23,26 +23,22 @@ impl MirrorScale {
     pub const WHOLE: Self = Self(1.0);
 
     /// A share within [`Self::RANGE`].
-    #[must_use]
     pub fn new(share: f32) -> Option<Self> {
         let (least, most) = Self::RANGE;
         (least..=most).contains(&share).then_some(Self(share))
     }
 
     /// A share of so many percent within [`Self::PERCENT`].
-    #[must_use]
     pub fn of_percent(percent: u8) -> Option<Self> {
         Self::new(f32::from(percent) / 100.0)
     }
 
     /// This share in percent.
-    #[must_use]
     pub fn percent(self) -> f32 {
         (self.0 * 100.0).round()
     }
 
     /// Where a joint goes while the same joint of the other hand is here: its way from open, times the share.
-    #[must_use]
     pub fn aim(self, leader: Angle) -> Angle {
         let bent = f32::from(Angle::MAX.get()) - f32::from(leader.get());
         let aim = f32::from(Angle::MAX.get()) - self.0 * bent;
@@ -62,7 +58,6 @@ pub struct MirrorView {
 
 impl MirrorView {
     /// Whether it is known where that hand is.
-    #[must_use]
     pub fn is_fresh(&self, now: Moment) -> bool {
         self.heard.is_some_and(|at| now.since(at) < HOLDS_AFTER)
     }
@@ -78,7 +73,6 @@ pub struct MirrorSource {
 
 impl MirrorSource {
     /// Watches from now on. The links of both hands must count from the same clock. Must be called within a tokio runtime.
-    #[must_use]
     pub fn open(leader: Records, scale: MirrorScale) -> Self {
         let (told, view) = watch::channel(MirrorView::default());
         let outlet = OfferOutlet::default();
@@ -91,19 +85,16 @@ impl MirrorSource {
     }
 
     /// What is known of it.
-    #[must_use]
     pub fn view(&self) -> MirrorView {
         *self.view.borrow()
     }
 
     /// True once its link was closed: nothing is heard of it any more.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.task.is_finished()
     }
 
     /// Its angles as targets from now on, for whoever follows; whoever did before does no more.
-    #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }

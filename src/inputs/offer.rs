@@ -41,7 +41,6 @@ impl OfferLimits {
     };
 
     /// Whether no joint goes faster or firmer than a person allowed.
-    #[must_use]
     pub fn within(&self, allowed: &ArmRequest) -> bool {
         let mut forces = self.force.iter();
         let mut speeds = self.speed.iter();

@@ -114,19 +114,16 @@ impl StreamSource {
     }
 
     /// Where it listens, with the port that the system chose where none was asked for.
-    #[must_use]
     pub const fn local(&self) -> SocketAddr {
         self.local
     }
 
     /// What is known of it.
-    #[must_use]
     pub fn view(&self) -> StreamView {
         self.view.borrow().clone()
     }
 
     /// Its targets from now on, for whoever follows; whoever did before does no more.
-    #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }

@@ -15,7 +15,6 @@ pub struct Clock {
 
 impl Clock {
     /// Starts counting now. Inside a paused tokio runtime this is virtual time.
-    #[must_use]
     pub fn start() -> Self {
         Self {
             start: Instant::now(),
@@ -23,13 +22,11 @@ impl Clock {
     }
 
     /// The present moment.
-    #[must_use]
     pub fn now(&self) -> Moment {
         Moment::from_duration(self.start.elapsed())
     }
 
     /// The runtime's instant of a moment, for timers.
-    #[must_use]
     pub fn instant(&self, at: Moment) -> Instant {
         self.start + Duration::from_micros(at.micros())
     }

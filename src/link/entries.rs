@@ -32,7 +32,6 @@ pub struct LinkEntries {
 
 impl LinkEntries {
     /// Of this link. Must be called within a tokio runtime.
-    #[must_use]
     pub fn new(observed: LinkObserver, clock: Clock) -> Self {
         let mut tick = interval(LOOK_EACH);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);

@@ -47,7 +47,6 @@ impl Drop for LinkShared {
 
 /// Opens a link on this runtime and keeps it open until the last handle is dropped. Gives its records from the first on.
 /// Writes nothing by itself.
-#[must_use]
 pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
     let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests, asked) = mpsc::channel(REQUESTS_MAX);
@@ -81,7 +80,6 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
 
 impl LinkHandle {
     /// Where the link stands now.
-    #[must_use]
     pub fn status(&self) -> LinkStatus {
         let mut status = self.0.status.borrow().clone();
         // Granted at once, and not when the session next looks.
@@ -90,7 +88,6 @@ impl LinkHandle {
     }
 
     /// The link's statistics so far.
-    #[must_use]
     pub fn stats(&self) -> LinkStats {
         *self.0.stats.borrow()
     }
@@ -115,7 +112,6 @@ impl LinkHandle {
 
     /// Grants the right to move the hand. A person must have asked for it. Nothing that the holder before sent passes any more;
     /// an armed hand stays armed.
-    #[must_use]
     pub fn grant(&self, owner: Owner) -> Lease {
         let mut granted = None;
         self.0
@@ -318,7 +314,6 @@ impl LinkHandle {
     }
 
     /// Everything that happens from now on.
-    #[must_use]
     pub fn records(&self) -> Records {
         match self.0.records.upgrade() {
             Some(records) => Records::of(records.subscribe()),
@@ -327,7 +322,6 @@ impl LinkHandle {
     }
 
     /// What may be watched of the link without keeping it open.
-    #[must_use]
     pub fn observe(&self) -> LinkObserver {
         LinkObserver {
             records: self.records(),
@@ -338,7 +332,6 @@ impl LinkHandle {
     }
 
     /// What stops the hand from elsewhere without keeping the link open.
-    #[must_use]
     pub fn stopper(&self) -> LinkStopper {
         LinkStopper(Arc::downgrade(&self.0))
     }
@@ -354,7 +347,6 @@ impl LinkHandle {
     }
 
     /// The recorded traffic; copies go on recording with the link.
-    #[must_use]
     pub fn tap(&self) -> WireTap {
         self.0.tap.clone()
     }
@@ -367,7 +359,6 @@ pub struct LinkStopper(Weak<LinkShared>);
 impl LinkStopper {
     /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise. True if it
     /// was told to stop.
-    #[must_use]
     pub fn stop_if_moved(&self) -> bool {
         let link = self.0.upgrade().map(LinkHandle);
         let moved = link.filter(|link| link.status().holder.is_some());

@@ -29,7 +29,6 @@ pub fn use_this_program(complain: Complain) {
 }
 
 /// What a person is told where no holder could be started.
-#[must_use]
 pub fn unguarded(why: &str) -> String {
     format!(
         "no process could be started that stops the hand if this program is killed ({why}): then only the 24 V switch does"

@@ -31,7 +31,6 @@ impl Ticks {
     }
 
     /// True if the replies come with the ticks of a timer of 16 ms: nearly all after one, or nearly all after two.
-    #[must_use]
     pub fn are_seen(&self) -> bool {
         let near = |tick: u128| {
             let on_it = |trip: &&Duration| trip.as_millis().abs_diff(tick) < SPREAD_MS;

@@ -29,7 +29,6 @@ pub enum Owner {
 
 impl Owner {
     /// True for one outside this program: it is told in every view, with its end in reach.
-    #[must_use]
     pub const fn is_outside(self) -> bool {
         !matches!(self, Self::Person | Self::Task | Self::Exhibition)
     }
@@ -67,7 +66,6 @@ impl HoldToRun {
     }
 
     /// Whether it is held, if it has to be.
-    #[must_use]
     pub fn is_held(self, now: Moment) -> Option<bool> {
         self.until().map(|until| now < until)
     }

@@ -38,7 +38,6 @@ type Turn = Mutex<Option<Instant>>;
 
 impl RecentReads {
     /// Of the hand at this link.
-    #[must_use]
     pub fn of(link: &LinkHandle) -> Self {
         Self {
             image: link.image(),

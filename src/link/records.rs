@@ -55,7 +55,6 @@ impl Records {
     }
 
     /// Records that this reader was too slow for.
-    #[must_use]
     pub const fn lost(&self) -> u64 {
         self.lost
     }

@@ -90,7 +90,6 @@ pub struct WireTap(Arc<Mutex<PieceRing>>);
 
 impl WireTap {
     /// What was recorded after `from`; 0 is the beginning.
-    #[must_use]
     pub fn after(&self, from: u64) -> Pieces {
         self.ring().after(from)
     }

@@ -41,7 +41,6 @@ pub struct Known {
 }
 
 /// The result of a SAVE as far as it is known, as a stable word for files and JSON.
-#[must_use]
 pub const fn saved_name(saved: &Saved) -> &'static str {
     match saved {
         Saved::Confirmed => "confirmed",
@@ -59,14 +58,12 @@ pub const fn saved_name(saved: &Saved) -> &'static str {
 }
 
 /// The folder of all hands, beside the settings.
-#[must_use]
 pub fn folder_beside(settings: &Path) -> PathBuf {
     settings.with_file_name("params")
 }
 
 impl Backups {
     /// The folder of the hand at an endpoint, told by place and id as quirk sheets are.
-    #[must_use]
     pub fn new(folder: &Path, hand: &Endpoint) -> Self {
         let (place, id) = hand.place_and_id();
         let plain = |letter: char| match letter {
@@ -81,7 +78,6 @@ impl Backups {
     }
 
     /// The folder of a hand at another endpoint, beside this one.
-    #[must_use]
     pub fn beside(&self, hand: &Endpoint) -> Self {
         let folder = self.folder.parent().unwrap_or(&self.folder);
         Self::new(folder, hand)
@@ -127,13 +123,11 @@ impl Backups {
     }
 
     /// Its path.
-    #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// A file with these values and the current date.
-    #[must_use]
     pub fn file(&self, params: &Params, why: &str, since_1970: Duration) -> ParamsFile {
         ParamsFile {
             hand: self.hand.clone(),
@@ -257,7 +251,6 @@ impl Backups {
     }
 
     /// How long ago the last SAVE was sent, by a clock that both processes share.
-    #[must_use]
     pub fn since_attempt(&self, now: std::time::SystemTime) -> Option<Duration> {
         let written = std::fs::metadata(self.attempt_path())
             .ok()?

@@ -39,7 +39,6 @@ pub enum RowVerdict {
 
 impl RowVerdict {
     /// The stable name for files and JSON.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Applied => "applied",
@@ -70,7 +69,6 @@ pub struct RowOutcome {
 
 /// What to write so that a hand that holds `live` holds `wanted`, in the rows that `wanted` has. Values that may not be
 /// written are left out; files with such values are rejected earlier.
-#[must_use]
 pub fn plan_writes(wanted: &Params, live: &Params) -> WritePlan {
     let rows = wanted.only(|id| {
         let value = wanted.get(id);
@@ -102,7 +100,6 @@ pub fn plan_writes(wanted: &Params, live: &Params) -> WritePlan {
 }
 
 /// Outcomes of wanted rows that the hand holds already: they are not written.
-#[must_use]
 pub fn held_already(wanted: &Params, plan: &WritePlan, before: &Params) -> Vec<RowOutcome> {
     let held = wanted.only(|id| plan.rows.get(id).is_none());
     let outcomes = held.iter().map(|(id, wanted)| RowOutcome {
@@ -116,7 +113,6 @@ pub fn held_already(wanted: &Params, plan: &WritePlan, before: &Params) -> Vec<R
 }
 
 /// Outcomes of the rows that a setting writes.
-#[must_use]
 pub fn outcomes(
     plan: &WritePlan,
     before: &Params,
@@ -170,7 +166,6 @@ const fn belongs(id: ParamId, setting: &Setting) -> bool {
 }
 
 /// The values to write so that the hand holds again what it held: those of rows that changed, or may have.
-#[must_use]
 pub fn undo_of(outcomes: &[RowOutcome]) -> Params {
     let mut wanted = Params::default();
     for end in outcomes {

@@ -20,26 +20,22 @@ pub struct Danger {
 
 impl Danger {
     /// What the finger presses at the peak, grams.
-    #[must_use]
     pub fn peak_g(&self) -> f64 {
         f64::from(self.force_g) + self.overshoot_g
     }
 
     /// True if no threshold as high was measured: the figure is that of the highest.
-    #[must_use]
     pub fn is_beyond_measured(&self) -> bool {
         f64::from(self.force_g) > HIGHEST_G
     }
 
     /// True if already the threshold is above the rated grip.
-    #[must_use]
     pub fn is_above_rated(&self) -> bool {
         self.force_g > i32::from(Force::RATED.get())
     }
 }
 
 /// The dangerous joints that would hit harder with `after` than with `before`: these need a confirmation.
-#[must_use]
 pub fn worse(before: &Params, after: &Params) -> Vec<Danger> {
     let peak = |params: &Params, dof| joint(params, dof).map(|joint| joint.peak_g());
     let rises =
@@ -48,7 +44,6 @@ pub fn worse(before: &Params, after: &Params) -> Vec<Danger> {
 }
 
 /// The dangerous joints among these parameters. A joint of which one of the two values is not known is not judged.
-#[must_use]
 pub fn dangers(params: &Params) -> Vec<Danger> {
     let joints = Dof::ALL.into_iter();
     joints

@@ -38,7 +38,6 @@ pub struct ParamsFile {
 
 impl ParamsFile {
     /// The text of the file.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         let mut table = Table::new();
         put(&mut table, "format", FORMAT);
@@ -71,7 +70,6 @@ impl ParamsFile {
     }
 
     /// The names of keys that are not known, groups spelt out.
-    #[must_use]
     pub fn unknown_keys(&self) -> Vec<String> {
         let keys = self.others.iter().flat_map(|(key, value)| match value {
             toml::Value::Table(inner) if GROUPS.contains(&key.as_str()) => {

@@ -46,7 +46,6 @@ pub enum Moved {
 
 impl Moved {
     /// The stable word for JSON.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Occupied => "occupied",
@@ -70,7 +69,6 @@ pub struct PlacePair {
 
 impl PlacePair {
     /// The endpoint of a place.
-    #[must_use]
     pub const fn endpoint(&self, place: WhichPlace) -> &Endpoint {
         match place {
             WhichPlace::Old => &self.old,
@@ -80,7 +78,6 @@ impl PlacePair {
 }
 
 /// The setting that is a row by which a hand is found; none for other rows and for values outside the manual's ranges.
-#[must_use]
 pub fn setting(id: ParamId, value: Value) -> Option<Setting> {
     match (id, value) {
         (ParamId::HandId, Value::Number(number)) => {
@@ -95,7 +92,6 @@ pub fn setting(id: ParamId, value: Value) -> Option<Setting> {
 }
 
 /// Where the hand will be found over the same wire; none if this row does not say it there, or this wire cannot follow.
-#[must_use]
 pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint> {
     let Value::Number(number) = wanted else {
         return None;
@@ -121,7 +117,6 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
 }
 
 /// The same wire with the factory's id and serial speed. An address on the network acts from the next power-up.
-#[must_use]
 pub fn factory_place(hand: &Endpoint) -> Endpoint {
     let mut place = hand.clone();
     let id = match ParamId::HandId.factory() {

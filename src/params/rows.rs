@@ -60,7 +60,6 @@ pub const DEFAULT_FORCE: &str = "default_force";
 
 impl ParamId {
     /// All rows in the order of their addresses, the IP address first among those that say where the hand is.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::HandId, Self::ReduRatio, Self::IpAddress];
         all.extend(Dof::ALL.map(Self::DefaultSpeed));
@@ -69,7 +68,6 @@ impl ParamId {
     }
 
     /// The stable name in files, on the command line and in JSON.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::HandId => "hand_id".into(),
@@ -81,7 +79,6 @@ impl ParamId {
     }
 
     /// The rows that a name means: one, or a group's six.
-    #[must_use]
     pub fn named(name: &str) -> Vec<Self> {
         let all = Self::all().into_iter();
         let is_meant = |id: &Self| {
@@ -92,7 +89,6 @@ impl ParamId {
     }
 
     /// The register that holds it; of an IP address the first part.
-    #[must_use]
     pub fn register(self) -> &'static Register {
         let address = match self {
             Self::HandId => HAND_ID.address,
@@ -105,7 +101,6 @@ impl ParamId {
     }
 
     /// Smallest and largest value that may be written; none for an address.
-    #[must_use]
     pub fn range(self) -> Option<(i32, i32)> {
         match self {
             Self::IpAddress => None,
@@ -114,13 +109,11 @@ impl ParamId {
     }
 
     /// The unit, empty if there is none.
-    #[must_use]
     pub fn unit(self) -> &'static str {
         self.register().unit
     }
 
     /// What the hand is delivered with, where the manual says so.
-    #[must_use]
     pub fn factory(self) -> Option<Value> {
         if self != Self::IpAddress {
             return self.register().default.map(Value::Number);
@@ -134,13 +127,11 @@ impl ParamId {
 
     /// True if it says where the hand is found: id, serial speed, IP address. Such a row belongs to one hand and is never
     /// copied to another by the way.
-    #[must_use]
     pub const fn is_place(self) -> bool {
         matches!(self, Self::HandId | Self::ReduRatio | Self::IpAddress)
     }
 
     /// Whether a value may be written there.
-    #[must_use]
     pub fn allows(self, value: Value) -> bool {
         match (self, value) {
             (Self::IpAddress, Value::Address(address)) => is_host(address),
@@ -153,7 +144,6 @@ impl ParamId {
     }
 
     /// What may be written there, in words.
-    #[must_use]
     pub fn allowed(self) -> String {
         match (self, self.range()) {
             (Self::IpAddress, _) | (_, None) => {

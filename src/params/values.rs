@@ -35,14 +35,12 @@ pub struct ParamDifference {
 
 impl Params {
     /// What a hand is delivered with, as far as the manual says.
-    #[must_use]
     pub fn factory() -> Self {
         let all = ParamId::all().into_iter();
         Self(all.filter_map(|id| Some((id, id.factory()?))).collect())
     }
 
     /// The value of a row, if it is known.
-    #[must_use]
     pub fn get(&self, id: ParamId) -> Option<Value> {
         self.0.get(&id).copied()
     }
@@ -63,19 +61,16 @@ impl Params {
     }
 
     /// True if no row is known.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
     /// Only some of the rows.
-    #[must_use]
     pub fn only(&self, is_meant: impl Fn(ParamId) -> bool) -> Self {
         Self(self.iter().filter(|(id, _)| is_meant(*id)).collect())
     }
 
     /// These rows with others over them.
-    #[must_use]
     pub fn with(&self, others: &Self) -> Self {
         let mut all = self.clone();
         others.iter().for_each(|(id, value)| all.put(id, value));
@@ -92,7 +87,6 @@ impl Params {
     }
 
     /// Rows that `wanted` knows and this set holds otherwise or does not know.
-    #[must_use]
     pub fn differences(&self, wanted: &Self) -> Vec<ParamDifference> {
         let rows = wanted.iter().map(|(id, theirs)| ParamDifference {
             id,
@@ -112,7 +106,6 @@ impl Serialize for Params {
 }
 
 /// The bytes in which a row lies.
-#[must_use]
 pub fn span_of(id: ParamId) -> Span {
     let row = id.register();
     match id {
@@ -127,7 +120,6 @@ fn element(address: u16, dof: Dof) -> Span {
 }
 
 /// What a run of memory holds for a row.
-#[must_use]
 pub fn decoded(id: ParamId, span: Span, bytes: &[u8]) -> Option<Value> {
     match (id, span.slice(bytes, span_of(id))?) {
         (ParamId::IpAddress, parts) => {

@@ -267,7 +267,6 @@ impl PoseLibrary {
 
 impl SequenceStep {
     /// A step with the waiting times that a person starts from.
-    #[must_use]
     pub fn new(pose: PoseId, speed: Speed) -> Self {
         Self {
             pose,
@@ -281,7 +280,6 @@ impl SequenceStep {
 
 impl LibraryPose {
     /// A pose with gentle limits, moving every joint. Its name and id are given when it is added.
-    #[must_use]
     pub fn at(angles: PerDof<Angle>) -> Self {
         Self {
             id: PoseId(0),

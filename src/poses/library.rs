@@ -41,7 +41,6 @@ pub enum EntryId {
 
 impl EntryId {
     /// True if both are poses, both sequences, or both reactions.
-    #[must_use]
     pub fn is_same_kind(self, other: Self) -> bool {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
@@ -62,7 +61,6 @@ pub struct BadKey {
 
 impl EntryKey {
     /// A capital letter or a digit.
-    #[must_use]
     pub const fn get(self) -> char {
         self.0
     }
@@ -119,13 +117,11 @@ impl Millis {
     pub const LIMIT: Self = Self(5000);
 
     /// Milliseconds.
-    #[must_use]
     pub const fn get(self) -> u32 {
         self.0
     }
 
     /// As a duration.
-    #[must_use]
     pub const fn duration(self) -> Duration {
         Duration::from_millis(self.0 as u64)
     }
@@ -174,13 +170,11 @@ pub struct LibraryPose {
 
 impl LibraryPose {
     /// True if only demos need it: it is not offered by itself.
-    #[must_use]
     pub fn is_for_demos(&self) -> bool {
         self.tags.iter().any(|tag| tag == DEMO)
     }
 
     /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
-    #[must_use]
     pub fn has(&self, words: &str) -> bool {
         let names = [&self.name, &self.name_zh];
         let names = names.into_iter().chain(&self.tags);
@@ -189,7 +183,6 @@ impl LibraryPose {
     }
 
     /// Where each joint goes; `None` for those that are left alone.
-    #[must_use]
     pub fn targets(&self) -> PerDof<Option<Angle>> {
         PerDof::from_fn(|dof| (!self.leave[dof]).then_some(self.angles[dof]))
     }
@@ -266,31 +259,26 @@ pub struct PoseLibrary {
 
 impl PoseLibrary {
     /// The pose with this id.
-    #[must_use]
     pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.id == id)
     }
 
     /// The place of a pose among all, 0 the first.
-    #[must_use]
     pub fn place(&self, id: PoseId) -> Option<usize> {
         self.poses.iter().position(|pose| pose.id == id)
     }
 
     /// The pose with this name.
-    #[must_use]
     pub fn pose_named(&self, name: &str) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.name == name)
     }
 
     /// The sequence with this id.
-    #[must_use]
     pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
         self.sequences.iter().find(|sequence| sequence.id == id)
     }
 
     /// The reaction with this id.
-    #[must_use]
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         self.reactions.iter().find(|reaction| reaction.id == id)
     }
@@ -306,7 +294,6 @@ impl PoseLibrary {
     }
 
     /// What an entry is called; `None` if it is not in this library.
-    #[must_use]
     pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
         let (text, zh, key) = match entry {
             EntryId::Pose(id) => {
@@ -326,7 +313,6 @@ impl PoseLibrary {
     }
 
     /// True if there is nothing in it.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.poses.is_empty() && self.sequences.is_empty() && self.reactions.is_empty()
     }
@@ -347,7 +333,6 @@ impl PoseLibrary {
 }
 
 /// A name as it is kept: one line, cut at [`NAME_CHARS_MAX`] characters. Empty if nothing is left.
-#[must_use]
 pub fn clean(name: &str) -> String {
     let line = name.chars().map(|c| if c.is_control() { ' ' } else { c });
     let line: String = line.collect();
@@ -356,7 +341,6 @@ pub fn clean(name: &str) -> String {
 }
 
 /// `wanted`, or the first of "wanted 2", "wanted 3", … that is not taken.
-#[must_use]
 pub fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
     if !is_taken(wanted) {
         return wanted.to_owned();

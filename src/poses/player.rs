@@ -25,7 +25,6 @@ pub struct Cue {
 }
 
 /// The steps of a sequence as they are now.
-#[must_use]
 pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
     let steps = library.sequence(sequence).into_iter();
     let steps = steps.flat_map(|own| &own.steps);
@@ -45,7 +44,6 @@ pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
 
 impl Cue {
     /// A pose taken alone, at its own speed.
-    #[must_use]
     pub fn of(pose: &LibraryPose) -> Self {
         Self {
             pose: pose.id,
@@ -98,7 +96,6 @@ pub struct ReactionCue {
 
 impl PoseLibrary {
     /// What is needed to play an entry; `None` if it is not in this library.
-    #[must_use]
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let plan = |cues, looped, reaction| PlayPlan {
             entry,
@@ -196,7 +193,6 @@ pub struct Player {
 
 impl Player {
     /// Begins with the first step. Without steps it is over at once.
-    #[must_use]
     pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let phase = if cues.is_empty() {
             PlayPhase::Ended(PlayEnd::Finished)
@@ -219,26 +215,22 @@ impl Player {
     }
 
     /// Targets of the current step.
-    #[must_use]
     pub fn targets(&self) -> PerDof<Option<Angle>> {
         let cue = self.cues.get(self.view.at);
         cue.map_or(PerDof::splat(None), |cue| cue.targets)
     }
 
     /// Where it stands.
-    #[must_use]
     pub const fn view(&self) -> PlayView {
         self.view
     }
 
     /// True once nothing is sent any more.
-    #[must_use]
     pub const fn is_over(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
     /// True while a person can resume it.
-    #[must_use]
     pub const fn is_paused(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Paused)
     }

@@ -34,7 +34,6 @@ pub struct PreviewFrame {
 impl Preview {
     /// A sequence of the library from where the joints are; `None` if it has no steps. A joint of which it is not known where
     /// it is begins where the first pose has it.
-    #[must_use]
     pub fn of(
         library: &PoseLibrary,
         sequence: SequenceId,
@@ -56,7 +55,6 @@ impl Preview {
     }
 
     /// What is shown at this moment.
-    #[must_use]
     pub fn at(&self, now: Moment) -> PreviewFrame {
         let mut left = now.since(self.since).as_secs_f64();
         let mut angles = self.from;

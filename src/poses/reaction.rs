@@ -24,7 +24,6 @@ pub struct BadTouchForce {
 
 impl TouchForce {
     /// Newtons.
-    #[must_use]
     pub const fn newtons(self) -> f32 {
         self.0
     }
@@ -63,7 +62,6 @@ struct TipWatch {
 
 impl TouchWatch {
     /// Nothing is touched yet; the first reading of a fingertip is its zero.
-    #[must_use]
     pub fn new(threshold: TouchForce) -> Self {
         Self {
             threshold,

@@ -15,7 +15,6 @@ static STARTER: LazyLock<PoseLibrary> = LazyLock::new(|| {
 });
 
 /// What is shipped.
-#[must_use]
 pub fn starter() -> &'static PoseLibrary {
     &STARTER
 }

@@ -17,7 +17,6 @@ const THUMB_CLEAR: i16 = 2 * BEND_CLEAR;
 ///
 /// Where one of thumb and index closes while the other opens, the thumb goes first out of the way, and bends last. A joint
 /// of which it is not known where it is counts as bent, and one that has arrived counts as at its target.
-#[must_use]
 pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     let ends = |dof: Dof| {
         let from = from[dof].unwrap_or(0);

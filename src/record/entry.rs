@@ -20,7 +20,6 @@ pub enum Entry {
 
 impl Entry {
     /// When it was received, sent, or happened.
-    #[must_use]
     pub fn at(&self) -> Moment {
         match self {
             Self::Heard(record) => record.at(),
@@ -90,7 +89,6 @@ pub enum EventKind {
 
 impl EventKind {
     /// The stable word for it in files.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::Note => "note",
@@ -110,7 +108,6 @@ impl EventKind {
     }
 
     /// The kind of a word in a file.
-    #[must_use]
     pub fn by_key(key: &str) -> Option<Self> {
         const ALL: [EventKind; 13] = [
             EventKind::Note,
@@ -131,7 +128,6 @@ impl EventKind {
     }
 
     /// True for what stands in lists of what happened.
-    #[must_use]
     pub const fn is_listed(self) -> bool {
         !matches!(
             self,
@@ -140,7 +136,6 @@ impl EventKind {
     }
 
     /// True for what a reader finds out by itself from the other entries.
-    #[must_use]
     pub const fn is_derived(self) -> bool {
         matches!(
             self,

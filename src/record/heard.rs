@@ -53,7 +53,6 @@ pub enum Record {
 
 impl Record {
     /// When it was received, sent, or happened.
-    #[must_use]
     pub fn at(&self) -> Moment {
         match self {
             Self::Reading { sample, fresh } => sample.newest(*fresh).unwrap_or_default(),

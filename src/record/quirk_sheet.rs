@@ -38,7 +38,6 @@ pub struct QuirkSheet {
 
 impl QuirkSheet {
     /// What this sheet says otherwise than a later one. What either does not know is no difference.
-    #[must_use]
     pub fn differences(&self, now: &Self) -> Vec<FactDifference> {
         let number = |value: Option<u8>| value.map(|value| value.to_string());
         let touch = |sheet: &Self| {

@@ -25,7 +25,6 @@ pub enum LinkState {
 
 impl LinkState {
     /// True if the hand answers.
-    #[must_use]
     pub const fn is_live(self) -> bool {
         matches!(
             self,
@@ -105,7 +104,6 @@ pub enum Disarmed {
 
 impl Disarmed {
     /// True if whoever might move the hand, or a person, wanted it so.
-    #[must_use]
     pub const fn is_asked_for(self) -> bool {
         matches!(
             self,
@@ -185,7 +183,6 @@ pub enum SetpointRegister {
 
 impl SetpointRegister {
     /// The manual's name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::AngleSet => "ANGLE_SET",
@@ -195,7 +192,6 @@ impl SetpointRegister {
     }
 
     /// What a hand may round a value by: two hundredths of the range.
-    #[must_use]
     pub const fn rounds_by(self) -> i16 {
         match self {
             Self::AngleSet | Self::SpeedSet => 20,

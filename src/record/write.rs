@@ -17,7 +17,6 @@ pub struct WrittenMemory {
 
 impl WrittenMemory {
     /// Where it was written.
-    #[must_use]
     pub fn span(&self) -> Span {
         Span::new(
             self.address,
@@ -28,7 +27,6 @@ impl WrittenMemory {
 
 impl WrittenMemory {
     /// The targets of the joints that it sets; `None` where it leaves a joint alone or is about something else.
-    #[must_use]
     pub fn angle_targets(&self) -> PerDof<Option<Angle>> {
         let mut targets = PerDof::splat(None);
         let len = ANGLE_SET.element_len();
@@ -77,7 +75,6 @@ impl WriteCause {
     ];
 
     /// The stable word for it in files.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::Hold => "hold",
@@ -201,7 +198,6 @@ pub enum Saved {
 
 impl Saved {
     /// True unless it is known that nothing was written to flash.
-    #[must_use]
     pub const fn may_be_in_flash(&self) -> bool {
         matches!(
             self,

@@ -31,7 +31,6 @@ impl InspireState {
     const BYTES: [Group; 3] = [Group::Faults, Group::Status, Group::Temperature];
 
     /// What is known at this moment; `None` unless all of it was read, and not long ago.
-    #[must_use]
     pub fn of(sample: &HandSample, now: Moment) -> Option<Self> {
         let memory = |group: Group| {
             let (asked, _) = sample.times(group)?;
@@ -56,7 +55,6 @@ impl InspireState {
     }
 
     /// The message in CDR with its head.
-    #[must_use]
     pub fn message(&self) -> Vec<u8> {
         /// Slices, as the type has sequences and no arrays.
         #[derive(Serialize)]
@@ -124,7 +122,6 @@ impl DdsPublisher {
     }
 
     /// What was told so far.
-    #[must_use]
     pub fn told(&self) -> DdsTold {
         *self.told.borrow()
     }
@@ -154,7 +151,6 @@ impl SharedOnDds {
     }
 
     /// What was told so far.
-    #[must_use]
     pub fn told(&self) -> DdsTold {
         self.publisher.told()
     }

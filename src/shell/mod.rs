@@ -35,7 +35,6 @@ pub struct Cockpit {
 
 impl Cockpit {
     /// Puts a window in front of a program.
-    #[must_use]
     pub fn new(app: App) -> Self {
         Self {
             app,
@@ -92,7 +91,6 @@ impl Cockpit {
     }
 
     /// How soon news of the hands are to be drawn.
-    #[must_use]
     pub fn frame_within(&self) -> Duration {
         let mut hands = self.app.state().hands.iter();
         match hands.any(|hand| hand.link.rest == Rest::Moving || hand.mover().is_some()) {
@@ -118,13 +116,11 @@ impl Cockpit {
     }
 
     /// The view that is shown.
-    #[must_use]
     pub const fn view(&self) -> View {
         self.window.view()
     }
 
     /// Everything the window shows.
-    #[must_use]
     pub fn state(&self) -> &State {
         self.app.state()
     }

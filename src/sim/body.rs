@@ -19,7 +19,6 @@ pub struct Body {
 
 impl Body {
     /// An open hand around `object`, in a room between 25 and 30 °C.
-    #[must_use]
     pub fn new(object: &Object, rng: &mut fastrand::Rng) -> Self {
         let mut body = Self {
             drives: PerDof::from_fn(|_| Drive::new(25.0 + 5.0 * rng.f64())),
@@ -38,7 +37,6 @@ impl Body {
     }
 
     /// One drive.
-    #[must_use]
     pub const fn drives(&self) -> &PerDof<Drive> {
         &self.drives
     }
@@ -59,13 +57,11 @@ impl Body {
     }
 
     /// What the force sensor says, g.
-    #[must_use]
     pub fn force_g(&self, dof: Dof) -> f64 {
         self.drives[dof].load_g() + self.rest_g[dof] + self.noise_g[dof]
     }
 
     /// Force on a fingertip, g, as it is.
-    #[must_use]
     pub fn fingertip_g(&self, finger: Finger) -> f64 {
         self.drives[finger.bend()].load_g()
     }

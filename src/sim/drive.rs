@@ -107,14 +107,12 @@ pub struct Drive {
 }
 
 /// Position counts at an angle: the register pairs run against each other (manual 2.6.10, 2.6.11).
-#[must_use]
 pub fn position_of(angle: f64) -> f64 {
     (1000.0 - angle) * 2.0
 }
 
 impl Drive {
     /// An open drive in a room of `ambient` °C.
-    #[must_use]
     pub fn new(ambient: f64) -> Self {
         Self {
             position: 0.0,
@@ -140,19 +138,16 @@ impl Drive {
     }
 
     /// Counts, 0 open to 2000 bent.
-    #[must_use]
     pub const fn position(&self) -> f64 {
         self.position
     }
 
     /// Angle, 1000 open to 0 bent.
-    #[must_use]
     pub fn angle(&self) -> f64 {
         1000.0 - self.position / 2.0
     }
 
     /// Force on the fingertip, g, without any sensor's error.
-    #[must_use]
     pub fn load_g(&self) -> f64 {
         self.load_at(self.position)
     }
@@ -169,32 +164,27 @@ impl Drive {
     }
 
     /// Counts between fingertip and object; `None` if nothing is in the way.
-    #[must_use]
     pub fn gap(&self) -> Option<f64> {
         self.whole_contact()
             .map(|contact| (position_of(contact.angle) - self.position).max(0.0))
     }
 
     /// mA.
-    #[must_use]
     pub const fn current_ma(&self) -> f64 {
         self.current_ma.min(LIMIT_MA)
     }
 
     /// °C.
-    #[must_use]
     pub const fn temperature(&self) -> f64 {
         self.temperature
     }
 
     /// What it says it does.
-    #[must_use]
     pub const fn status(&self) -> Status {
         self.status
     }
 
     /// Its faults.
-    #[must_use]
     pub const fn faults(&self) -> Faults {
         self.faults
     }

@@ -4,7 +4,6 @@ use crate::hand::PerDof;
 
 /// ANGLE_SET of a stored pose; `None` for those that are taught (14 to 40) and for those outside 1 to 40.
 // Manual: 2.6.7 names "open, two-finger pinch, fist" among 1 to 13, without numbers.
-#[must_use]
 pub fn pose(number: u8) -> Option<PerDof<i16>> {
     let angles = match number {
         1 => [1000; 6],

@@ -139,7 +139,6 @@ pub struct SimHand {
 
 impl SimHand {
     /// A hand that was switched on at [`Moment::ZERO`], open.
-    #[must_use]
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
         let body = Body::new(&Object::of(config.scenario), &mut rng);
@@ -280,13 +279,11 @@ impl SimHand {
     }
 
     /// When the next result of a SAVE is due.
-    #[must_use]
     pub fn next_save_result(&self) -> Option<Moment> {
         self.saves.front().map(|(due, _)| *due)
     }
 
     /// When the end of a calibration is to be told.
-    #[must_use]
     pub const fn next_calibration_end(&self) -> Option<Moment> {
         self.calibration_end
     }
@@ -326,25 +323,21 @@ impl SimHand {
     }
 
     /// The id that the hand answers to.
-    #[must_use]
     pub const fn id(&self) -> u8 {
         self.id
     }
 
     /// The serial speed's code in effect, by default that of the last power-up.
-    #[must_use]
     pub const fn baud_code(&self) -> u8 {
         self.baud_code
     }
 
     /// How this hand reads the manual's gaps.
-    #[must_use]
     pub const fn personality(&self) -> &Personality {
         &self.config.personality
     }
 
     /// The newest writes, oldest first; never more than twice [`JOURNAL_KEEPS`].
-    #[must_use]
     pub fn journal(&self) -> &[JournalEntry] {
         &self.journal
     }
@@ -383,13 +376,11 @@ impl SimHand {
     }
 
     /// True while what the hand tells stands still.
-    #[must_use]
     pub const fn is_frozen(&self) -> bool {
         self.frozen
     }
 
     /// Where the joints are, counts of ANGLE_ACT, whatever the hand tells.
-    #[must_use]
     pub fn true_angles(&self) -> PerDof<f64> {
         PerDof::from_fn(|dof| self.body.drives()[dof].angle())
     }

@@ -72,7 +72,6 @@ pub struct Memory {
 
 impl Memory {
     /// As delivered, with this id.
-    #[must_use]
     pub fn new(id: u8) -> Self {
         let mut memory = Self {
             ram: vec![0; MEMORY_LEN],
@@ -140,7 +139,6 @@ impl Memory {
     }
 
     /// One byte; zero outside.
-    #[must_use]
     pub fn byte(&self, address: u16) -> u8 {
         self.ram
             .get(usize::from(address))
@@ -149,7 +147,6 @@ impl Memory {
     }
 
     /// One element of a row of shorts.
-    #[must_use]
     pub fn short(&self, row: &Register, element: u16) -> i16 {
         let at = row.address + 2 * element;
         i16::from_le_bytes([self.byte(at), self.byte(at + 1)])

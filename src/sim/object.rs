@@ -31,7 +31,6 @@ pub const CUP_BREAKS_AT_G: f64 = 700.0;
 
 impl Object {
     /// What waits between the fingers at power-up.
-    #[must_use]
     pub fn of(scenario: Scenario) -> Self {
         match scenario {
             Scenario::Free | Scenario::Touched | Scenario::Frozen => Self::none(),
@@ -44,7 +43,6 @@ impl Object {
     }
 
     /// Nothing between the fingers.
-    #[must_use]
     pub const fn none() -> Self {
         Self {
             contacts: PerDof::splat(None),
@@ -52,7 +50,6 @@ impl Object {
     }
 
     /// A soft ball that every finger meets a little later than its neighbour; the thumb's rotation misses it.
-    #[must_use]
     pub fn soft_ball() -> Self {
         let angles = PerDof::new([
             Some(355.0),
@@ -74,7 +71,6 @@ impl Object {
     }
 
     /// A block as hard as the one the overshoot was measured on, at one angle for all joints.
-    #[must_use]
     pub const fn rigid(angle: f64) -> Self {
         Self {
             contacts: PerDof::splat(Some(Contact {
@@ -86,7 +82,6 @@ impl Object {
     }
 
     /// A thin cup at one angle for all joints; each breaks its own side of it beyond [`CUP_BREAKS_AT_G`].
-    #[must_use]
     pub const fn cup(angle: f64) -> Self {
         Self {
             contacts: PerDof::splat(Some(Contact {

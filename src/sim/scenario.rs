@@ -53,7 +53,6 @@ impl Scenario {
     ];
 
     /// Stable lower-case name, as in endpoints.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Idle => "idle",
@@ -102,7 +101,6 @@ const SLIP_LASTS_S: f64 = 0.4;
 const RELEASE_AT_S: f64 = 5.0;
 
 /// What the grasp's action orders in this millisecond.
-#[must_use]
 pub fn grasp_order(now_ms: u64) -> Option<Order> {
     let (angles, more, speed) = match now_ms % GRASP_MS {
         // The dead time makes it move at 0.4 s.
@@ -144,7 +142,6 @@ impl Default for Slip {
 }
 
 /// The slip at this moment; none outside the grasp.
-#[must_use]
 pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
     if scenario != Scenario::Grasp {
         return Slip::default();
@@ -171,7 +168,6 @@ const TOUCH_MS: u64 = 1200;
 const TOUCH_G: f64 = 300.0;
 
 /// How hard somebody presses this fingertip at this moment, g; a hand is left in peace for its first turn.
-#[must_use]
 pub fn touched_g(scenario: Scenario, finger: Finger, now_ms: u64) -> f64 {
     let fingers = u64::try_from(Finger::ALL.len()).unwrap_or(1);
     let turn = now_ms / TOUCH_TURN_MS;
@@ -221,7 +217,6 @@ const FAULT_PHASES: [&[(Dof, Ailment)]; 8] = [
 ];
 
 /// The picture that begins in this millisecond.
-#[must_use]
 pub fn fault_phase(now_ms: u64) -> Option<&'static [(Dof, Ailment)]> {
     if !now_ms.is_multiple_of(FAULT_PHASE_MS) {
         return None;

@@ -61,7 +61,6 @@ pub struct TouchSensors {
 
 impl TouchSensors {
     /// Sensors with their own rest counts, drawn from `rng`.
-    #[must_use]
     pub fn new(rng: &mut fastrand::Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
@@ -86,7 +85,6 @@ impl TouchSensors {
     }
 
     /// The block of one fingertip at `t_s` seconds.
-    #[must_use]
     pub fn block(&self, finger: Finger, press: Press, slip: Slip, t_s: f64) -> TactileBlock {
         let tip = &self.tips[finger];
         let newtons = press.force_g * N_PER_G;

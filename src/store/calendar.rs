@@ -3,14 +3,12 @@
 use std::time::{Duration, SystemTime};
 
 /// The time since 1970 now; nothing, where the clock is set before that.
-#[must_use]
 pub fn since_1970() -> Duration {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     since.unwrap_or_default()
 }
 
 /// The day of a time since 1970, `2026-11-21`, in universal time.
-#[must_use]
 pub fn day(since_1970: Duration) -> String {
     // Days to a date as in Hinnant's "chrono-compatible low-level date algorithms".
     let days = since_1970.as_secs() / 86_400 + 719_468;
@@ -29,7 +27,6 @@ pub fn day(since_1970: Duration) -> String {
 }
 
 /// `2026-11-21T09:30:00Z`, for the time since 1970.
-#[must_use]
 pub fn stamp(since_1970: Duration) -> String {
     let seconds = since_1970.as_secs() % 86_400;
     let (hour, minute, second) = (seconds / 3600, seconds / 60 % 60, seconds % 60);

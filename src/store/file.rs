@@ -76,7 +76,6 @@ pub fn replace_keeping_last(path: &Path, text: &str) -> io::Result<()> {
 }
 
 /// Where the file before this one stays.
-#[must_use]
 pub fn last_of(path: &Path) -> PathBuf {
     path.with_extension("last.toml")
 }
@@ -105,7 +104,6 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<Option<String>> {
 }
 
 /// Gives an unreadable file another name; the name, if that worked.
-#[must_use]
 pub fn set_aside(path: &Path) -> Option<PathBuf> {
     let name = |number: u32| path.with_extension(format!("unreadable-{number}.toml"));
     let free = (1..UNREADABLE_MAX).map(name).find(|aside| !aside.exists());

@@ -142,7 +142,6 @@ pub struct FileText<'a>(&'a str);
 
 impl<'a> FileText<'a> {
     /// A text that names no format.
-    #[must_use]
     pub const fn plain(text: &'a str) -> Self {
         Self(text)
     }
@@ -192,7 +191,6 @@ impl<'a> FileText<'a> {
     }
 
     /// The error of a field that stands here.
-    #[must_use]
     pub fn blame(self, at: Range<usize>, field: &str, cause: FileCause) -> FileError {
         FileError {
             line: Some(self.line(at.start)),

@@ -53,7 +53,6 @@ pub struct Applied {
 
 impl Applied {
     /// True if every row is in force.
-    #[must_use]
     pub fn is_whole(&self) -> bool {
         let applied = |row: &RowOutcome| row.verdict == RowVerdict::Applied;
         self.broken_off.is_none() && self.rows.iter().all(applied)

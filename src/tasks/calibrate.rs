@@ -87,7 +87,6 @@ impl Checks {
     }
 
     /// Whether something is so; `None` = not known.
-    #[must_use]
     pub fn check(
         &self,
         check: Check,
@@ -140,14 +139,12 @@ impl Checks {
     }
 
     /// True if all of it is so.
-    #[must_use]
     pub fn is_ready(&self, sample: &HandSample, link: &LinkStatus, now: Moment) -> bool {
         let is_so = |check| self.check(check, sample, link, now) == Some(true);
         Check::ALL.into_iter().all(is_so)
     }
 
     /// The mean of the forces that were looked at.
-    #[must_use]
     pub fn mean(&self) -> Option<Offsets> {
         let count = i64::try_from(self.forces.len())
             .ok()

@@ -97,7 +97,6 @@ pub enum PlaceEnd {
 
 impl PlaceEnd {
     /// Where the hand is; `None` = nobody knows.
-    #[must_use]
     pub const fn place(&self) -> Option<WhichPlace> {
         match self {
             Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
@@ -350,7 +349,6 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
 }
 
 /// When a change that waits for a person is taken back, if the question was asked at this moment.
-#[must_use]
 pub fn taken_back_at(asked: Moment) -> Moment {
     asked.plus(KEEP_WITHIN)
 }

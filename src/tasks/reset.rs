@@ -69,7 +69,6 @@ pub enum ResetProof {
 
 impl ResetProof {
     /// The stable name for JSON.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -94,7 +93,6 @@ pub struct ResetReport {
 }
 
 /// Where a hand is found before and after a reset.
-#[must_use]
 pub fn places(hand: &Endpoint) -> PlacePair {
     PlacePair {
         old: hand.clone(),

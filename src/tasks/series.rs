@@ -165,7 +165,6 @@ pub async fn hold<H: Hand>(hand: &H, records: &mut Records) -> Stop {
 }
 
 /// The limits that a hand is armed with for a plan: gentle, and no stronger than its smallest threshold.
-#[must_use]
 pub fn arm_limits(plan: &TrialPlan) -> crate::link::ArmRequest {
     use crate::hand::Force;
     let least = plan.grid.forces.iter().min().copied();

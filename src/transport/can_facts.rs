@@ -31,7 +31,6 @@ pub struct CanFacts {
 }
 
 /// Looks an interface up in the tree under `sys` (`/sys`), and asks `ip` for what is not there.
-#[must_use]
 pub fn can_facts(interface: &str, sys: &Path) -> CanFacts {
     let folder = sys.join("class/net").join(interface);
     let text = |name: &str| fs::read_to_string(folder.join(name)).ok();

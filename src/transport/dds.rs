@@ -124,13 +124,11 @@ impl DdsNode {
     }
 
     /// The address of its interface.
-    #[must_use]
     pub const fn address(&self) -> Ipv4Addr {
         self.address
     }
 
     /// Whether a message came from this participant itself.
-    #[must_use]
     pub fn wrote(&self, message: &DdsMessage) -> bool {
         // A writer's id begins with its participant's (RTPS 8.2.4).
         let own = self.participant.guid().to_bytes();
@@ -243,7 +241,6 @@ impl fmt::Debug for DdsWriter {
 
 impl DdsWriter {
     /// Sends little-endian CDR with its head; false if it could not go out at once.
-    #[must_use]
     pub fn send(&self, mut message: Vec<u8>) -> bool {
         let body = message.split_off(HEAD.min(message.len()));
         self.writer.write(Bytes::from(body), None).is_ok()

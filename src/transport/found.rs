@@ -46,7 +46,6 @@ impl fmt::Display for UsbFound {
 
 impl UsbFound {
     /// True if it looks like an adapter that brings CAN frames as text, not a serial line.
-    #[must_use]
     pub fn looks_like_can(&self) -> bool {
         let named = [&self.maker, &self.product].into_iter().flatten();
         let mut named = named.map(|name| name.to_lowercase());

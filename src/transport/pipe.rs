@@ -9,7 +9,6 @@ pub const PIPE_LEN: usize = 4096;
 pub type Pipe = DuplexStream;
 
 /// Both ends of a wire in memory.
-#[must_use]
 pub fn pair() -> (Pipe, Pipe) {
     duplex(PIPE_LEN)
 }

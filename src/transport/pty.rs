@@ -88,13 +88,11 @@ impl PtyLink {
     }
 
     /// The device that the link points to.
-    #[must_use]
     pub fn slave_path(&self) -> &Path {
         &self.slave_path
     }
 
     /// Where the link is.
-    #[must_use]
     pub fn link_path(&self) -> &Path {
         &self.link_path
     }

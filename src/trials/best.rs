@@ -55,7 +55,6 @@ pub struct MetricSpread {
 
 impl MetricSpread {
     /// Of some values; `None` of nothing.
-    #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         Some(Self {
             median: median(values)?,
@@ -86,7 +85,6 @@ pub struct Score {
 }
 
 /// The settings that were tried, in the order of first trial; looking for the contact does not count.
-#[must_use]
 pub fn scores<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> Vec<Score> {
     let mut by_setting: Vec<(TrialSetting, Vec<&TrialSummary>)> = Vec::new();
     for trial in trials.into_iter().filter(|trial| !trial.is_probe()) {
@@ -117,7 +115,6 @@ fn score(setting: TrialSetting, trials: &[&TrialSummary]) -> Score {
 }
 
 /// The best setting, judged by the worst of its trials; the gentler one of two that are equal. `None` if none will do.
-#[must_use]
 pub fn best(scores: &[Score], criterion: Criterion) -> Option<&Score> {
     let rated = scores
         .iter()

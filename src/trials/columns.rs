@@ -113,7 +113,6 @@ impl TrialColumn {
     }
 
     /// Name and unit.
-    #[must_use]
     pub fn title(&self) -> String {
         match self.unit {
             "" => self.name.to_owned(),
@@ -122,14 +121,12 @@ impl TrialColumn {
     }
 
     /// The value with its digits, or "-".
-    #[must_use]
     pub fn text(&self, joint: &JointMetrics) -> String {
         number((self.value)(joint), self.decimals)
     }
 }
 
 /// A number with so many digits, or "-".
-#[must_use]
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     // Adding zero takes the sign from a zero.
     value.map_or_else(

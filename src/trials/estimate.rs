@@ -28,7 +28,6 @@ fn trial(plan: &TrialPlan, setting: TrialSetting) -> Duration {
 }
 
 /// About how long a series takes, and how many trials it has.
-#[must_use]
 pub fn series(plan: &TrialPlan) -> (usize, Duration) {
     let settings = plan.grid.settings();
     let all: Duration = settings.iter().map(|own| trial(plan, *own)).sum();

@@ -122,7 +122,6 @@ pub struct LinkView {
 
 impl LinkView {
     /// Why this arming is over, if it is.
-    #[must_use]
     pub(crate) fn arming_ended(&self, epoch: ArmEpoch) -> Option<Abort> {
         let by_other = self.armed.is_none() && self.disarmed == Some(Disarmed::OtherController);
         (self.armed != Some(epoch)).then_some(match by_other {
@@ -135,7 +134,6 @@ impl LinkView {
 }
 
 /// The first reason to end now, gravest first.
-#[must_use]
 pub fn reason(
     link: LinkView,
     epoch: ArmEpoch,
@@ -230,7 +228,6 @@ fn heat(sample: &HandSample, limit: u8) -> Option<Abort> {
 }
 
 /// The warmest joint whose temperature makes sense.
-#[must_use]
 pub fn warmest(sample: &HandSample) -> Option<(Dof, u8)> {
     let temperatures = sample.temperature?.value;
     temperatures

@@ -116,7 +116,6 @@ pub struct TrialGrid {
 
 impl TrialGrid {
     /// One speed and threshold.
-    #[must_use]
     pub fn once(setting: TrialSetting) -> Self {
         Self {
             speeds: vec![setting.speed],
@@ -127,7 +126,6 @@ impl TrialGrid {
     }
 
     /// Settings in the order of the trials: the gentlest first, all repeats of one before the next.
-    #[must_use]
     pub fn settings(&self) -> Vec<TrialSetting> {
         let each = |speed: &Speed| {
             let speed = *speed;
@@ -193,7 +191,6 @@ impl Default for TrialPlan {
 
 impl Approach {
     /// When its slow stage begins; `None` if it has one speed.
-    #[must_use]
     pub const fn until(self) -> Option<Until> {
         match self {
             Self::OneStage => None,
@@ -277,7 +274,6 @@ impl Until {
     }
 
     /// Stable name for files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Angle(_) => "angle",
@@ -288,7 +284,6 @@ impl Until {
     }
 
     /// Its number.
-    #[must_use]
     pub fn value(self) -> i32 {
         match self {
             Self::Angle(angle) => angle.get().into(),
@@ -444,7 +439,6 @@ pub enum PlanError {
 
 impl PlanError {
     /// What has to be changed.
-    #[must_use]
     pub const fn field(&self) -> PlanField {
         match self {
             Self::NoJoint => PlanField::Joints,
@@ -588,14 +582,12 @@ impl TrialPlan {
     }
 
     /// The first joint that would have to move and is locked.
-    #[must_use]
     pub fn locked(&self, locked: &PerDof<bool>) -> Option<Dof> {
         let moves = |dof: &Dof| self.close[*dof].is_some() || self.start[*dof].is_some();
         Dof::ALL.into_iter().find(|dof| moves(dof) && locked[*dof])
     }
 
     /// What a person should expect at most above the threshold on a rigid object, g, and the setting it is of.
-    #[must_use]
     pub fn expected(&self) -> Option<(TrialSetting, f64)> {
         let peak = |setting: TrialSetting| {
             let (speed, force) = (setting.speed.get().into(), setting.force.get().into());
@@ -611,7 +603,6 @@ impl TrialPlan {
     }
 
     /// Whether a first, slow trial has to find the contact.
-    #[must_use]
     pub const fn measures_contact(&self) -> bool {
         matches!(
             self.approach,

@@ -56,7 +56,6 @@ pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError>
 }
 
 /// The plan as a table of the settings.
-#[must_use]
 pub fn to_settings(plan: &TrialPlan) -> Option<Value> {
     Value::try_from(plan).ok()
 }

@@ -102,7 +102,6 @@ impl Mean {
 
 impl Runner {
     /// A trial of a plan that was checked. `contact`: angles at which a first trial met the object.
-    #[must_use]
     pub fn new(
         plan: &TrialPlan,
         setting: TrialSetting,
@@ -137,25 +136,21 @@ impl Runner {
     }
 
     /// The recording so far.
-    #[must_use]
     pub const fn recording(&self) -> &TrialRecording {
         &self.recording
     }
 
     /// What the hand does now.
-    #[must_use]
     pub const fn stage(&self) -> Stage {
         self.stage
     }
 
     /// How it ended, once it has.
-    #[must_use]
     pub const fn ending(&self) -> Option<Ending> {
         self.ending
     }
 
     /// Returns the recording.
-    #[must_use]
     pub fn into_recording(self) -> TrialRecording {
         self.recording
     }

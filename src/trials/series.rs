@@ -89,19 +89,16 @@ impl TrialSeries {
     }
 
     /// True once nothing is sent any more.
-    #[must_use]
     pub const fn is_over(&self) -> bool {
         matches!(self.phase, SeriesPhase::Over)
     }
 
     /// Why it ended early, if it did.
-    #[must_use]
     pub const fn aborted(&self) -> Option<Abort> {
         self.aborted
     }
 
     /// Where it stands.
-    #[must_use]
     pub fn view(&self) -> SeriesView {
         let (setting, is_probing, stage) = match &self.phase {
             SeriesPhase::Waiting { .. } => (None, false, Stage::Resting),

@@ -78,7 +78,6 @@ pub struct TrialSummary {
 
 impl TrialSummary {
     /// Whether it counts for its setting: looking for the contact does not.
-    #[must_use]
     pub fn is_probe(&self) -> bool {
         self.kind == TrialKind::Probe
     }
@@ -89,7 +88,6 @@ impl TrialSummary {
     }
 
     /// Its number, what it was for, and its setting.
-    #[must_use]
     pub fn title(&self) -> String {
         let what = match self.kind {
             TrialKind::Probe => "contact sought",
@@ -99,7 +97,6 @@ impl TrialSummary {
     }
 
     /// The name of the file that its samples are written to.
-    #[must_use]
     pub fn samples_file(&self) -> String {
         format!("trial-{:03}.csv", self.number)
     }

@@ -47,7 +47,6 @@ impl View {
     ];
 
     /// Stable lower-case name for the command line and files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         self.names().0
     }
@@ -73,7 +72,6 @@ impl View {
     }
 
     /// The view with this name.
-    #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         // What this view was called before poses were added.
         let name = if name == "gestures" { "poses" } else { name };

@@ -59,7 +59,6 @@ impl KeptReport {
     }
 
     /// What was counted today.
-    #[must_use]
     pub const fn today(&self) -> &DayReport {
         &self.today
     }

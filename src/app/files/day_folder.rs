@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 const VARIABLE: &str = "HANDSCOPE_DOCUMENTS";
 
 /// The person's documents; `None` if they have no home.
-#[must_use]
 pub fn documents() -> Option<PathBuf> {
     if let Some(own) = std::env::var_os(VARIABLE).filter(|own| !own.is_empty()) {
         return Some(own.into());
@@ -18,19 +17,16 @@ pub fn documents() -> Option<PathBuf> {
 }
 
 /// The folder of all that nobody was asked about, in these documents.
-#[must_use]
 pub fn of_all(documents: &Path) -> PathBuf {
     documents.join("Handscope")
 }
 
 /// The folder of a day, `2026-11-21`, in these documents.
-#[must_use]
 pub fn of_day(documents: &Path, day: &str) -> PathBuf {
     of_all(documents).join(day)
 }
 
 /// A path in this folder at which nothing lies: the name, or the name with a number before its ending, if it has one.
-#[must_use]
 pub fn free_path(folder: &Path, name: &str) -> PathBuf {
     let (stem, ending) = name.split_at(name.rfind('.').unwrap_or(name.len()));
     let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));

@@ -22,7 +22,6 @@ const LOGO_SIZE_MAX: u32 = 2048;
 const FILE_NAME: &str = "handscope-exhibit.toml";
 
 /// What is shown without a file.
-#[must_use]
 pub fn built_in() -> Option<Exhibition> {
     file::built_in().map(|plan| Exhibition {
         plan: Arc::new(plan),

@@ -43,7 +43,6 @@ pub enum Export {
 
 impl Export {
     /// The name that is suggested for the file.
-    #[must_use]
     pub const fn file_name(&self) -> &'static str {
         match self {
             Self::Traffic(TrafficForm::Csv, _) => "handscope-traffic.csv",
@@ -57,7 +56,6 @@ impl Export {
     }
 
     /// Entries in it; a picture is one.
-    #[must_use]
     pub fn entries(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),

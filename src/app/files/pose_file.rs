@@ -13,7 +13,6 @@ const FILE_LEN_MAX: u64 = 1024 * 1024;
 pub const FILE_NAME: &str = "handscope-poses.toml";
 
 /// Where poses lie, beside these settings.
-#[must_use]
 pub fn path_beside(settings: &Path) -> PathBuf {
     settings.with_file_name("poses.toml")
 }
@@ -36,7 +35,6 @@ pub fn text(library: &PoseLibrary) -> std::io::Result<String> {
 
 /// The library that was kept, and what a person should know about its file. An unreadable file is put aside and the
 /// last good one taken.
-#[must_use]
 pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
     if !path.exists() {
         return (PoseLibrary::default(), None);

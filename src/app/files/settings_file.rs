@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 /// A settings file is a page of text; anything longer is not ours.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 /// Where settings lie on this system; `None` if the person has no home.
-#[must_use]
 pub fn default_path() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "handscope")?;
     Some(folders.config_dir().join("settings.toml"))
@@ -25,7 +24,6 @@ pub struct Loaded {
 }
 
 /// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
-#[must_use]
 pub fn load(path: &Path) -> Loaded {
     if matches!(path.try_exists(), Ok(false)) {
         return Loaded::default();

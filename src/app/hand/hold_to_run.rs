@@ -8,7 +8,6 @@ use crate::record::ArmRefusal;
 
 impl HandState {
     /// Whether the key is believed to be held.
-    #[must_use]
     pub fn is_key_held(&self) -> bool {
         self.held.is_held(self.now)
     }

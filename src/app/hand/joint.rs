@@ -39,7 +39,6 @@ pub enum Preset {
 
 impl Preset {
     /// Where this joint goes, if it moves at all.
-    #[must_use]
     pub fn angle(self, dof: Dof) -> Option<Angle> {
         match (self, dof) {
             (Self::Open, _) => Some(Angle::MAX),

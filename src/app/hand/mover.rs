@@ -30,7 +30,6 @@ pub enum Mover {
 
 impl HandState {
     /// What moves the hand now; `None` while it rests and nothing is about to move it, or nothing is known of it.
-    #[must_use]
     pub fn mover(&self) -> Option<Mover> {
         if !self.link.state.is_live() {
             return None;
@@ -65,7 +64,6 @@ impl HandState {
         })
     }
     /// True if nothing moves the hand for certain, and nothing may: a hand that was never heard does not count as one.
-    #[must_use]
     pub fn rests(&self) -> bool {
         if !self.link.state.is_live() {
             return self.sample.angle.is_none();

@@ -40,7 +40,6 @@ impl HandState {
     }
 
     /// True for a hand that takes a pose which is meant for all: it is armed, and the person at this window moves it.
-    #[must_use]
     pub fn takes_poses(&self) -> bool {
         let is_ours = !self.runs_series() && self.outside_owner().is_none();
         self.is_armed() && is_ours && self.procedure.is_none() && self.leaving.is_none()

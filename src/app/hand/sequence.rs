@@ -35,13 +35,11 @@ pub struct SequenceRun {
 
 impl SequenceRun {
     /// True while it may send something.
-    #[must_use]
     pub const fn is_running(&self) -> bool {
         !matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
     /// True while it waits for a person.
-    #[must_use]
     pub const fn is_paused(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Paused)
     }

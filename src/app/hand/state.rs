@@ -115,19 +115,16 @@ pub struct HandState {
 
 impl HandState {
     /// Whether it is the built-in hand.
-    #[must_use]
     pub fn is_simulated(&self) -> bool {
         self.endpoint.as_ref().is_some_and(Endpoint::is_sim)
     }
 
     /// How fresh a value asked for at `asked` is now.
-    #[must_use]
     pub fn freshness(&self, asked: Option<Moment>) -> Freshness {
         self.freshness_at(asked, self.pace)
     }
 
     /// The same for a reading of a fingertip.
-    #[must_use]
     pub fn tip_freshness(&self, finger: Finger) -> Freshness {
         let asked = self.sample.tactile[finger].map(|block| block.asked);
         self.freshness_at(asked, self.tip_pace[finger])
@@ -143,7 +140,6 @@ impl HandState {
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.
-    #[must_use]
     pub fn pose_now(&self) -> Option<PerDof<Angle>> {
         let angle = self.sample.angle?;
         let live = self.freshness(Some(angle.asked)) == Freshness::Live;
@@ -152,7 +148,6 @@ impl HandState {
     }
 
     /// The hand's name in files and lists; empty without one.
-    #[must_use]
     pub fn name(&self) -> String {
         self.endpoint
             .as_ref()
@@ -182,19 +177,16 @@ impl HandState {
     }
 
     /// True while setpoints pass.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.link.state == LinkState::Armed
     }
 
     /// True while a series of trials may send something.
-    #[must_use]
     pub const fn runs_series(&self) -> bool {
         self.series.is_some()
     }
 
     /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
-    #[must_use]
     pub fn arm_refusal(&self) -> Option<ArmRefusal> {
         let saves = self.link.state.is_live() && self.params.is_saving();
         let busy = saves.then_some(ArmRefusal::HandBusy);

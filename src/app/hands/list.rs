@@ -20,7 +20,6 @@ pub struct HandList {
 
 impl HandList {
     /// The hand that is shown.
-    #[must_use]
     pub fn shown(&self) -> &HandState {
         let more = self.shown.checked_sub(1);
         more.and_then(|at| self.more.get(at)).unwrap_or(&self.first)
@@ -46,19 +45,16 @@ impl HandList {
     }
 
     /// How many slots there are.
-    #[must_use]
     pub const fn count(&self) -> usize {
         1 + self.more.len()
     }
 
     /// True if there is more than one.
-    #[must_use]
     pub const fn is_several(&self) -> bool {
         !self.more.is_empty()
     }
 
     /// True if there is room for another.
-    #[must_use]
     pub const fn has_room(&self) -> bool {
         self.count() < HANDS_MAX
     }
@@ -69,7 +65,6 @@ impl HandList {
     }
 
     /// True if this hand would lead itself by leading that one, directly or over others.
-    #[must_use]
     pub fn is_circle(&self, leader: SlotId, follower: SlotId) -> bool {
         let before = |slot| {
             let mut all = self.iter();
@@ -92,7 +87,6 @@ impl HandList {
     }
 
     /// Whether poses and demos go to all hands that are armed.
-    #[must_use]
     pub const fn poses_for_all(&self) -> bool {
         self.poses_for_all && self.is_several()
     }

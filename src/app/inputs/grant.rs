@@ -159,7 +159,6 @@ impl HandState {
     }
 
     /// Who moves the hand from outside this window, if somebody may.
-    #[must_use]
     pub fn outside_owner(&self) -> Option<Owner> {
         let holder = self.link.holder.filter(|_| self.link.state.is_live())?;
         holder.owner.is_outside().then_some(holder.owner)

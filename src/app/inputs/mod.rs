@@ -197,7 +197,6 @@ impl HandInputs {
     }
 
     /// The slot of the hand that leads this one now.
-    #[must_use]
     pub fn leader(&self) -> Option<SlotId> {
         let run = self.follow.as_ref()?;
         let mirror = self.mirror.as_ref()?;
@@ -205,7 +204,6 @@ impl HandInputs {
     }
 
     /// True while something from outside is listened to or served: a badge says so.
-    #[must_use]
     pub const fn is_open(&self) -> bool {
         let is_served = self.gateway_at.is_some() || self.foxglove_at.is_some();
         is_served || self.stream_at.is_some() || self.pad_view.is_some() || self.dds_view.is_some()

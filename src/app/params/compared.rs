@@ -17,7 +17,6 @@ pub struct Compared {
 
 impl Compared {
     /// Ticks the rows in which the hand differs. A row that says where a hand is found belongs to one hand, so only a person ticks it.
-    #[must_use]
     pub fn new(name: String, file: ParamsFile, live: &Params) -> Self {
         let differ = live.differences(&file.params).into_iter();
         let ticked = differ.map(|row| row.id).filter(|id| !id.is_place());
@@ -29,7 +28,6 @@ impl Compared {
     }
 
     /// Whether a row is ticked.
-    #[must_use]
     pub fn is_ticked(&self, id: ParamId) -> bool {
         self.ticked.contains(&id)
     }
@@ -42,7 +40,6 @@ impl Compared {
     }
 
     /// The rows that are ticked.
-    #[must_use]
     pub fn chosen(&self) -> Params {
         self.file.params.only(|id| self.is_ticked(id))
     }

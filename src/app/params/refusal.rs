@@ -32,7 +32,6 @@ pub enum ParamRefusal {
 
 impl HandState {
     /// Why nothing may be done now that needs a hand that is there, disarmed and at rest.
-    #[must_use]
     pub const fn rest_refusal(&self) -> Option<ParamRefusal> {
         match (self.link.state, self.link.rest) {
             (LinkState::Offline | LinkState::Identifying, _) => Some(ParamRefusal::NoHand),
@@ -47,7 +46,6 @@ impl HandState {
     }
 
     /// Why the rows cannot be read now.
-    #[must_use]
     pub fn read_refusal(&self) -> Option<ParamRefusal> {
         match self.link.state.is_live() {
             false => Some(ParamRefusal::NoHand),
@@ -56,14 +54,12 @@ impl HandState {
     }
 
     /// Why nothing that is kept may be written now.
-    #[must_use]
     pub fn write_refusal(&self) -> Option<ParamRefusal> {
         let busy = || self.params.is_busy().then_some(ParamRefusal::Busy);
         self.rest_refusal().or_else(busy)
     }
 
     /// Why what is staged cannot be applied now.
-    #[must_use]
     pub fn apply_refusal(&self) -> Option<ParamRefusal> {
         let nothing = self.params.to_apply().is_empty();
         self.write_refusal()
@@ -71,7 +67,6 @@ impl HandState {
     }
 
     /// Why the last apply cannot be undone now.
-    #[must_use]
     pub fn undo_refusal(&self) -> Option<ParamRefusal> {
         let nothing = self.params.undo.is_empty();
         self.write_refusal()
@@ -79,7 +74,6 @@ impl HandState {
     }
 
     /// Why the hand's parameters cannot be written to its flash now.
-    #[must_use]
     pub fn save_refusal(&self) -> Option<ParamRefusal> {
         let nowhere = self.params.files.is_none();
         self.write_refusal()
@@ -87,7 +81,6 @@ impl HandState {
     }
 
     /// How fresh a row's value is.
-    #[must_use]
     pub fn param_freshness(&self, id: ParamId) -> Freshness {
         let Some((_, at)) = self.params.live(id) else {
             return Freshness::Unknown;

@@ -127,13 +127,11 @@ pub struct ParamsState {
 
 impl ParamsState {
     /// What was read last, if anything was on this connection, and when.
-    #[must_use]
     pub fn live(&self, id: ParamId) -> Option<(Value, Moment)> {
         self.live.get(&id).copied()
     }
 
     /// All that was read.
-    #[must_use]
     pub fn live_params(&self) -> Params {
         let mut params = Params::default();
         for (id, (value, _)) in &self.live {
@@ -149,32 +147,27 @@ impl ParamsState {
     }
 
     /// The staged value of a row, if there is one.
-    #[must_use]
     pub fn staged(&self, id: ParamId) -> Option<Value> {
         self.staged.get(id)
     }
 
     /// All that is staged.
-    #[must_use]
     pub const fn all_staged(&self) -> &Params {
         &self.staged
     }
 
     /// What Apply would write. Rows that decide where the hand answers are changed in a dialog instead.
-    #[must_use]
     pub fn to_apply(&self) -> Params {
         self.staged.only(|id| !id.is_place())
     }
 
     /// What a SAVE makes last: what the hand holds, with what is staged.
-    #[must_use]
     pub fn to_save(&self) -> Params {
         self.live_params().with(&self.to_apply())
     }
 
     /// What the hand wakes up with as far as this program knows: what it saved last, else what it read first. Of rows that
     /// were never read it is what the hand holds.
-    #[must_use]
     pub fn before_changes(&self, holds: &Params) -> Params {
         let saved = self.known.saved.as_ref().map(|file| &file.params);
         let read = holds.with(&self.first);
@@ -182,7 +175,6 @@ impl ParamsState {
     }
 
     /// The rows that a SAVE would change for the next power-up, as far as this program knows.
-    #[must_use]
     pub fn unsaved(&self) -> Vec<ParamDifference> {
         let before = self.before_changes(&self.live_params());
         before.differences(&self.to_save())
@@ -201,25 +193,21 @@ impl ParamsState {
     }
 
     /// What this program saved last.
-    #[must_use]
     pub fn saved(&self, id: ParamId) -> Option<Value> {
         self.known.saved.as_ref()?.params.get(id)
     }
 
     /// Outcome of the last write of a row.
-    #[must_use]
     pub fn outcome(&self, id: ParamId) -> Option<&RowOutcome> {
         self.outcomes.get(&id)
     }
 
     /// True while something is running.
-    #[must_use]
     pub fn is_busy(&self) -> bool {
         self.doing != Doing::Nothing
     }
 
     /// True if the known values of a row differ.
-    #[must_use]
     pub fn differs(&self, id: ParamId) -> bool {
         let live = self.live(id).map(|(value, _)| value);
         let others = [self.staged(id), self.saved(id), id.factory()];
@@ -236,7 +224,6 @@ impl ParamsState {
     }
 
     /// True if the rows are worth reading again.
-    #[must_use]
     pub fn is_due(&self, now: Moment) -> bool {
         let lost = self.lost_at;
         let young =
@@ -296,7 +283,6 @@ impl ParamsState {
     }
 
     /// True while a SAVE is under way.
-    #[must_use]
     pub fn is_saving(&self) -> bool {
         self.doing == Doing::Saving
     }

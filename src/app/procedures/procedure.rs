@@ -41,7 +41,6 @@ pub enum ProcedureStage<S, E> {
 
 impl<S, E> ProcedureStage<S, E> {
     /// True while something is done for it.
-    #[must_use]
     pub const fn is_doing(&self) -> bool {
         matches!(self, Self::Doing(..))
     }
@@ -69,7 +68,6 @@ impl<S, E> ProcedureStage<S, E> {
     }
 
     /// The result, once it is there.
-    #[must_use]
     pub const fn end(&self) -> Option<&E> {
         match self {
             Self::Over(end) => Some(end),
@@ -129,7 +127,6 @@ pub struct CalibrateProcedure {
 
 impl Procedure {
     /// A card closes where nothing is under way.
-    #[must_use]
     pub const fn may_close(&self) -> bool {
         !match self {
             Self::Place(card) => card.stage.is_doing(),
@@ -141,7 +138,6 @@ impl Procedure {
 
 impl PlaceProcedure {
     /// Where the hand is, as far as the card knows; `None` if nobody does.
-    #[must_use]
     pub fn place(&self) -> Option<WhichPlace> {
         match &self.stage {
             ProcedureStage::Over(Ok(report)) => report.end.place(),

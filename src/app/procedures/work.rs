@@ -82,7 +82,6 @@ impl HandState {
     }
 
     /// What the hand holds in a row by which it is found: as read back last, else as it said when the link began.
-    #[must_use]
     pub fn held_now(&self, id: ParamId) -> Option<Value> {
         let told = match id {
             ParamId::HandId => self.link.quirks.hand_id,

@@ -51,7 +51,6 @@ pub struct App {
 
 impl App {
     /// Connects to nothing by itself.
-    #[must_use]
     pub fn new(env: Env, settings: Settings) -> Self {
         let (saved, state) = SavedFiles::load(settings, &env);
         Self {
@@ -93,14 +92,12 @@ impl App {
     }
 
     /// Everything the window shows: the live hands, or the session that is replayed.
-    #[must_use]
     pub fn state(&self) -> &State {
         let replayed = self.recorded.player.as_ref();
         replayed.map_or(&self.state, |player| &player.state)
     }
 
     /// The live hands, whatever is shown.
-    #[must_use]
     pub const fn live(&self) -> &State {
         &self.state
     }
@@ -357,7 +354,6 @@ impl App {
     }
 
     /// True once a person said that the window should close, whatever is lost.
-    #[must_use]
     pub const fn leaves(&self) -> bool {
         self.leaves
     }

@@ -22,7 +22,6 @@ pub enum FaultKind {
 impl FaultKind {
     /// Whether CLEAR_ERROR can clear it (manual 2.6.3); `None` where the manual does not say: unknown bits, and status
     /// codes, which follow from the faults.
-    #[must_use]
     pub const fn clearable(self) -> Option<bool> {
         match self {
             Self::Fault(fault) => fault.clearable(),
@@ -63,13 +62,11 @@ pub struct FaultEntry {
 
 impl FaultEntry {
     /// True while it lasts.
-    #[must_use]
     pub const fn is_active(&self) -> bool {
         self.until.is_none()
     }
 
     /// How long it lasts, or lasted when it came last.
-    #[must_use]
     pub fn lasted(&self, now: Moment) -> Duration {
         self.until.unwrap_or(now).since(self.since)
     }
@@ -134,7 +131,6 @@ impl FaultList {
     }
 
     /// Why CLEAR_ERROR would clear nothing; `None` if it clears something, or may.
-    #[must_use]
     pub fn nothing_to_clear(&self) -> Option<NothingToClear> {
         let mut any = false;
         for entry in self.entries.iter().filter(|entry| entry.is_active()) {

@@ -31,7 +31,6 @@ impl ReadingPace {
     }
 
     /// From which age on it is old.
-    #[must_use]
     pub fn stale_after(&self) -> Duration {
         let longest = self.intervals.iter().max().copied().unwrap_or_default();
         (longest * MISSED).clamp(STALE_AFTER_LEAST, STALE_AFTER_MOST)

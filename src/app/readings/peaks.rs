@@ -12,7 +12,6 @@ pub struct ForcePeaks(PerDof<Option<(i16, Moment)>>);
 
 impl ForcePeaks {
     /// The highest force of this joint in g, and when it was; `None` before the first reading.
-    #[must_use]
     pub fn get(&self, dof: crate::hand::Dof) -> Option<(i16, Moment)> {
         self.0[dof]
     }

@@ -60,13 +60,11 @@ pub struct Tare {
 
 impl Tare {
     /// What this fingertip is counted from; `None` before it was read untouched.
-    #[must_use]
     pub fn zero(&self, finger: Finger) -> Option<TareZero> {
         self.zeros[finger]
     }
 
     /// When a person tared last, if one did and it was not undone.
-    #[must_use]
     pub fn chosen_at(&self) -> Option<Moment> {
         let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
         let chosen = chosen.filter(|zero| zero.source == Source::Person);
@@ -74,7 +72,6 @@ impl Tare {
     }
 
     /// Whether there is a taring to take back.
-    #[must_use]
     pub const fn can_undo(&self) -> bool {
         self.before.is_some()
     }
@@ -135,7 +132,6 @@ impl Tare {
     }
 
     /// How old the taring is that is offered; `None` if there is none.
-    #[must_use]
     pub fn offered(&self, now: Moment) -> Option<Duration> {
         let offer = self.offer.as_ref()?.as_ref()?;
         Some(offer.age + now.since(offer.at))

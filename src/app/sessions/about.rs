@@ -38,7 +38,6 @@ pub struct SessionAbout {
 
 impl SessionAbout {
     /// Where it stands beside a session.
-    #[must_use]
     pub fn path(session: &Path) -> PathBuf {
         session.with_extension("toml")
     }
@@ -69,7 +68,6 @@ impl SessionAbout {
     }
 
     /// The notes in force: a person's, else those of the recording.
-    #[must_use]
     pub fn notes(&self, marks: &[FileMark]) -> Vec<SessionNote> {
         if let Some(notes) = &self.notes {
             return notes.clone();
@@ -84,7 +82,6 @@ impl SessionAbout {
     }
 
     /// True if the budget must leave the session alone.
-    #[must_use]
     pub fn is_kept(&self, notes_recorded: u64) -> bool {
         let notes = self
             .notes
@@ -96,7 +93,6 @@ impl SessionAbout {
 
 impl SessionNote {
     /// When.
-    #[must_use]
     pub const fn at(&self) -> Moment {
         Moment::from_micros(self.at_micros)
     }

@@ -30,7 +30,6 @@ pub struct BesideSession {
 
 impl BesideSession {
     /// Seconds from the times of the replayed session to those of this one.
-    #[must_use]
     pub fn offset_s(&self) -> f64 {
         self.other.secs() - self.own.secs()
     }

@@ -46,13 +46,11 @@ pub struct SessionRoom<'a> {
 
 impl PlannedDeletion {
     /// From when on it goes by itself, in seconds since 1970.
-    #[must_use]
     pub const fn due_unix_s(&self) -> u64 {
         self.told_unix_s.saturating_add(TOLD_FOR.as_secs())
     }
 
     /// The same as `2026-11-22 09:30`, UTC.
-    #[must_use]
     pub fn due(&self) -> String {
         let stamp = calendar::stamp(Duration::from_secs(self.due_unix_s()));
         stamp.replace('T', " ").chars().take(16).collect()
@@ -84,7 +82,6 @@ pub(crate) fn delete(session: &Path) -> io::Result<()> {
 
 /// The sessions that go so that no more is left than there is room, `items` being the oldest last. One that is in use, has a
 /// star, a name or notes stays. Of what was `told` before, the time is kept, unless the file changed or a clock was set back.
-#[must_use]
 pub fn plan(
     items: &[SessionItem],
     room: &SessionRoom<'_>,
@@ -117,7 +114,6 @@ pub fn plan(
 }
 
 /// What of a plan was told long enough before: only what `told`, as it was read from the disk, says.
-#[must_use]
 pub fn due(
     planned: &[PlannedDeletion],
     told: &[PlannedDeletion],

@@ -11,7 +11,6 @@ use std::time::Duration;
 const BEFORE: Duration = Duration::from_secs(2);
 
 /// What replays a stretch of a hand again and again, from a little before it; `None` if no session holds its beginning.
-#[must_use]
 pub fn replay_of(
     sessions: &SessionsState,
     replayed: Option<&Timeline>,

@@ -48,7 +48,6 @@ impl SessionItem {
     }
 
     /// Of an open file.
-    #[must_use]
     pub fn of(file: &SessionFile, about: SessionAbout) -> Self {
         let overview = file.overview();
         let span = (file.first(), file.last());
@@ -66,7 +65,6 @@ impl SessionItem {
     }
 
     /// When it began, `2026-11-22T09:30:00Z`; `-` if nobody knows.
-    #[must_use]
     pub fn began(&self) -> String {
         if self.opening.is_imported() {
             return "-".into();
@@ -75,7 +73,6 @@ impl SessionItem {
     }
 
     /// Its name, or that of its file.
-    #[must_use]
     pub fn title(&self) -> String {
         if !self.about.name.is_empty() {
             return self.about.name.clone();
@@ -85,19 +82,16 @@ impl SessionItem {
     }
 
     /// How many marks of a kind there are.
-    #[must_use]
     pub fn count(&self, kind: EventKind) -> usize {
         self.marks.iter().filter(|mark| mark.kind == kind).count()
     }
 
     /// The notes in force.
-    #[must_use]
     pub fn notes(&self) -> Vec<SessionNote> {
         self.about.notes(&self.marks)
     }
 
     /// True if these words, in small letters, stand somewhere in what is known of it.
-    #[must_use]
     pub fn matches(&self, words: &str) -> bool {
         let notes = self.notes().into_iter().map(|note| note.words);
         let marks = self.marks.iter().map(|mark| mark.words.clone());
@@ -111,7 +105,6 @@ impl SessionItem {
 }
 
 /// The greatest force of all joints, column by column.
-#[must_use]
 pub fn strip(overview: &Overview, (first, last): (Moment, Moment)) -> Vec<f32> {
     let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
     let (from, to) = (second(first), second(last));

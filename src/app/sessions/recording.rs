@@ -117,7 +117,6 @@ impl HandRecording {
     }
 
     /// True once the hand was asked for what it keeps.
-    #[must_use]
     pub const fn is_asked(&self) -> bool {
         self.is_asked
     }

@@ -127,7 +127,6 @@ fn stand(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
 
 impl Comparison {
     /// Puts these sessions side by side. Where they may not be taken together, what settings come to is of `focus` alone.
-    #[must_use]
     pub fn of(trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> Self {
         let of = stand(trials, shown);
         let sessions: Vec<&TrialSession> = of
@@ -157,7 +156,6 @@ impl Comparison {
     }
 
     /// True while it would come out the same.
-    #[must_use]
     pub fn stands(&self, trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> bool {
         self.focus == focus && self.of == stand(trials, shown)
     }
@@ -168,7 +166,6 @@ impl Comparison {
     }
 
     /// What stands in a row.
-    #[must_use]
     pub fn row<'a>(&self, trials: &'a TrialsState, key: RowKey) -> Option<ComparedRow<'a>> {
         let (session, trial) = self.trial(trials, key)?;
         let joint = trial.summary.joints.get(key.joint)?;
@@ -190,7 +187,6 @@ impl Comparison {
     }
 
     /// What a row has a colour for.
-    #[must_use]
     pub fn group(&self, key: RowKey, row: ComparedRow<'_>) -> LineGroup {
         if self.several_joints {
             return LineGroup::Joint(row.joint.dof);
@@ -204,7 +200,6 @@ impl Comparison {
 
     /// The lines of a quantity: spread evenly over all there are, and none with more points than the eye sees. Those of
     /// the trial that stands out are among them whatever their number, last and with all their points.
-    #[must_use]
     pub fn lines(
         &self,
         trials: &TrialsState,

@@ -6,7 +6,6 @@ use crate::trials::plan_settings::LIST_MAX;
 use crate::trials::{Approach, TrialPlan, Until};
 
 /// How the object may be approached, with the ends that fast stages usually have.
-#[must_use]
 pub fn approaches(fast: Speed) -> [Approach; 5] {
     let two = |until| Approach::TwoStage { fast, until };
     [
@@ -87,7 +86,6 @@ pub fn list(text: &str, most: i16) -> Result<Vec<i16>, ListError> {
 }
 
 /// Words between commas.
-#[must_use]
 pub fn tags(words: &str) -> Vec<String> {
     let words = words.split([',', '，']).map(str::trim);
     let words = words.filter(|word| !word.is_empty());

@@ -40,7 +40,6 @@ pub struct JointLines {
 
 impl JointLines {
     /// Of a recording and what was measured from it.
-    #[must_use]
     pub fn of(recording: &TrialRecording, joint: &JointMetrics) -> Self {
         let curves = JointCurves::of(recording, joint.dof);
         let rest_g = joint.rest_force_g.unwrap_or(0.0);
@@ -54,7 +53,6 @@ impl JointLines {
     }
 
     /// Seconds and values of a quantity; empty if it was not read.
-    #[must_use]
     pub fn points(&self, quantity: TrialQuantity) -> &[[f64; 2]] {
         let points = self.points.get(quantity as usize);
         points.map_or(&[], Vec::as_slice)

@@ -33,7 +33,6 @@ pub struct SeriesRun {
 
 impl SeriesRun {
     /// About how long the rest of it takes, if nothing ends it.
-    #[must_use]
     pub fn left(&self, now: Moment) -> Duration {
         let ahead = self.view.total.saturating_sub(self.view.number);
         let ahead = self.each * u32::try_from(ahead).unwrap_or(u32::MAX);

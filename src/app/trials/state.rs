@@ -32,7 +32,6 @@ pub enum SessionOrigin {
 
 impl SessionOrigin {
     /// Whether all of it lies in files.
-    #[must_use]
     pub const fn is_in_files(&self) -> bool {
         !matches!(self, Self::Unsaved)
     }
@@ -51,7 +50,6 @@ pub struct SessionTrial {
 
 impl SessionTrial {
     /// Of a trial that was run here.
-    #[must_use]
     pub fn run(trial: Trial) -> Self {
         let read = Self::read(trial.summary, &trial.recording);
         Self {
@@ -61,7 +59,6 @@ impl SessionTrial {
     }
 
     /// Of a trial whose samples lie in a file. Without any there is nothing to draw.
-    #[must_use]
     pub fn read(summary: TrialSummary, recording: &TrialRecording) -> Self {
         let joints = summary.joints.iter();
         let joints = joints.filter(|_| !recording.rows().is_empty());
@@ -100,7 +97,6 @@ pub struct TrialSession {
 
 impl TrialSession {
     /// From the closing command of a trial to its end, in the program's time; `None` if it was not run here.
-    #[must_use]
     pub fn stretch(&self, number: usize) -> Option<(Moment, Moment)> {
         let mut trials = self.trials.iter();
         let recording = &trials.find(|own| own.summary.number == number)?.recording;
@@ -148,7 +144,6 @@ pub struct TrialsState {
 
 impl TrialsState {
     /// One session.
-    #[must_use]
     pub fn session(&self, id: SessionId) -> Option<&TrialSession> {
         self.sessions.iter().find(|session| session.id == id)
     }

@@ -92,7 +92,6 @@ impl TrialsState {
 
 impl HandState {
     /// Why a plan cannot begin now, if it makes sense at all.
-    #[must_use]
     pub fn start_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
         if self.runs_series() {
             return Some(StartRefusal::Runs);

@@ -8,7 +8,6 @@ use crate::hand::register::SAVE;
 use crate::hand::{HandId, RegisterWrite, Span};
 
 /// The request that reads these bytes (manual 2.2.1); `None` if there are none or more than [`READ_LEN_MAX`].
-#[must_use]
 pub fn encode_read(id: HandId, span: Span) -> Option<Rs485Frame> {
     if span.len == 0 || span.len > READ_LEN_MAX {
         return None;
@@ -25,7 +24,6 @@ pub fn encode_read(id: HandId, span: Span) -> Option<Rs485Frame> {
 }
 
 /// The request that writes these bytes (manual 2.2.2).
-#[must_use]
 pub fn encode_write(id: HandId, write: &RegisterWrite) -> Rs485Frame {
     let frame = framing::build(
         FrameDirection::Request,
@@ -86,7 +84,6 @@ impl Rs485Reply {
     }
 
     /// The hand that answers.
-    #[must_use]
     pub const fn id(&self) -> u8 {
         match self {
             Self::Read { id, .. } | Self::WriteAck { id, .. } => *id,
@@ -94,7 +91,6 @@ impl Rs485Reply {
     }
 
     /// First byte's address.
-    #[must_use]
     pub const fn address(&self) -> u16 {
         match self {
             Self::Read { address, .. } | Self::WriteAck { address, .. } => *address,
@@ -103,7 +99,6 @@ impl Rs485Reply {
 
     /// True if this can be the frame that ends a calibration of the force sensors. Only meaningful while one is awaited.
     // Manual: silent; the older manual of this family shows `90 EB 01 04 11 02 00 00 18`, about six seconds later.
-    #[must_use]
     pub fn is_calibration_end(&self) -> bool {
         matches!(self, Self::Read { address: CALIBRATION_END, bytes, .. } if bytes.as_slice() == [0])
     }
@@ -112,7 +107,6 @@ impl Rs485Reply {
     ///
     /// Only meaningful while a SAVE is awaited: a plain read of the SAVE register looks the same.
     /// The first acknowledgement (command 0x12, value 1) is no result.
-    #[must_use]
     pub fn save_result(&self) -> Option<SaveResult> {
         if self.address() != SAVE.address {
             return None;

@@ -54,25 +54,21 @@ framing::decoder!(
 );
 
 /// The reply to a read (manual 2.2.1); `None` unless there are 1 to 252 bytes.
-#[must_use]
 pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Rs485Frame> {
     framing::build(FrameDirection::Reply, id, READ, address, bytes)
 }
 
 /// The acknowledgement of a write (manual 2.2.2); the manual's value is 1.
-#[must_use]
 pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Rs485Frame {
     framing::build_short(FrameDirection::Reply, id, WRITE, address, value)
 }
 
 /// The late frame that tells that a calibration of the force sensors is finished.
-#[must_use]
 pub fn encode_calibration_end(id: u8) -> Rs485Frame {
     framing::build_short(FrameDirection::Reply, id, READ, CALIBRATION_END, 0)
 }
 
 /// The late frame that tells how a SAVE ended (manual 2.2.2), with command byte 0x11 or 0x12.
-#[must_use]
 pub fn encode_save_result(id: u8, command: u8, ok: bool) -> Rs485Frame {
     let value = if ok { 0x00 } else { 0xFF };
     framing::build_short(FrameDirection::Reply, id, command, SAVE.address, value)

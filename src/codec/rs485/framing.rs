@@ -117,7 +117,6 @@ pub(super) fn checksum(body: &[u8]) -> u8 {
 }
 
 /// Looks at the beginning of some bytes. None of them is [`FrameStart::Open`].
-#[must_use]
 pub fn scan(bytes: &[u8]) -> FrameStart {
     let direction = match bytes {
         [] => return FrameStart::Open(None),
@@ -152,7 +151,6 @@ pub fn scan(bytes: &[u8]) -> FrameStart {
 }
 
 /// The parts of a whole frame, whatever its checksum says; `None` if it is too short.
-#[must_use]
 pub fn parts(frame: &[u8]) -> Option<FrameParts> {
     let [_, _, id, _, command, low, high, data @ .., _sum] = frame else {
         return None;
@@ -354,7 +352,6 @@ macro_rules! decoder {
             }
 
             /// What was met since the start, [`Self::clear`] or not.
-            #[must_use]
             pub const fn counts(&self) -> FramerCounts {
                 self.0.counts()
             }
@@ -365,7 +362,6 @@ macro_rules! decoder {
             }
 
             /// Bytes kept because they may be the beginning of a frame.
-            #[must_use]
             pub const fn buffered(&self) -> usize {
                 self.0.buffered()
             }

@@ -40,7 +40,6 @@ pub struct DayReport {
 
 impl DayReport {
     /// A day on which nothing happened yet.
-    #[must_use]
     pub fn of(day: &str) -> Self {
         Self {
             day: day.into(),

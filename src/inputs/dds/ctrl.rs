@@ -20,7 +20,6 @@ const FORCE: u8 = 4;
 const SPEED: u8 = 8;
 
 /// Where programs send to the hand of this side.
-#[must_use]
 pub fn topic(side: Side) -> DdsTopic {
     let side = match side {
         Side::Left => 'l',
@@ -71,7 +70,6 @@ pub enum CtrlFault {
 
 impl CtrlFault {
     /// The word for it in JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Malformed => "malformed",

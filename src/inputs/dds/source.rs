@@ -52,7 +52,6 @@ pub struct DdsSource {
 
 impl DdsSource {
     /// Takes these messages from now on. Must be called within a tokio runtime.
-    #[must_use]
     pub fn open(config: DdsSourceConfig, messages: mpsc::Receiver<DdsMessage>) -> Self {
         let (told, view) = watch::channel(DdsView::default());
         let outlet = OfferOutlet::default();
@@ -71,13 +70,11 @@ impl DdsSource {
     }
 
     /// What is known of it.
-    #[must_use]
     pub fn view(&self) -> DdsView {
         self.view.borrow().clone()
     }
 
     /// Its targets from now on, for whoever follows; whoever did before does no more.
-    #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }

@@ -82,7 +82,6 @@ impl PadControl {
     ];
 
     /// How it moves.
-    #[must_use]
     pub const fn kind(self) -> ControlKind {
         match self {
             Self::LeftTrigger | Self::RightTrigger => ControlKind::Trigger,
@@ -92,7 +91,6 @@ impl PadControl {
     }
 
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::South => "south",
@@ -118,7 +116,6 @@ impl PadControl {
     }
 
     /// The control of this name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|own| own.name() == name)
     }
@@ -160,7 +157,6 @@ const KERNEL_NAMES: [(&str, u16); 31] = [
 ];
 
 /// The kernel's number of a button or axis, by its name there.
-#[must_use]
 pub fn kernel_code(name: &str) -> Option<u16> {
     let known = KERNEL_NAMES.into_iter().find(|(own, _)| *own == name);
     known.map(|(_, code)| code)

@@ -37,7 +37,6 @@ const PLAIN: [(&str, PadAction); 7] = [
 ];
 
 /// What stands for an action in a file.
-#[must_use]
 pub fn action_words(action: &PadAction) -> String {
     if let PadAction::Pose(name) = action {
         return format!("pose {name}");
@@ -47,7 +46,6 @@ pub fn action_words(action: &PadAction) -> String {
 }
 
 /// The action that these words stand for.
-#[must_use]
 pub fn action_of(words: &str) -> Option<PadAction> {
     if let Some(name) = words.strip_prefix("pose ") {
         let name = name.trim();
@@ -96,7 +94,6 @@ pub fn read(text: &str) -> Result<PadMap, FileError> {
 }
 
 /// Such a text of a map.
-#[must_use]
 pub fn write(map: &PadMap) -> String {
     let head = format!("format = \"{FORMAT}\"\nversion = {VERSION}\n\n[controls]\n");
     let used = PadControl::ALL.into_iter();

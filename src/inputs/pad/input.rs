@@ -74,7 +74,6 @@ struct ThumbPush {
 
 impl PadInput {
     /// No gamepad yet.
-    #[must_use]
     pub fn new(map: PadMap) -> Self {
         Self {
             map,
@@ -91,7 +90,6 @@ impl PadInput {
     }
 
     /// No gamepad yet; its buttons go to the poses that are built in.
-    #[must_use]
     pub fn starting(map: PadMap) -> Self {
         let poses = starter().poses.iter();
         let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
@@ -124,25 +122,21 @@ impl PadInput {
     }
 
     /// What the controls do.
-    #[must_use]
     pub const fn map(&self) -> &PadMap {
         &self.map
     }
 
     /// Where the controls are.
-    #[must_use]
     pub const fn state(&self) -> &PadState {
         &self.state
     }
 
     /// The gamepad that is followed.
-    #[must_use]
     pub const fn pad(&self) -> Option<PadId> {
         self.pad
     }
 
     /// The fingers that a trigger closes now.
-    #[must_use]
     pub const fn fingers(&self) -> FingerChoice {
         self.fingers
     }
@@ -187,7 +181,6 @@ impl PadInput {
     }
 
     /// Whether the dead-man is held at this moment.
-    #[must_use]
     pub fn is_held(&self, now: Moment) -> bool {
         let is_near = |heard: Moment| now.since(heard) <= HEARD_WITHIN;
         self.may_hold && self.is_dead_man_down() && self.heard.is_some_and(is_near)

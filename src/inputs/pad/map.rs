@@ -47,7 +47,6 @@ pub enum MapRefusal {
 
 impl PadAction {
     /// What a control of this kind can do, without the poses.
-    #[must_use]
     pub const fn choices(kind: ControlKind) -> &'static [Self] {
         match kind {
             ControlKind::Button => &[Self::Nothing, Self::DeadMan, Self::Stop],
@@ -57,7 +56,6 @@ impl PadAction {
     }
 
     /// Whether a control of this kind can do it.
-    #[must_use]
     pub fn fits(&self, kind: ControlKind) -> bool {
         match self {
             Self::Pose(_) => kind == ControlKind::Button,
@@ -66,7 +64,6 @@ impl PadAction {
     }
 
     /// Whether exactly one control does it.
-    #[must_use]
     pub const fn is_single(&self) -> bool {
         matches!(self, Self::DeadMan | Self::Stop)
     }
@@ -74,7 +71,6 @@ impl PadAction {
 
 impl PadMap {
     /// What a gamepad does before a person changes it. The poses are shipped ones.
-    #[must_use]
     pub fn usual() -> Self {
         let pose = |name: &str| PadAction::Pose(name.into());
         Self {
@@ -93,7 +89,6 @@ impl PadMap {
     }
 
     /// Of these actions; `None` unless one control is the dead-man and one is STOP, and each can do what it shall.
-    #[must_use]
     pub fn of(actions: BTreeMap<PadControl, PadAction>) -> Option<Self> {
         let count = |wanted: &PadAction| {
             let all = actions.values();
@@ -110,7 +105,6 @@ impl PadMap {
     }
 
     /// What a control does.
-    #[must_use]
     pub fn action(&self, control: PadControl) -> &PadAction {
         self.actions.get(&control).unwrap_or(&PadAction::Nothing)
     }

@@ -32,7 +32,6 @@ pub enum KernelEvent {
 
 impl KernelEvent {
     /// The event of a button or axis by its name in the kernel, such as `BTN_SOUTH` or `ABS_RZ`.
-    #[must_use]
     pub fn named(name: &str, value: i32) -> Option<Self> {
         let code = kernel_code(name)?;
         Some(match name.starts_with("BTN_") {

@@ -62,7 +62,6 @@ pub struct PadSource {
 
 impl PadSource {
     /// Reads from now on. Must be called within a tokio runtime.
-    #[must_use]
     pub fn open(config: PadSourceConfig) -> Self {
         let (told, view) = watch::channel(PadView::default());
         let outlet = OfferOutlet::default();
@@ -77,7 +76,6 @@ impl PadSource {
     }
 
     /// What is known of it.
-    #[must_use]
     pub fn view(&self) -> PadView {
         self.view.borrow().clone()
     }
@@ -92,7 +90,6 @@ impl PadSource {
     }
 
     /// Its targets from now on, for whoever follows; whoever did before does no more.
-    #[must_use]
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }

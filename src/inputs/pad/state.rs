@@ -34,7 +34,6 @@ pub struct StickPlace {
 
 impl PadState {
     /// Of this gamepad, with nothing held.
-    #[must_use]
     pub fn of(facts: &PadFacts) -> Self {
         let uses = facts.uses();
         let is_trigger = |(what, _): &(AxisUse, AxisRange)| *what == AxisUse::RightTrigger;
@@ -47,7 +46,6 @@ impl PadState {
     }
 
     /// The same gamepad with nothing held and everything let go.
-    #[must_use]
     pub fn released(&self) -> Self {
         Self {
             held: BTreeSet::new(),
@@ -70,19 +68,16 @@ impl PadState {
     }
 
     /// Buttons that are down.
-    #[must_use]
     pub const fn held(&self) -> &BTreeSet<PadControl> {
         &self.held
     }
 
     /// Whether a button is down.
-    #[must_use]
     pub fn is_held(&self, button: PadControl) -> bool {
         self.held.contains(&button)
     }
 
     /// How far a trigger is pressed, 0 to 1000; 0 for what is no trigger.
-    #[must_use]
     pub const fn trigger(&self, trigger: PadControl) -> i16 {
         let [left, right] = self.triggers;
         match trigger {
@@ -93,7 +88,6 @@ impl PadState {
     }
 
     /// Where a stick is; the middle for what is no stick.
-    #[must_use]
     pub const fn stick(&self, stick: PadControl) -> StickPlace {
         let [left, right] = self.sticks;
         match stick {

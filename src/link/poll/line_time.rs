@@ -6,7 +6,6 @@ use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::time::Duration;
 
 /// Time for request and reply of a read of this many bytes; `None` where the speed of the line is not known.
-#[must_use]
 pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
     let cost = match endpoint {
         Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,

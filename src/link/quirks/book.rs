@@ -17,7 +17,6 @@ const SHEETS_MAX: usize = 200;
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
 /// What was found at an endpoint on a day.
-#[must_use]
 pub fn sheet(endpoint: &Endpoint, quirks: &Quirks, day: &str) -> QuirkSheet {
     let (place, id) = endpoint.place_and_id();
     QuirkSheet {
@@ -60,7 +59,6 @@ impl Default for QuirkBook {
 
 impl QuirkBook {
     /// Where the book lies, beside the settings.
-    #[must_use]
     pub fn path(settings: &Path) -> PathBuf {
         settings.with_file_name("quirks.toml")
     }
@@ -111,7 +109,6 @@ impl QuirkBook {
     }
 
     /// A book of this sheet alone.
-    #[must_use]
     pub fn of(sheet: QuirkSheet) -> Self {
         Self {
             hands: vec![sheet],
@@ -120,14 +117,12 @@ impl QuirkBook {
     }
 
     /// The file's text.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         toml::to_string_pretty(self).unwrap_or_default()
     }
 }
 
 /// The word for a byte packing in quirk sheets and on the command line.
-#[must_use]
 pub const fn packing_name(packing: BytePacking) -> &'static str {
     match packing {
         BytePacking::LowFirst => "low-first",
@@ -137,7 +132,6 @@ pub const fn packing_name(packing: BytePacking) -> &'static str {
 }
 
 /// As it is written in sheets and in JSON.
-#[must_use]
 pub const fn gap_name(gap: GapRead) -> &'static str {
     match gap {
         GapRead::Through => "through",
@@ -146,7 +140,6 @@ pub const fn gap_name(gap: GapRead) -> &'static str {
 }
 
 /// As it is written in sheets and in JSON.
-#[must_use]
 pub const fn touch_name(touch: TouchVariant) -> &'static str {
     match touch {
         TouchVariant::Capacitive => "capacitive",

@@ -64,7 +64,6 @@ pub enum TouchDoubt {
 /// What a code of REDU_RATIO means by this manual (2.6.2), bits a second; `None` for codes it does not explain.
 ///
 /// Manual: other editions number differently. That of August 2024 gives 921600 the code 4 and swaps the two of CAN.
-#[must_use]
 pub const fn baud_of_code(code: u8, is_can: bool) -> Option<u32> {
     match (code, is_can) {
         (0, false) => Some(115_200),
@@ -88,7 +87,6 @@ const NO_DIRECTION: u16 = 65535;
 
 impl TouchVariant {
     /// Judges by the bytes that begin where a fingertip's block begins, at least 58 of them.
-    #[must_use]
     pub fn judge(bytes: &[u8]) -> Self {
         let block = bytes.get(..BLOCK_LEN).and_then(TactileBlock::decode);
         let Some(block) = block else {

@@ -52,7 +52,6 @@ pub enum ScanHint {
 
 impl ScanHint {
     /// Where it was noticed.
-    #[must_use]
     pub fn place(&self) -> String {
         match self {
             Self::OtherId { endpoint, .. }

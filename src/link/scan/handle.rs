@@ -63,7 +63,6 @@ pub struct ScanHandle {
 }
 
 /// Begins a scan. It reads HAND_ID and nothing else, and writes nothing.
-#[must_use]
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     let (tell, events) = mpsc::channel(EVENTS_MAX);
     let board = Arc::new(Mutex::new(Board::default()));
@@ -95,7 +94,6 @@ impl ScanHandle {
     }
 
     /// How far it is.
-    #[must_use]
     pub fn progress(&self) -> ScanProgress {
         let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
         board.progress()

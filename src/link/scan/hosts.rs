@@ -63,19 +63,16 @@ impl Hosts {
     }
 
     /// How many there are.
-    #[must_use]
     pub const fn count(&self) -> usize {
         self.names.len()
     }
 
     /// The TCP port.
-    #[must_use]
     pub const fn port(&self) -> u16 {
         self.port
     }
 
     /// True if a range was written: then most of the addresses are expected to be nobody's.
-    #[must_use]
     pub const fn is_range(&self) -> bool {
         self.is_range
     }

@@ -104,7 +104,6 @@ pub struct ScanPlan {
 impl ScanPlan {
     /// Plans for these places and ids. `held` are the hands that are connected now: the port of each is left alone, its CAN interface
     /// too, where its link would take our questions for those of another controller.
-    #[must_use]
     pub fn new(places: &ScanTargets, ids: &[HandId], held: &[Endpoint]) -> Self {
         let mut plan = Self::default();
         for wish in &places.ports {
@@ -146,19 +145,16 @@ impl ScanPlan {
     }
 
     /// How many questions there are at most.
-    #[must_use]
     pub fn tries(&self) -> usize {
         self.lanes.iter().map(|lane| lane.tries.len()).sum()
     }
 
     /// How many places are looked at.
-    #[must_use]
     pub const fn places(&self) -> usize {
         self.lanes.len()
     }
 
     /// Time that it takes if nobody answers.
-    #[must_use]
     pub fn estimate(&self) -> Duration {
         estimate(self.lanes.iter().map(|lane| (lane.kind, lane.cost())))
     }

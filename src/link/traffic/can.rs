@@ -13,7 +13,6 @@ const CR: u8 = b'\r';
 const BEL: u8 = 0x07;
 
 /// What stands here of a CAN interface.
-#[must_use]
 pub const fn look_record(bytes: &[u8]) -> FrameCut {
     if bytes.len() >= RECORD_LEN {
         FrameCut::Whole(RECORD_LEN)
@@ -23,7 +22,6 @@ pub const fn look_record(bytes: &[u8]) -> FrameCut {
 }
 
 /// What stands here of an adapter's line.
-#[must_use]
 pub fn look_line(bytes: &[u8]) -> FrameCut {
     match bytes.iter().position(|byte| matches!(*byte, CR | BEL)) {
         Some(end) if end <= LINE_MAX => FrameCut::Whole(end + 1),
@@ -33,7 +31,6 @@ pub fn look_line(bytes: &[u8]) -> FrameCut {
 }
 
 /// What stands here of the maker's adapter.
-#[must_use]
 pub fn look_packet(bytes: &[u8]) -> FrameCut {
     match inspect(bytes) {
         PacketStart::Packet(len, _) => FrameCut::Whole(len),
@@ -46,7 +43,6 @@ pub fn look_packet(bytes: &[u8]) -> FrameCut {
 }
 
 /// What a packet says; one that is damaged says nothing.
-#[must_use]
 pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
     match (inspect(packet), direction) {
         (PacketStart::Packet(_, PacketContent::Frame(frame)), _) => said_frame(direction, &frame),
@@ -57,7 +53,6 @@ pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
 }
 
 /// What a frame of a CAN interface says.
-#[must_use]
 pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
     let Ok(record) = <&[u8; RECORD_LEN]>::try_from(record) else {
         return FrameContent::new(Kind::Noise);
@@ -71,7 +66,6 @@ pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
 }
 
 /// What a line from or to an adapter says.
-#[must_use]
 pub fn said_line(direction: Direction, line: &[u8]) -> FrameContent {
     match direction {
         Direction::ToHand => {

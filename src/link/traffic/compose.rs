@@ -21,7 +21,6 @@ impl SnippetFormat {
     pub const ALL: [Self; 4] = [Self::Hex, Self::Python, Self::C, Self::Rust];
 
     /// Its name, the same in all languages.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hex => "Hex",
@@ -33,7 +32,6 @@ impl SnippetFormat {
 
     /// One frame that passed over the wire of this endpoint. On CAN only its digits: there the bytes hold more than the
     /// frame.
-    #[must_use]
     pub fn text(self, bytes: &[u8], endpoint: Option<&Endpoint>) -> Option<String> {
         if matches!(endpoint, Some(Endpoint::Can { .. })) && self != Self::Hex {
             return None;

@@ -62,7 +62,6 @@ impl Cutter {
     }
 
     /// Bytes that wait.
-    #[must_use]
     pub const fn waiting(&self) -> usize {
         self.waiting.len()
     }

@@ -45,7 +45,6 @@ pub struct Decoder {
 
 impl Decoder {
     /// For a link to this hand.
-    #[must_use]
     pub fn new(endpoint: &Endpoint) -> Self {
         let form = FrameFormat::of(endpoint);
         let hand = id_of(endpoint);
@@ -90,7 +89,6 @@ impl Decoder {
     }
 
     /// Bytes that wait for the rest of their frame, of both directions.
-    #[must_use]
     pub const fn waiting(&self) -> usize {
         self.to_hand.cutter.waiting() + self.from_hand.cutter.waiting()
     }

@@ -72,7 +72,6 @@ pub struct Field {
 
 impl Frame {
     /// All bytes, in order and without holes.
-    #[must_use]
     pub fn fields(&self) -> Vec<Field> {
         let mut parts = Parts {
             frame: self,

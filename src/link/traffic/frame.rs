@@ -24,7 +24,6 @@ pub enum FrameFormat {
 
 impl FrameFormat {
     /// What an endpoint speaks; the built-in hand speaks RS485.
-    #[must_use]
     pub const fn of(endpoint: &Endpoint) -> Self {
         match endpoint {
             Endpoint::Sim { .. } | Endpoint::Rs485(_) => Self::Rs485,
@@ -227,7 +226,6 @@ fn of(want: &Option<usize>) -> String {
 
 impl Wrong {
     /// True if the bytes themselves are damaged or no frame, not only out of place.
-    #[must_use]
     pub const fn is_damage(&self) -> bool {
         matches!(
             self,
@@ -273,20 +271,17 @@ pub struct Frame {
 
 impl Frame {
     /// True if it is part of the regular reading and nothing is wrong about it.
-    #[must_use]
     pub const fn is_polling(&self) -> bool {
         matches!(self.kind, Kind::Read | Kind::ReadReply) && self.wrong.is_none()
     }
 
     /// The bytes in hex, two digits each with spaces between.
-    #[must_use]
     pub fn hex(&self) -> String {
         hex(&self.bytes)
     }
 }
 
 /// Bytes in hex, two digits each with spaces between.
-#[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
     let digit = |half: u8| char::from(DIGITS.get(usize::from(half)).copied().unwrap_or(b'?'));

@@ -60,7 +60,6 @@ pub struct Matching {
 
 impl Matching {
     /// Nothing asked yet of this hand.
-    #[must_use]
     pub fn new(form: FrameFormat, hand: u16) -> Self {
         Self {
             form,

@@ -21,7 +21,6 @@ const fn side(direction: Direction) -> ModbusRole {
 }
 
 /// What stands here of an RTU line. `unit` is ours: only from it is a frame with a wrong check taken for one.
-#[must_use]
 pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
     let seen = look_side(side(direction), bytes);
     if direction == Direction::ToHand || matches!(seen, FrameCut::Whole(_)) {
@@ -59,7 +58,6 @@ fn look_side(side: ModbusRole, bytes: &[u8]) -> FrameCut {
 }
 
 /// What an RTU frame says.
-#[must_use]
 pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
     let [unit, pdu @ .., _, _] = frame else {
         return FrameContent::new(Kind::Noise);
@@ -76,7 +74,6 @@ pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
 }
 
 /// What stands here of a Modbus TCP connection.
-#[must_use]
 pub fn look_tcp(bytes: &[u8]) -> FrameCut {
     let mut splitter = MbapSplitter::default();
     splitter.push(bytes);
@@ -92,7 +89,6 @@ pub fn look_tcp(bytes: &[u8]) -> FrameCut {
 }
 
 /// What a Modbus TCP message says.
-#[must_use]
 pub fn said_tcp(direction: Direction, frame: &[u8]) -> FrameContent {
     let (Some([t0, t1, _, _, _, _, unit]), Some(pdu)) =
         (frame.first_chunk::<MBAP_LEN>(), frame.get(MBAP_LEN..))

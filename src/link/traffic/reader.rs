@@ -30,7 +30,6 @@ struct TapSource {
 
 impl Traffic {
     /// Of this link, from the oldest piece that its tap still has.
-    #[must_use]
     pub fn of(tap: WireTap, endpoint: &Endpoint) -> Self {
         Self {
             source: Some(TapSource {
@@ -99,19 +98,16 @@ impl Traffic {
     }
 
     /// Oldest first, at most [`FRAMES_MAX`].
-    #[must_use]
     pub const fn frames(&self) -> &VecDeque<Arc<Frame>> {
         &self.frames
     }
 
     /// Grows with each change of the frames.
-    #[must_use]
     pub const fn changes(&self) -> u64 {
         self.changes
     }
 
     /// Number of the newest frame; 0 before the first.
-    #[must_use]
     pub fn newest(&self) -> u64 {
         // A frame that was finished by silence may stand before one with a smaller number.
         let last = self.frames.iter().rev().take(LOOK_BACK);

@@ -10,7 +10,6 @@ use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
 /// What stands here.
-#[must_use]
 pub fn look(bytes: &[u8]) -> FrameCut {
     match scan(bytes) {
         FrameStart::Frame(_, len) => FrameCut::Whole(len),
@@ -24,7 +23,6 @@ pub fn look(bytes: &[u8]) -> FrameCut {
 }
 
 /// What a frame says; its checksum may be wrong.
-#[must_use]
 pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
     let sent = match frame {
         [0xEB, ..] => FrameDirection::Request,
@@ -64,7 +62,6 @@ fn misplaced(direction: Direction, sent: FrameDirection) -> Option<Wrong> {
 }
 
 /// The late frame that tells how a SAVE ended, where one was asked and nothing else can be meant.
-#[must_use]
 pub fn save_result(said: &FrameContent) -> Option<SaveResult> {
     let address = said.span?.address;
     let value = match (said.kind, said.wrong, said.memory.as_slice()) {

@@ -24,7 +24,6 @@ pub struct FrameContent {
 
 impl FrameContent {
     /// Of this kind, and nothing more.
-    #[must_use]
     pub const fn new(kind: Kind) -> Self {
         Self {
             kind,
@@ -67,7 +66,6 @@ impl FrameContent {
     }
 
     /// Bytes that are no frame.
-    #[must_use]
     pub fn noise(wrong: Wrong) -> Self {
         Self::new(Kind::Noise).wrong(wrong)
     }

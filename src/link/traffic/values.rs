@@ -17,7 +17,6 @@ pub struct RegisterValues {
 
 impl RegisterValues {
     /// The manual's name, with the elements in brackets where it is not all of them.
-    #[must_use]
     pub fn name(&self) -> String {
         part_name(self.row, self.span)
     }
@@ -34,7 +33,6 @@ fn rows(span: Span) -> impl Iterator<Item = (&'static Register, Span)> {
 }
 
 /// The names of the registers in a run of memory: one, or the first and the last; the bare place if none is listed.
-#[must_use]
 pub fn names(span: Span) -> String {
     let mut all = rows(span);
     let Some((row, part)) = all.next() else {
@@ -47,13 +45,11 @@ pub fn names(span: Span) -> String {
 }
 
 /// True if one of the registers has this in its name, in lower case.
-#[must_use]
 pub fn has_name(span: Span, part: &str) -> bool {
     rows(span).any(|(row, _)| row.name.to_ascii_lowercase().contains(part))
 }
 
 /// What the registers hold that lie in these bytes.
-#[must_use]
 pub fn held(span: Span, memory: &[u8]) -> Vec<RegisterValues> {
     rows(span)
         .filter_map(|(row, part)| {

@@ -13,7 +13,6 @@ pub const CSV_HEAD: &str =
 
 impl Kind {
     /// Stable lower-case name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opened => "opened",
@@ -35,7 +34,6 @@ impl Kind {
 
 impl Direction {
     /// Stable lower-case name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::ToHand => "to_hand",
@@ -44,7 +42,6 @@ impl Direction {
     }
 
     /// Two signs that point to or from the hand.
-    #[must_use]
     pub const fn arrow(self) -> &'static str {
         match self {
             Self::ToHand => "->",
@@ -71,7 +68,6 @@ struct FrameJson<'a> {
 
 impl Frame {
     /// What it is about: register names, and their numbers where it carries any. Text of an adapter as it stands.
-    #[must_use]
     pub fn meaning(&self) -> String {
         if self.form == FrameFormat::Slcan
             && matches!(self.kind, Kind::Adapter | Kind::AdapterReply)
@@ -96,7 +92,6 @@ impl Frame {
     }
 
     /// One line for a person.
-    #[must_use]
     pub fn text_line(&self) -> String {
         let id = self.hand.map(|id| format!("id {id}")).unwrap_or_default();
         let mut line = format!(
@@ -117,7 +112,6 @@ impl Frame {
     }
 
     /// One JSON object.
-    #[must_use]
     pub fn json_line(&self) -> String {
         let hex = self.hex();
         let line = FrameJson {
@@ -138,7 +132,6 @@ impl Frame {
     }
 
     /// One line of CSV, below [`CSV_HEAD`].
-    #[must_use]
     pub fn csv_line(&self) -> String {
         let number = |value: Option<u16>| value.map(|n| n.to_string()).unwrap_or_default();
         let took = self

@@ -67,7 +67,6 @@ pub struct LeRobotSet {
 
 impl LeRobotSet {
     /// Of all sessions.
-    #[must_use]
     pub fn frames(&self) -> u64 {
         self.sessions.iter().map(|session| session.rows).sum()
     }

@@ -232,7 +232,6 @@ impl Folder {
     }
 
     /// Where it is until it is whole.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.0.beside
     }

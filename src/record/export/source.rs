@@ -74,7 +74,6 @@ impl From<ParquetError> for Broken {
 
 impl<'a> Source<'a> {
     /// A stretch that nobody watches.
-    #[must_use]
     pub fn new(file: &'a SessionFile, stretch: Stretch) -> Self {
         let watch = &|_| ControlFlow::Continue(());
         Self {

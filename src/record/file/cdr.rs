@@ -10,7 +10,6 @@ const LITTLE: [u8; 4] = [0, 1, 0, 0];
 const BIG: u8 = 0;
 
 /// A message's bytes.
-#[must_use]
 pub fn encode<T: Serialize>(message: &T) -> Vec<u8> {
     let mut bytes = LITTLE.to_vec();
     // Writing to a vector cannot fail, and messages have only types that CDR has.
@@ -21,7 +20,6 @@ pub fn encode<T: Serialize>(message: &T) -> Vec<u8> {
 }
 
 /// The message of these bytes; `None` if they are not one.
-#[must_use]
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let ([_, order, _, _], body) = bytes.split_first_chunk()?;
     let read = match *order {

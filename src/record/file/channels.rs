@@ -61,7 +61,6 @@ pub enum SkipReason {
 
 impl SkippedTopic {
     /// True if it is Handscope's, so that something of the recording is missing.
-    #[must_use]
     pub const fn is_ours(&self) -> bool {
         !matches!(self.why, SkipReason::Unknown)
     }

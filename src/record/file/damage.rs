@@ -21,7 +21,6 @@ pub enum Remark {
 
 impl Remark {
     /// True unless all that Handscope wrote may be there in spite of it.
-    #[must_use]
     pub const fn is_loss(&self) -> bool {
         match self {
             Self::Skipped(skipped) => skipped.is_ours(),
@@ -95,7 +94,6 @@ impl Damage {
     }
 
     /// The time over which anything is missing.
-    #[must_use]
     pub fn length(&self) -> Duration {
         self.gaps.iter().map(|gap| gap.to.since(gap.from)).sum()
     }

@@ -27,7 +27,6 @@ pub struct EntryDecoder {
 
 impl EntryDecoder {
     /// For a file whose moments count from here, nanoseconds since 1970.
-    #[must_use]
     pub fn new(base_nanos: u64) -> Self {
         Self {
             base_nanos,

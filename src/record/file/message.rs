@@ -13,7 +13,6 @@ pub struct Time {
 
 impl Time {
     /// From nanoseconds since 1970.
-    #[must_use]
     pub fn of_nanos(nanos: u64) -> Self {
         const SECOND: u64 = 1_000_000_000;
         Self {
@@ -23,7 +22,6 @@ impl Time {
     }
 
     /// Nanoseconds since 1970; 0 before that.
-    #[must_use]
     pub fn nanos(self) -> u64 {
         let seconds = u64::try_from(self.sec).unwrap_or_default();
         seconds * 1_000_000_000 + u64::from(self.nanosec)

@@ -44,7 +44,6 @@ impl Opening {
     }
 
     /// Whether it is the built-in hand; `None` if nobody knows which hand it is.
-    #[must_use]
     pub const fn is_simulated(&self) -> Option<bool> {
         match self.hand.is_empty() {
             true => None,
@@ -53,13 +52,11 @@ impl Opening {
     }
 
     /// True if the session was read from values: its events stand in it as they were written, and the day is not known.
-    #[must_use]
     pub fn is_imported(&self) -> bool {
         self.version.ends_with(Self::IMPORTED)
     }
 
     /// Of a recording that begins now, at this moment of the program and this time since 1970. The hand is its endpoint.
-    #[must_use]
     pub fn begin(hand: String, (now, since_1970): (Moment, Duration), side: Side) -> Self {
         let zero = since_1970.saturating_sub(now.since(Moment::ZERO));
         Self {
@@ -73,14 +70,12 @@ impl Opening {
     }
 
     /// When the recording began, by the computer's clock.
-    #[must_use]
     pub fn began_since_1970(&self) -> Duration {
         Duration::from_nanos(nanos_of(self.base_nanos, self.began))
     }
 
     /// The name of its file: the time of day out of `2026-11-21T09:30:00Z`, and the hand's kind and place without anything that a
     /// file system could object to.
-    #[must_use]
     pub fn file_name(&self, stamp: &str) -> String {
         let time = stamp.chars().skip_while(|letter| *letter != 'T');
         let time: String = time.filter(char::is_ascii_digit).collect();

@@ -54,13 +54,11 @@ impl OverviewRow {
 }
 
 /// The place of a joint's quantity in a row.
-#[must_use]
 pub const fn joint_line(quantity: Quantity, dof: Dof) -> usize {
     quantity as usize * Dof::ALL.len() + dof.index()
 }
 
 /// The place of a fingertip's quantity in a row.
-#[must_use]
 pub const fn tip_line(touch: Touch, finger: Finger) -> usize {
     Quantity::ALL.len() * Dof::ALL.len() + touch as usize * Finger::ALL.len() + finger.index()
 }
@@ -84,7 +82,6 @@ pub struct Counts {
 
 impl Counts {
     /// Whole sweeps over the fingertips.
-    #[must_use]
     pub const fn touch_sweeps(&self) -> u64 {
         self.touch_blocks / Finger::ALL.len() as u64
     }
@@ -309,13 +306,11 @@ impl Overview {
     }
 
     /// The first and the last second with a reading.
-    #[must_use]
     pub fn seconds(&self) -> Option<(u32, u32)> {
         Some((self.rows.first()?.second, self.rows.last()?.second))
     }
 
     /// Rows of a stretch of seconds; both ends belong to it.
-    #[must_use]
     pub fn rows_within(&self, from: u32, to: u32) -> &[OverviewRow] {
         let begin = self.rows.partition_point(|row| row.second < from);
         let end = self.rows.partition_point(|row| row.second <= to);

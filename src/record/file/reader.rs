@@ -216,55 +216,46 @@ impl SessionFile {
     }
 
     /// Where it lies.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// What it began with.
-    #[must_use]
     pub const fn opening(&self) -> &Opening {
         &self.opening
     }
 
     /// What it tells without being read whole.
-    #[must_use]
     pub const fn overview(&self) -> &Overview {
         &self.overview
     }
 
     /// The first moment.
-    #[must_use]
     pub const fn first(&self) -> Moment {
         self.opening.began
     }
 
     /// The last moment.
-    #[must_use]
     pub const fn last(&self) -> Moment {
         self.last
     }
 
     /// True if the recording was ended as it should be, and not by a crash.
-    #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.found.closed
     }
 
     /// True if opening the file has shown that something of it is missing.
-    #[must_use]
     pub fn is_damaged(&self) -> bool {
         self.damage != Damage::default()
     }
 
     /// What is to be said of how it was found.
-    #[must_use]
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }
 
     /// How many messages were written, where the file says so.
-    #[must_use]
     pub const fn messages_written(&self) -> Option<u64> {
         self.found.messages
     }

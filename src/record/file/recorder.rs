@@ -111,13 +111,11 @@ impl Recorder {
     }
 
     /// Where entries are given to.
-    #[must_use]
     pub fn input(&self) -> RecorderInput {
         self.input.clone()
     }
 
     /// How it goes.
-    #[must_use]
     pub fn status(&self) -> RecorderStatus {
         let status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
         let mut status = status.clone();
@@ -126,7 +124,6 @@ impl Recorder {
     }
 
     /// Ends the file and waits for that, at most a few seconds.
-    #[must_use]
     pub fn end(self) -> RecorderStatus {
         self.ends.store(true, Ordering::Release);
         let until = Instant::now() + END_WITHIN + Duration::from_millis(500);

@@ -106,7 +106,6 @@ pub struct RecorderStatus {
 
 impl RecorderStatus {
     /// Megabytes an hour, once there is enough to tell.
-    #[must_use]
     pub fn megabytes_an_hour(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
         let bytes = (self.bytes + self.earlier_bytes) as f64;

@@ -194,7 +194,6 @@ impl Topic {
     }
 
     /// The number of its channel.
-    #[must_use]
     pub const fn channel(self) -> u16 {
         match self {
             Self::Joints => 1,
@@ -210,13 +209,11 @@ impl Topic {
     }
 
     /// The topic of a channel.
-    #[must_use]
     pub fn by_channel(channel: u16) -> Option<Self> {
         Self::all().find(|topic| topic.channel() == channel)
     }
 
     /// Its name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Joints => "/joint_states",
@@ -235,7 +232,6 @@ impl Topic {
     }
 
     /// What its messages are.
-    #[must_use]
     pub const fn schema(self) -> Schema {
         match self {
             Self::Joints => JOINT_STATE,

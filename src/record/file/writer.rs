@@ -118,7 +118,6 @@ impl SessionWriter {
     }
 
     /// Bytes of the file so far.
-    #[must_use]
     pub fn length(&self) -> u64 {
         let bytes = self.ready.len() + self.waiting.bytes().len();
         self.given + u64::try_from(bytes).unwrap_or_default()

@@ -36,7 +36,6 @@ impl FleetBook {
     }
 
     /// The hands by computer and name.
-    #[must_use]
     pub fn list(&self) -> Vec<FleetHand> {
         let mut all: Vec<FleetHand> = self.hands.values().map(|(hand, _)| hand.clone()).collect();
         let key = |hand: &FleetHand| (hand.card.host.clone(), hand.card.name.clone(), hand.card.at);

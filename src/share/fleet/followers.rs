@@ -44,7 +44,6 @@ impl OtherFollowers {
     }
 
     /// One that is there now.
-    #[must_use]
     pub fn now(&self) -> Option<FleetCard> {
         self.seen.borrow().clone()
     }

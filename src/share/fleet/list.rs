@@ -44,7 +44,6 @@ impl FleetList {
     }
 
     /// The address of the interface at which it listens.
-    #[must_use]
     pub const fn interface(&self) -> Ipv4Addr {
         self.interface
     }

@@ -54,7 +54,6 @@ struct Notice {
 }
 
 /// Where it is told. A string, so that programs of ROS 2 read it without a type of ours.
-#[must_use]
 pub fn topic() -> DdsTopic {
     DdsTopic {
         name: "rt/handscope/fleet".into(),
@@ -63,7 +62,6 @@ pub fn topic() -> DdsTopic {
 }
 
 /// Where others reach a gateway that listens here, if those are who are met on DDS at this interface.
-#[must_use]
 pub fn reachable(gateway: SocketAddr, interface: Ipv4Addr) -> Option<SocketAddr> {
     let interface = IpAddr::V4(interface);
     let ip = match gateway.ip() {
@@ -86,7 +84,6 @@ impl FleetCard {
 
 impl FleetHand {
     /// The message in CDR with its head.
-    #[must_use]
     pub fn message(&self) -> Vec<u8> {
         let notice = Notice {
             v: VERSION,
@@ -100,7 +97,6 @@ impl FleetHand {
     }
 
     /// Reads a message that came in at this interface; `None` for what is none of this version.
-    #[must_use]
     pub fn parse(bytes: &[u8], interface: Ipv4Addr) -> Option<Self> {
         if bytes.len() > NOTICE_BYTES_MAX {
             return None;
@@ -114,7 +110,6 @@ impl FleetHand {
     }
 
     /// What to connect to, to watch it.
-    #[must_use]
     pub fn endpoint(&self) -> Option<Endpoint> {
         format!("tcp:{}", self.card.at?).parse().ok()
     }

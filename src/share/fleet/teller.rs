@@ -75,7 +75,6 @@ impl Telling {
 }
 
 /// What this computer is called.
-#[must_use]
 pub fn host() -> String {
     #[cfg(unix)]
     let name = nix::unistd::gethostname()

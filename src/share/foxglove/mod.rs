@@ -77,25 +77,21 @@ impl FoxgloveServer {
     }
 
     /// Where it listens.
-    #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
     /// Where messages go in.
-    #[must_use]
     pub const fn outlet(&self) -> &Outlet {
         &self.outlet
     }
 
     /// Who views, the oldest first.
-    #[must_use]
     pub fn viewers(&self) -> Vec<Viewer> {
         self.outlet.viewers()
     }
 
     /// Connections that were refused because there were [`VIEWERS_MAX`].
-    #[must_use]
     pub fn turned_away(&self) -> u64 {
         self.outlet.turned_away()
     }

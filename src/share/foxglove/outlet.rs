@@ -51,7 +51,6 @@ impl Outlet {
     }
 
     /// Whether anyone would get a message.
-    #[must_use]
     pub fn is_viewed(&self) -> bool {
         self.messages.receiver_count() > 0
     }

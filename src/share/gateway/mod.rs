@@ -77,26 +77,22 @@ impl Gateway {
     }
 
     /// Where it listens.
-    #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
     /// Who is connected, the oldest first.
-    #[must_use]
     pub fn clients(&self) -> Vec<GatewayClient> {
         let now = self.leases.link.clock().now();
         self.leases.board.with(|board| board.shown(now))
     }
 
     /// Who got and lost the right to move the hand since the last call, each one, in order.
-    #[must_use]
     pub fn movers(&self) -> Vec<MoverEvent> {
         self.leases.board.with(Board::take_events)
     }
 
     /// Connections that were refused because there were [`CLIENTS_MAX`].
-    #[must_use]
     pub fn turned_away(&self) -> u64 {
         self.leases.board.with(|board| board.turned_away)
     }

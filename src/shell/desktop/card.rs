@@ -4,7 +4,6 @@
 use std::path::Path;
 
 /// False where the system says that there is none. Other systems than Linux are believed to have one.
-#[must_use]
 pub fn may_draw_with_a_card() -> bool {
     !cfg!(target_os = "linux") || has_card(Path::new("/dev"))
 }

@@ -52,7 +52,6 @@ pub struct Picture {
 impl Canvas {
     /// A screen of `size` points (width, height) with `scale` pixels per point; the picture has `size * scale` pixels.
     /// A scale that is not a positive number is taken as 1.
-    #[must_use]
     pub fn new(size: (u32, u32), scale: f32) -> Self {
         let scale = if scale.is_finite() && scale > 0.0 {
             scale
@@ -74,7 +73,6 @@ impl Canvas {
     }
 
     /// The context, for fonts and theme. After setting a whole style, call [`Canvas::hold_still`].
-    #[must_use]
     pub fn context(&self) -> &Context {
         &self.context
     }

@@ -54,13 +54,11 @@ const HARD: [(Dof, i32); 3] = [
 
 impl SceneCard {
     /// True if a hand has to be written to before it is shown, or might be: only the built-in one is.
-    #[must_use]
     pub const fn wants_built_in(self) -> bool {
         matches!(self, Self::Keep | Self::Danger | Self::Exhibit)
     }
 
     /// The line that the built-in hand has to stand at, if it has to.
-    #[must_use]
     pub fn line(self) -> Option<Endpoint> {
         match self {
             Self::Keep => LINE.parse().ok(),

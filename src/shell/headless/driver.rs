@@ -192,7 +192,6 @@ impl Driver {
     }
 
     /// The program's time, virtual with a built-in hand.
-    #[must_use]
     pub fn now(&self) -> Moment {
         let _inside = self.runtime.enter();
         self.clock.now()

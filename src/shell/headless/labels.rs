@@ -15,7 +15,6 @@ const PARTS_OF_A_POINT: f64 = 100.0;
 /// A label that shows a reading has the reading's name as `name` and what is written as `value`.
 /// `rect` is in points from the top left, or `null`. `toggled` is `true`, `false`, `"mixed"`, or `null` if it cannot be.
 /// The order is that of drawing, so equal screens give equal lists.
-#[must_use]
 pub fn labels_json(update: &TreeUpdate) -> Value {
     let mut nodes: HashMap<NodeId, &Node> =
         update.nodes.iter().map(|(id, node)| (*id, node)).collect();

@@ -45,7 +45,6 @@ pub struct Changed {
 
 impl Raster {
     /// A transparent picture of `width` x `height` pixels, without textures.
-    #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let mut raster = Self {
             width: 0,
@@ -139,19 +138,16 @@ impl Raster {
     }
 
     /// What the last [`Raster::draw`] drew anew; nothing else changed.
-    #[must_use]
     pub fn changed(&self) -> &[Changed] {
         &self.changed
     }
 
     /// The picture: RGBA8, premultiplied (opaque where the background was), row by row from the top left.
-    #[must_use]
     pub fn pixels(&self) -> &[u8] {
         self.pixels.as_flattened()
     }
 
     /// Width and height in pixels.
-    #[must_use]
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }

@@ -22,7 +22,6 @@ impl From<SharedHand> for SimHands {
 
 impl SimHands {
     /// One hand and those beside it.
-    #[must_use]
     pub const fn new(first: SharedHand, others: Vec<SharedHand>) -> Self {
         Self { first, others }
     }

@@ -14,13 +14,11 @@ pub struct SharedHand {
 
 impl SharedHand {
     /// True while there is another handle to the same hand.
-    #[must_use]
     pub fn is_shared(&self) -> bool {
         Arc::strong_count(&self.hand) > 1
     }
 
     /// Switches the hand's clock on at `epoch`, the instant of [`Moment::ZERO`].
-    #[must_use]
     pub fn new(hand: SimHand, epoch: Instant) -> Self {
         Self {
             hand: Arc::new(Mutex::new(hand)),
@@ -29,13 +27,11 @@ impl SharedHand {
     }
 
     /// The hand's time now.
-    #[must_use]
     pub fn now(&self) -> Moment {
         Moment::from_duration(self.epoch.elapsed())
     }
 
     /// The instant of a moment, never before it.
-    #[must_use]
     pub fn instant(&self, moment: Moment) -> Instant {
         self.epoch + moment.since(Moment::ZERO)
     }

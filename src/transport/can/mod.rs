@@ -59,7 +59,6 @@ pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportErro
 }
 
 /// The CAN interfaces that there are, up or down, by name.
-#[must_use]
 pub fn interfaces() -> Vec<String> {
     /// What the kernel calls a CAN interface (ARPHRD_CAN).
     const CAN: &str = "280";

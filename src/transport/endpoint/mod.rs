@@ -99,7 +99,6 @@ pub struct SerialLine {
 
 impl Endpoint {
     /// The built-in hand with its defaults.
-    #[must_use]
     pub fn sim() -> Self {
         Self::Sim {
             seed: 1,
@@ -108,13 +107,11 @@ impl Endpoint {
     }
 
     /// True for the built-in hand.
-    #[must_use]
     pub const fn is_sim(&self) -> bool {
         matches!(self, Self::Sim { .. })
     }
 
     /// Where and whom, for files kept by hand: the endpoint without the id, and the id or unit.
-    #[must_use]
     pub fn place_and_id(&self) -> (String, u16) {
         let place = format!("{}:{}", self.kind(), self.place());
         match self {
@@ -130,7 +127,6 @@ impl Endpoint {
     }
 
     /// True if the hand is on a CAN bus.
-    #[must_use]
     pub const fn is_can(&self) -> bool {
         matches!(
             self,
@@ -139,7 +135,6 @@ impl Endpoint {
     }
 
     /// What a person looks at when it fails: the port, the address, the interface.
-    #[must_use]
     pub fn place(&self) -> String {
         match self {
             Self::Sim { .. } => "the simulated hand".into(),
@@ -152,7 +147,6 @@ impl Endpoint {
     }
 
     /// The serial port it is reached through, if it is.
-    #[must_use]
     pub fn port(&self) -> Option<&str> {
         match self {
             Self::Rs485(line) | Self::Rtu(line) => Some(&line.port),
@@ -162,7 +156,6 @@ impl Endpoint {
     }
 
     /// The same hand through another serial port. Endpoints without one stay as they are.
-    #[must_use]
     pub fn through(&self, path: &str) -> Self {
         let mut moved = self.clone();
         match &mut moved {
@@ -174,7 +167,6 @@ impl Endpoint {
     }
 
     /// The part before the colon.
-    #[must_use]
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Sim { .. } => "sim",

@@ -20,7 +20,6 @@ pub struct Route {
 
 impl Route {
     /// Whether the host is in the same network, so that no router stands between; `None` if the prefix is not known.
-    #[must_use]
     pub fn is_direct(&self) -> Option<bool> {
         let prefix = self.prefix?;
         match (self.to, self.from) {

@@ -21,7 +21,6 @@ pub enum Whereabouts {
 
 impl Adapter {
     /// The adapter at this port; none if the port is not on USB or not listed.
-    #[must_use]
     pub fn at(port: &str, ports: &[PortFound]) -> Option<Self> {
         let real = real(port);
         let found = ports.iter().find(|found| Path::new(&found.path) == real)?;
@@ -30,7 +29,6 @@ impl Adapter {
 
     /// Looks for the adapter among the ports of now. By serial number wherever it is plugged in; without one only
     /// in the same USB port, because another of its kind would look the same elsewhere.
-    #[must_use]
     pub fn find(&self, ports: &[PortFound]) -> Whereabouts {
         let Self(mine) = self;
         let alike = ports_where(ports, |usb| {
@@ -57,7 +55,6 @@ impl Adapter {
 }
 
 /// Whether a port's name means the device at `path`: names under `/dev/serial/by-id` are links.
-#[must_use]
 pub fn is_same_port(port: &str, path: &str) -> bool {
     port == path || real(port) == real(path)
 }

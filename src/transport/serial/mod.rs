@@ -19,7 +19,6 @@ use tokio_serial::{
 
 /// The ports that the system lists, by path; empty if it cannot tell. Pseudo-terminals and some platform ports
 /// are never listed, so a path typed by hand must be possible too.
-#[must_use]
 pub fn ports() -> Vec<PortFound> {
     ports_by(&Sysfs::default())
 }

@@ -26,7 +26,6 @@ pub struct PortFacts {
 }
 
 /// Looks a port up. Takes a few milliseconds on some systems.
-#[must_use]
 pub fn port_facts(port: &str, sysfs: &Sysfs) -> PortFacts {
     let device = std::fs::canonicalize(port).ok();
     let listed = ports()

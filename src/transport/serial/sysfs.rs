@@ -18,19 +18,16 @@ impl Default for Sysfs {
 
 impl Sysfs {
     /// The tree under this folder.
-    #[must_use]
     pub fn at(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into() }
     }
 
     /// True if the system's ports can be looked up here: not so in a container without `/sys`.
-    #[must_use]
     pub fn has_ports(&self) -> bool {
         fs::read_dir(self.root.join("class/tty")).is_ok()
     }
 
     /// Bus, port path and interface on USB, such as `1-2.3:1.0`; none for ports that are not on USB.
-    #[must_use]
     pub fn usb_location(&self, port: &str) -> Option<String> {
         let device = fs::canonicalize(self.tty(port)?.join("device")).ok()?;
         let parts = device.components().rev();
@@ -39,14 +36,12 @@ impl Sysfs {
     }
 
     /// The kernel's driver, such as `ftdi_sio`.
-    #[must_use]
     pub fn driver(&self, port: &str) -> Option<String> {
         let driver = fs::canonicalize(self.tty(port)?.join("device/driver")).ok()?;
         Some(driver.file_name()?.to_str()?.to_owned())
     }
 
     /// How long the adapter may keep what it got, in milliseconds, where its driver tells.
-    #[must_use]
     pub fn latency_timer_ms(&self, port: &str) -> Option<u16> {
         let name = device_name(port)?;
         let file = self.root.join("bus/usb-serial/devices").join(name);

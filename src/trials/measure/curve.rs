@@ -27,7 +27,6 @@ impl FromIterator<(f64, f64)> for TimeSeries {
 
 impl TimeSeries {
     /// All points.
-    #[must_use]
     pub fn points(&self) -> &[CurvePoint] {
         &self.0
     }
@@ -43,27 +42,23 @@ impl TimeSeries {
     }
 
     /// The values from one time to another.
-    #[must_use]
     pub fn values(&self, from: f64, to: f64) -> Vec<f64> {
         self.between(from, to).map(|point| point.v).collect()
     }
 
     /// The part from a time on.
-    #[must_use]
     pub fn from(&self, from: f64) -> Self {
         let start = self.0.partition_point(|point| point.t < from);
         Self(self.0.get(start..).unwrap_or_default().to_vec())
     }
 
     /// Times and values, at most so many: no extreme is lost.
-    #[must_use]
     pub fn decimated(&self, most: usize) -> Vec<[f64; 2]> {
         let points: Vec<[f64; 2]> = self.0.iter().map(|point| [point.t, point.v]).collect();
         decimated(&points, most)
     }
 
     /// The value at a time, on the line between its neighbours; `None` outside the curve.
-    #[must_use]
     pub fn at(&self, t: f64) -> Option<f64> {
         let next = self.0.iter().position(|point| point.t >= t)?;
         let after = self.0.get(next)?;
@@ -78,7 +73,6 @@ impl TimeSeries {
     }
 
     /// The same with another zero.
-    #[must_use]
     pub fn less(&self, zero: f64) -> Self {
         self.0
             .iter()
@@ -112,7 +106,6 @@ pub struct JointCurves {
 
 impl JointCurves {
     /// What a recording holds of one joint. The thumb's rotation moves no fingertip of its own and has none.
-    #[must_use]
     pub fn of(recording: &TrialRecording, dof: Dof) -> Self {
         let finger = Some(dof.finger()).filter(|finger| finger.bend() == dof);
         let zero = recording.zero();

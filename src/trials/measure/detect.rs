@@ -3,7 +3,6 @@
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 
 /// The middle value; of an even number the mean of the two. `None` of nothing.
-#[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -24,7 +23,6 @@ pub struct RestLevel {
 const REST_LEAST: usize = 3;
 
 /// Level and noise between two times; `None` with fewer than 3 values.
-#[must_use]
 pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
     /// Of a normal distribution, its standard deviation by its median deviation.
     const BY_MEDIAN: f64 = 1.4826;
@@ -46,7 +44,6 @@ const LINE_MAX_S: f64 = 0.06;
 
 /// When a curve first passes a level for good: two values in a row beyond it, on the line between the last value before
 /// and the first beyond, if they are near each other. `None` if it does not, or if the first value known already is beyond.
-#[must_use]
 pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f64> {
     let mut before: Option<CurvePoint> = None;
     let mut first: Option<f64> = None;
@@ -73,7 +70,6 @@ pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f6
 
 /// When a curve begins to leave its rest in a ramp: it passes `level` for good, and the line from there to `double` the
 /// level is drawn back to zero, but not beyond the last value that was below a third of the level.
-#[must_use]
 pub fn begins(curve: &TimeSeries, from: f64, level: f64) -> Option<f64> {
     let points = || curve.between(from, f64::INFINITY);
     let one = passes(points(), level)?;

@@ -101,7 +101,6 @@ pub struct JointMetrics {
 }
 
 /// Measures a recorded trial, joint by joint in register order.
-#[must_use]
 pub fn measure(
     recording: &TrialRecording,
     plan: &TrialPlan,
@@ -167,7 +166,6 @@ pub struct DwellSpan {
 }
 
 /// Measures one joint; its command was at 0.
-#[must_use]
 pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMetrics {
     let end = span.end_s;
     let at_rest = rest(&curves.force, -REST_S, 0.0);

@@ -42,7 +42,6 @@ struct HeldMoment {
 ///
 /// A jump counts if two readings in a row show it, so slips are seen one reading late and those shorter than two
 /// readings (40 ms on a sensor of 50 Hz) are missed.
-#[must_use]
 pub fn slips(curves: &JointCurves, from: f64, to: f64) -> Option<Vec<SlipEvent>> {
     let held = moments(curves, from, to);
     if held.len() <= BEFORE_LEAST {

@@ -40,7 +40,6 @@ fn columns() -> Vec<String> {
 
 /// Comma-separated values, one line for each row and each event: `time_s` from [`TrialRecording::zero`], six columns a quantity,
 /// four a fingertip, and `event`. What was not read in that moment is an empty cell.
-#[must_use]
 pub fn write(recording: &TrialRecording) -> String {
     let mut text = columns().join(",");
     text.push('\n');

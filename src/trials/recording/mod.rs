@@ -75,7 +75,6 @@ pub enum TrialEvent {
 
 impl TrialEvent {
     /// Stable lower-case name for files and JSON.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Prepare => "prepare".into(),
@@ -124,7 +123,6 @@ impl TrialRecording {
     }
 
     /// The same with its events and without its rows, which count as lost.
-    #[must_use]
     pub fn without_rows(&self) -> Self {
         let rows = u64::try_from(self.rows.len()).unwrap_or(u64::MAX);
         Self {
@@ -135,32 +133,27 @@ impl TrialRecording {
     }
 
     /// All rows.
-    #[must_use]
     pub fn rows(&self) -> &[SampleRow] {
         &self.rows
     }
 
     /// All that happened.
-    #[must_use]
     pub fn marks(&self) -> &[TrialMark] {
         &self.marks
     }
 
     /// When something happened first.
-    #[must_use]
     pub fn when(&self, what: TrialEvent) -> Option<Moment> {
         let mark = self.marks.iter().find(|mark| mark.what == what);
         mark.map(|mark| mark.at)
     }
 
     /// Rows that had no place any more.
-    #[must_use]
     pub const fn lost(&self) -> u64 {
         self.lost
     }
 
     /// The moment that times in files are counted from: the closing command, or the first row where none was given.
-    #[must_use]
     pub fn zero(&self) -> Moment {
         let first = self.rows.first().map(|row| row.at);
         self.when(TrialEvent::Close).or(first).unwrap_or_default()
@@ -168,7 +161,6 @@ impl TrialRecording {
 }
 
 /// Seconds from one moment to another, negative if it is earlier.
-#[must_use]
 pub fn seconds(zero: Moment, at: Moment) -> f64 {
     at.since(zero).as_secs_f64() - zero.since(at).as_secs_f64()
 }

@@ -49,7 +49,6 @@ struct ReportPage<'a> {
 
 impl Report {
     /// Of a session without trials. The best setting is named by `criterion`.
-    #[must_use]
     pub fn new(criterion: Option<Criterion>) -> Self {
         Self {
             criterion,

@@ -62,7 +62,6 @@ pub struct SessionHead {
 impl SessionHead {
     /// Of a session that begins now, `now` since 1970, on a hand that is still to be named. Note and tags of the plan are
     /// the session's; what this version does not know of the plan was not done.
-    #[must_use]
     pub fn begin(mut plan: TrialPlan, now: Duration) -> Self {
         plan.others.clear();
         Self {

@@ -71,7 +71,6 @@ fn restyle(ctx: &egui::Context, theme: Theme) {
 
 impl Window {
     /// A window on its first view.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
@@ -92,7 +91,6 @@ impl Window {
     }
 
     /// The open view.
-    #[must_use]
     pub const fn view(&self) -> View {
         self.body.view
     }

@@ -171,26 +171,22 @@ impl FaultRecorder {
     }
 
     /// The recording with this id, if it is still kept.
-    #[must_use]
     pub fn get(&self, id: RecordingId) -> Option<&Arc<Recording>> {
         self.kept.iter().find(|recording| recording.id == id)
     }
 
     /// The newest recording of this fault, come at this moment.
-    #[must_use]
     pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<Recording>> {
         let mut recordings = self.iter();
         recordings.find(|recording| recording.holds(dof, what, since))
     }
 
     /// When the recording under way ends; `None` if none is.
-    #[must_use]
     pub fn runs_until(&self) -> Option<Moment> {
         self.running.as_ref().map(|running| running.until)
     }
 
     /// Recordings that went because there were too many.
-    #[must_use]
     pub fn lost(&self) -> u64 {
         let kept = u64::try_from(self.kept.len()).unwrap_or(u64::MAX);
         self.made.saturating_sub(kept)

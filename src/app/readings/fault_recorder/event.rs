@@ -40,7 +40,6 @@ impl PersonAct {
     }
 
     /// Stable lower-case words for files.
-    #[must_use]
     pub fn words(&self) -> String {
         let joints = |dof: &Option<Dof>| dof.map_or("of all", Dof::name);
         match self {

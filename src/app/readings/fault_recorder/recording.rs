@@ -55,13 +55,11 @@ pub struct Recording {
 
 impl Recording {
     /// The fault that began it.
-    #[must_use]
     pub fn fault(&self) -> Option<FaultAt> {
         self.faults.first().copied()
     }
 
     /// True if it holds this fault of this joint, come at this moment.
-    #[must_use]
     pub fn holds(&self, dof: Dof, what: FaultKind, since: Moment) -> bool {
         let mut all = self.faults.iter();
         all.any(|fault| fault.dof == dof && fault.what == what && fault.at == since)
@@ -69,7 +67,6 @@ impl Recording {
 
     /// Everything as one table: all measurements, status and fault byte of each drive where they changed, and what
     /// happened.
-    #[must_use]
     pub fn table(&self) -> Table {
         let joints = Quantity::ALL.into_iter();
         let joints = joints.flat_map(|quantity| Dof::ALL.map(|dof| Series::Joint(quantity, dof)));
