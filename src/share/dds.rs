@@ -109,7 +109,7 @@ impl DdsPublisher {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
         let (told, view) = watch::channel(DdsTold::default());
-        let telling = Telling {
+        let telling = Publishing {
             writers,
             encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
             clock: link.clock(),
@@ -195,14 +195,14 @@ fn ros_topic(topic: Topic) -> DdsTopic {
     }
 }
 
-struct Telling {
+struct Publishing {
     writers: Writers,
     encoder: EntryEncoder,
     clock: Clock,
     told: watch::Sender<DdsTold>,
 }
 
-impl Telling {
+impl Publishing {
     async fn run(self, mut records: Records) {
         while let Some(record) = records.next().await {
             if let Record::Reading { sample, fresh } = &record {

@@ -26,14 +26,14 @@ pub type Snap =
     fn(size: (u32, u32), at_s: f64, ui: &mut dyn FnMut(&mut egui::Ui)) -> Option<Vec<u8>>;
 
 /// The program behind its window.
-pub struct Cockpit {
+pub struct DesktopApp {
     app: App,
     window: Window,
     snap: Option<Snap>,
     is_software: bool,
 }
 
-impl Cockpit {
+impl DesktopApp {
     /// Puts a window in front of a program.
     pub fn new(app: App) -> Self {
         Self {

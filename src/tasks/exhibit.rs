@@ -71,7 +71,7 @@ pub async fn exhibit<H: Hand>(
     let clock = start.clock;
     let mut records = hand.records();
     let (told, mut sent) = mpsc::unbounded_channel();
-    let mut at = AtHand {
+    let mut at = ExhibitTask {
         hand,
         run: ExhibitRun::new(start.plan, clock.now()),
         locked: start.locked,
@@ -132,7 +132,7 @@ async fn ended(playing: &mut Option<PlayingPiece>) {
     }
 }
 
-struct AtHand<'a, H> {
+struct ExhibitTask<'a, H> {
     hand: &'a H,
     run: ExhibitRun,
     locked: PerDof<bool>,
@@ -145,7 +145,7 @@ struct AtHand<'a, H> {
     drawn: Arc<PageDrawn>,
 }
 
-impl<H: Hand> AtHand<'_, H> {
+impl<H: Hand> ExhibitTask<'_, H> {
     fn obey_all(&mut self) {
         loop {
             let status = self.hand.status();

@@ -89,7 +89,7 @@ pub async fn follow<H: Hand>(
     let clock = start.clock;
     let mut records = hand.records();
     let limits = start.terms.borrow().limits;
-    let mut at = AtHand {
+    let mut at = FollowRun {
         follow: Follow::new(limits, clock.now()),
         sample: start.seen,
         delays: Delays::default(),
@@ -140,7 +140,7 @@ pub async fn follow<H: Hand>(
     }
 }
 
-struct AtHand<'a, H> {
+struct FollowRun<'a, H> {
     hand: &'a H,
     start: FollowStart,
     follow: Follow,
@@ -152,7 +152,7 @@ struct AtHand<'a, H> {
     limited: Option<(ArmEpoch, OfferLimits)>,
 }
 
-impl<H: Hand> AtHand<'_, H> {
+impl<H: Hand> FollowRun<'_, H> {
     fn take(&mut self, mut offer: Offer) {
         let locked = self.start.terms.borrow().locked;
         for (dof, aim) in offer.aims.iter_mut() {

@@ -41,7 +41,7 @@ pub enum TaskError {
     NotReached,
     /// It would make joints hit harder than before, or change what the hand is found by, and nobody said that this is
     /// meant.
-    #[error("nobody said that this is meant")]
+    #[error("not confirmed")]
     NotMeant(Risks),
     /// The backup, or the note that goes before a SAVE, could not be written.
     #[error("cannot make a backup, nothing was written to the hand: {message}")]

@@ -14,7 +14,7 @@ use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
-use handscope::shell::Cockpit;
+use handscope::shell::DesktopApp;
 use handscope::shell::raster::Raster;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
@@ -39,7 +39,7 @@ pub(crate) enum Time {
 /// The program, its window and the screen.
 pub(crate) struct Scene {
     news: Arc<Notify>,
-    cockpit: Cockpit,
+    desktop_app: DesktopApp,
     context: Context,
     /// Draws the pixels too, where the graphics card does not.
     raster: Option<Raster>,
@@ -97,7 +97,7 @@ impl Scene {
         drop(inside);
         Ok(Self {
             news,
-            cockpit: Cockpit::new(app),
+            desktop_app: DesktopApp::new(app),
             context: Context::default(),
             raster: None,
             clock,
@@ -106,36 +106,36 @@ impl Scene {
     }
 
     pub(crate) fn state(&self) -> &State {
-        self.cockpit.state()
+        self.desktop_app.state()
     }
 
     /// Seconds that the plots show.
     pub(crate) fn plot(&mut self, window: PlotWindow) {
         let now = self.now();
-        self.cockpit.app().act(Action::PlotWindow(window), now);
+        self.desktop_app.app().act(Action::PlotWindow(window), now);
     }
 
     /// Opens further hands, each in a slot of its own.
     pub(crate) fn open_beside(&mut self, endpoints: Vec<Endpoint>) {
         let now = self.now();
         let _inside = self.runtime.enter();
-        self.cockpit.app().open_beside(endpoints, now);
+        self.desktop_app.app().open_beside(endpoints, now);
     }
 
     /// Shows all hands side by side.
     pub(crate) fn show_all_hands(&mut self) {
-        self.cockpit.show_all_hands();
+        self.desktop_app.show_all_hands();
     }
 
     pub(crate) fn show(&mut self, view: View) {
-        self.cockpit.show(view);
+        self.desktop_app.show(view);
     }
 
     /// Ends the link by a person's wish.
     pub(crate) fn disconnect(&mut self) {
         let now = self.now();
         let _inside = self.runtime.enter();
-        self.cockpit.app().act(Action::Disconnect, now);
+        self.desktop_app.app().act(Action::Disconnect, now);
     }
 
     /// Waits until the link has news, at most so long.
@@ -165,13 +165,13 @@ impl Scene {
             self.pass(LOOK_EACH);
             let now = self.now();
             let _inside = self.runtime.enter();
-            self.cockpit.logic(now);
+            self.desktop_app.logic(now);
         }
     }
 
     /// How soon news are to be drawn.
     pub(crate) fn frame_within(&self) -> Duration {
-        self.cockpit.frame_within()
+        self.desktop_app.frame_within()
     }
 
     /// From now on the pixels are drawn too.
@@ -180,23 +180,24 @@ impl Scene {
         // Its textures come with the first frame of a context.
         self.context = Context::default();
         self.raster = Some(Raster::new(width.into(), height.into()));
-        self.cockpit.set_software(true);
+        self.desktop_app.set_software(true);
     }
 
     /// From now on they are not.
     pub(crate) fn paint_not(&mut self) {
         self.raster = None;
-        self.cockpit.set_software(false);
+        self.desktop_app.set_software(false);
     }
 
     /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.
     pub(crate) fn frame(&mut self) -> [f64; 3] {
         let now = self.now();
         let _inside = self.runtime.enter();
-        let (logic, ()) = cpu_ms(|| self.cockpit.logic(now));
-        let cockpit = &mut self.cockpit;
+        let (logic, ()) = cpu_ms(|| self.desktop_app.logic(now));
+        let desktop_app = &mut self.desktop_app;
         let context = &self.context;
-        let (layout, mut output) = cpu_ms(|| context.run_ui(screen(now), |ui| cockpit.ui(ui, now)));
+        let (layout, mut output) =
+            cpu_ms(|| context.run_ui(screen(now), |ui| desktop_app.ui(ui, now)));
         match &mut self.raster {
             Some(raster) => raster.apply_textures(&mut output.textures_delta),
             None => output.textures_delta.clear(),

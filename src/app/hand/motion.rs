@@ -25,7 +25,7 @@ impl HandState {
         if let Some(run) = &mut self.series {
             run.end(Abort::Person);
         }
-        self.put_down(LinkState::Holding);
+        self.mark_disarmed(LinkState::Holding);
     }
 
     /// Lets no setpoint pass any more. The hand keeps what it was told.
@@ -33,10 +33,10 @@ impl HandState {
         if let Some(open) = &self.open {
             open.link.disarm();
         }
-        self.put_down(LinkState::Monitoring);
+        self.mark_disarmed(LinkState::Monitoring);
     }
 
-    fn put_down(&mut self, state: LinkState) {
+    fn mark_disarmed(&mut self, state: LinkState) {
         self.disarmed_at = Some(self.now);
         self.held.forget_press();
         if self.is_armed() {

@@ -156,7 +156,7 @@ impl HandState {
     }
 
     /// Takes its name and side from what is kept of it.
-    pub(crate) fn know(&mut self, settings: &Settings) {
+    pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.side = settings.side_of(self.endpoint.as_ref());
         let name = match &self.endpoint {
             Some(endpoint) => match settings.hand_name(endpoint) {

@@ -25,7 +25,7 @@ impl State {
     }
 
     /// The hand that is watched leads the shown one from now on, unless that one leads it.
-    pub(crate) fn let_lead(&mut self, env: &Env) {
+    pub(crate) fn start_mirror(&mut self, env: &Env) {
         let Self {
             hands, settings, ..
         } = self;
@@ -38,7 +38,7 @@ impl State {
     }
 
     /// Stops a hand whose leader is told to stop: it would still go to where that one is.
-    pub(crate) fn stop_led(&mut self) {
+    pub(crate) fn stop_mirrored(&mut self) {
         let stopping = self.hands.iter().filter(|hand| {
             let let_go = hand.link.disarmed == Some(Disarmed::Released);
             hand.link.state == LinkState::Holding && !let_go

@@ -57,11 +57,11 @@ impl State {
         hand.close_procedure();
         hand.leave(None, env, notices);
         hand.is_removed = true;
-        self.sweep();
+        self.drop_removed();
     }
 
     /// Takes away the slots of hands that were to go and are left by now.
-    pub(crate) fn sweep(&mut self) {
+    pub(crate) fn drop_removed(&mut self) {
         let is_gone = |hand: &&HandState| hand.is_removed && hand.open.is_none();
         let gone: Vec<SlotId> = self
             .hands

@@ -40,7 +40,7 @@ impl State {
             InputAction::Show(place) => hand.show_viewers(place, env),
             InputAction::JoinDds(interface) => hand.join_dds(interface, settings, env),
             InputAction::Mirror(wanted) => self.watch_hand(wanted, env),
-            InputAction::GrantMirror => self.let_lead(env),
+            InputAction::GrantMirror => self.start_mirror(env),
             InputAction::GrantStream => hand.grant_stream(settings, env),
             InputAction::GrantDds => hand.grant_dds(settings, env),
             InputAction::GrantPad => hand.grant_pad(settings, env),

@@ -34,7 +34,7 @@ impl State {
         hand.is_removed = false;
         hand.close_procedure();
         hand.leave(to, env, notices);
-        hand.know(settings);
+        hand.apply_settings(settings);
     }
 
     /// The hand that is shown, with what is told of it.
@@ -100,7 +100,7 @@ impl State {
         if !hands.is_several() {
             settings.side = side;
         }
-        hands.shown_mut().know(settings);
+        hands.shown_mut().apply_settings(settings);
     }
 }
 

@@ -118,7 +118,7 @@ impl App {
         let env = &self.env;
         let is_several = hands.is_several();
         for hand in hands.iter_mut() {
-            hand.know(settings);
+            hand.apply_settings(settings);
             notices.about(is_several.then_some(&hand.label));
             hand.take_news(notices, now);
             hand.tick_sequence();
@@ -143,8 +143,8 @@ impl App {
         told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
         fleet.drain();
-        self.state.stop_led();
-        self.state.sweep();
+        self.state.stop_mirrored();
+        self.state.drop_removed();
         self.exhibit.tick(&mut self.state, &self.env, now);
         let told = self.jobs.tick(&mut self.state, &self.env);
         told.into_iter().for_each(|told| self.tell(told, now));

@@ -21,7 +21,7 @@ impl State {
         let hand = hands.shown_mut();
         hand.now = now;
         hand.go(Some(endpoint), env, notices);
-        hand.know(settings);
+        hand.apply_settings(settings);
     }
 
     /// Opens further hands, each in a slot of its own; the first stays shown.

@@ -118,14 +118,14 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
     };
     let recording = args.record.as_deref();
     let recording = SideRecording::begin(recording, &link, &args.hand, args.from.side())?;
-    let mut at = AtHand {
+    let mut at = FollowCommand {
         link: link.clone(),
         records,
         seen,
         clock,
         args,
         source: &source,
-        teller: Teller {
+        teller: ProgressPrinter {
             out,
             json: args.json,
             question: None,
@@ -184,17 +184,17 @@ async fn known(
     bail!("the hand at {hand} does not tell its angles and faults")
 }
 
-struct AtHand<'a> {
+struct FollowCommand<'a> {
     link: LinkHandle,
     records: Records,
     seen: HandSample,
     clock: Clock,
     args: &'a FollowArgs,
     source: &'a FollowSource,
-    teller: Teller<'a>,
+    teller: ProgressPrinter<'a>,
 }
 
-impl AtHand<'_> {
+impl FollowCommand<'_> {
     /// Follows whoever sends, each time that a person lets it.
     async fn go_on(&mut self) -> anyhow::Result<Infallible> {
         self.teller.out.line(&self.source.ready())?;
@@ -329,7 +329,7 @@ fn ended(end: FollowEnd, sender: &str) -> String {
 }
 
 /// Prints how it goes: at each change, and each second.
-struct Teller<'a> {
+struct ProgressPrinter<'a> {
     out: &'a mut Out,
     json: bool,
     /// What a person is asked now: why the hand does not move.
@@ -339,7 +339,7 @@ struct Teller<'a> {
     told: Option<((Option<FollowPhase>, bool), Moment)>,
 }
 
-impl Teller<'_> {
+impl ProgressPrinter<'_> {
     fn tell(
         &mut self,
         source: &FollowSource,

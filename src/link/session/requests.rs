@@ -135,12 +135,12 @@ impl Session {
                 let took = self.now().since(asked);
                 self.answered(took);
                 self.watch_ticks(span.len, took);
-                self.know(span, asked, Ok(bytes.to_vec()));
+                self.store_read(span, asked, Ok(bytes.to_vec()));
                 let _told = job.answer.send(Ok(bytes.to_vec()));
             }
             Err(error) => {
                 let told = request_error(&error, span);
-                self.know(span, asked, Err(told.clone()));
+                self.store_read(span, asked, Err(told.clone()));
                 let _told = job.answer.send(Err(told));
                 self.failed(bus, &error).await?;
             }
@@ -148,7 +148,7 @@ impl Session {
         Ok(())
     }
 
-    fn know(&self, span: Span, asked: Moment, read: Result<Vec<u8>, RequestError>) {
+    fn store_read(&self, span: Span, asked: Moment, read: Result<Vec<u8>, RequestError>) {
         let image = &self.ends.image;
         image.send_modify(|image| image.take_area(span, asked, read));
     }

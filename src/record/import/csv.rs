@@ -87,7 +87,7 @@ pub enum CsvFault {
         columns: usize,
     },
     /// A cell that is no value of its column.
-    #[error("'{text}' cannot stand in the column {column}")]
+    #[error("invalid value '{text}' in column {column}")]
     BadValue {
         /// The column's name.
         column: String,

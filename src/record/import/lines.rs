@@ -20,7 +20,7 @@ pub enum LineFault {
     #[error("it is no text in UTF-8")]
     NotText,
     /// The file ends within quotation marks, or something follows them.
-    #[error("a quotation mark in it has no fellow")]
+    #[error("unmatched quote")]
     Unquoted,
 }
 

@@ -22,7 +22,7 @@ impl FleetTeller {
     /// # Errors
     /// [`DdsError`], if the library does not make the writer.
     pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
-        let telling = Telling {
+        let telling = Publishing {
             writer: node.writer(&topic())?,
             interface: node.address(),
             status: link.observe().status,
@@ -44,13 +44,13 @@ impl FleetTeller {
     }
 }
 
-struct Telling {
+struct Publishing {
     writer: DdsWriter,
     interface: Ipv4Addr,
     status: watch::Receiver<LinkStatus>,
 }
 
-impl Telling {
+impl Publishing {
     async fn run(mut self, mut cards: watch::Receiver<FleetCard>) {
         let of = |status: &LinkStatus| (status.state, status.holder.map(|holder| holder.owner));
         loop {

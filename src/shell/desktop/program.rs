@@ -10,7 +10,7 @@ use crate::app::program::App;
 use crate::app::sessions::SessionAction;
 use crate::hand::Moment;
 use crate::link::{Clock, guard};
-use crate::shell::Cockpit;
+use crate::shell::DesktopApp;
 use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::ending::{ENDS_WITHIN, Ending};
 use crate::shell::desktop::file_manager;
@@ -81,7 +81,7 @@ impl Beginning {
 
 /// The program behind the window.
 pub(crate) struct Program {
-    cockpit: Cockpit,
+    desktop_app: DesktopApp,
     clock: Clock,
     /// How soon news are drawn, in milliseconds.
     frame_within_ms: Arc<AtomicU64>,
@@ -148,10 +148,10 @@ impl Program {
         if let Some(path) = start.replay {
             app.act(Action::Session(SessionAction::Open(path)), clock.now());
         }
-        let mut cockpit = Cockpit::new(app).with_snap(start.snap);
-        cockpit.set_software(is_software);
+        let mut desktop_app = DesktopApp::new(app).with_snap(start.snap);
+        desktop_app.set_software(is_software);
         Self {
-            cockpit,
+            desktop_app,
             clock,
             frame_within_ms,
             titled: None,
@@ -166,8 +166,8 @@ impl Program {
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
         self.ending.lives(now);
-        self.cockpit.logic(now);
-        let within = self.cockpit.frame_within();
+        self.desktop_app.logic(now);
+        let within = self.desktop_app.frame_within();
         let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
         self.frame_within_ms.store(within_ms, Ordering::Relaxed);
         self.title(ctx);
@@ -182,12 +182,12 @@ impl Program {
 
     /// Draws one frame over all of `ui`.
     pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
-        self.cockpit.ui(ui, self.clock.now());
+        self.desktop_app.ui(ui, self.clock.now());
     }
 
     /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.
     fn title(&mut self, ctx: &egui::Context) {
-        let state = self.cockpit.state();
+        let state = self.desktop_app.state();
         let title = match &state.hand().endpoint {
             _ if state.timeline.is_some() => "Handscope - RECORDED session".to_owned(),
             Some(_) if state.hand().is_simulated() => "Handscope - SIMULATED hand".to_owned(),
@@ -205,7 +205,7 @@ impl Program {
 
     /// During an exhibition the window fills its screen, above all others, whatever anybody did to it.
     fn fill(&mut self, ctx: &egui::Context, now: Moment) {
-        let wanted = self.cockpit.state().exhibit.is_some();
+        let wanted = self.desktop_app.state().exhibit.is_some();
         let level = |level| ViewportCommand::WindowLevel(level);
         let commands = match &mut self.fills {
             None if !wanted => return,
@@ -272,12 +272,12 @@ impl Program {
         // Without the zoom: the window is made before there is any.
         let shown = shown.map(|shown| shown.size() * ctx.zoom_factor());
         let Some(shown) = shown else { return };
-        let cockpit = &mut self.cockpit;
-        let layout = cockpit.state().settings.layout;
+        let desktop_app = &mut self.desktop_app;
+        let layout = desktop_app.state().settings.layout;
         let window = [shown.x, shown.y].into();
         if layout.window != window {
             let layout = Layout { window, ..layout };
-            cockpit.app().act(Action::Layout(layout), now);
+            desktop_app.app().act(Action::Layout(layout), now);
         }
     }
 
@@ -287,7 +287,7 @@ impl Program {
         self.closing |= self.ending.is_wanted();
         if !self.closing {
             let asked = ctx.input(|input| input.viewport().close_requested());
-            let app = self.cockpit.app();
+            let app = self.desktop_app.app();
             if asked && app.asks_before_closing() {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
                 return;
@@ -297,11 +297,11 @@ impl Program {
         if !self.closing {
             return;
         }
-        if self.cockpit.app().close(now) {
+        if self.desktop_app.app().close(now) {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            ctx.request_repaint_after(self.cockpit.frame_within());
+            ctx.request_repaint_after(self.desktop_app.frame_within());
         }
     }
 }
@@ -416,19 +416,19 @@ mod tests {
         let ctx = egui::Context::default();
         let mut program = Program::new(&ctx, start, services);
         let angle = |program: &Program| {
-            let angle = program.cockpit.state().hand().sample.angle;
+            let angle = program.desktop_app.state().hand().sample.angle;
             angle.map_or(1000, |angle| angle.value[Dof::Index].raw())
         };
-        let is_armed = |program: &Program| program.cockpit.state().hand().link.armed.is_some();
+        let is_armed = |program: &Program| program.desktop_app.state().hand().link.armed.is_some();
         until(&ctx, &mut program, "it answers", |program| {
-            let hand = program.cockpit.state().hand();
+            let hand = program.desktop_app.state().hand();
             hand.link.state.is_live() && hand.sample.faults.is_some()
         });
         let now = clock.now();
-        program.cockpit.app().act(Action::Arm, now);
+        program.desktop_app.app().act(Action::Arm, now);
         until(&ctx, &mut program, "it is armed", is_armed);
         program
-            .cockpit
+            .desktop_app
             .app()
             .act(Action::Preset(Preset::Close), now);
         until(&ctx, &mut program, "it moves", |program| {

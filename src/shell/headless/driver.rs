@@ -16,7 +16,7 @@ use crate::app::trials::TrialAction;
 use crate::hand::Moment;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::link::{Clock, LinkTrouble};
-use crate::shell::Cockpit;
+use crate::shell::DesktopApp;
 use crate::shell::headless::canvas::{Canvas, Picture};
 use crate::shell::headless::snap::snap;
 use crate::transport::Endpoint;
@@ -99,8 +99,8 @@ pub enum DriveError {
 
 /// A running program and the screen it is drawn on.
 pub struct Driver {
-    // The cockpit's link lives on the runtime, so it goes first.
-    cockpit: Cockpit,
+    // The desktop_app's link lives on the runtime, so it goes first.
+    desktop_app: DesktopApp,
     canvas: Canvas,
     clock: Clock,
     endpoint: Endpoint,
@@ -164,7 +164,7 @@ impl Driver {
         app.open(Some(endpoint.clone()), clock.now());
         drop(inside);
         let mut driver = Self {
-            cockpit: Cockpit::new(app).with_snap(snap),
+            desktop_app: DesktopApp::new(app).with_snap(snap),
             canvas: Canvas::new(scene.size, scene.scale),
             clock,
             endpoint,
@@ -178,8 +178,8 @@ impl Driver {
     /// The first frame puts fonts and style into the screen; they must hold still after that.
     pub(crate) fn hold_still(&mut self) {
         let now = self.now();
-        let cockpit = &mut self.cockpit;
-        self.canvas.frame(now.secs(), |ui| cockpit.ui(ui, now));
+        let desktop_app = &mut self.desktop_app;
+        self.canvas.frame(now.secs(), |ui| desktop_app.ui(ui, now));
         self.canvas.hold_still();
     }
 
@@ -198,8 +198,8 @@ impl Driver {
     }
 
     /// The program and its window.
-    pub const fn cockpit(&mut self) -> &mut Cockpit {
-        &mut self.cockpit
+    pub const fn desktop_app(&mut self) -> &mut DesktopApp {
+        &mut self.desktop_app
     }
 
     /// Lets one [`STEP`] pass, or what is left if that is less.
@@ -209,9 +209,9 @@ impl Driver {
             .block_on(async { tokio::time::sleep(left.min(STEP)).await });
         let now = self.now();
         let _inside = self.runtime.enter();
-        self.cockpit.logic(now);
+        self.desktop_app.logic(now);
         // What would be drawn between two pictures.
-        self.cockpit.app().drawn(now);
+        self.desktop_app.app().drawn(now);
     }
 
     /// Lets time pass until the hand answers.
@@ -220,8 +220,8 @@ impl Driver {
     /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_WITHIN`].
     pub fn connect(&mut self) -> Result<(), DriveError> {
         let begun = self.now();
-        while !self.cockpit.state().hand().link.state.is_live() {
-            if let Some(trouble) = self.cockpit.state().hand().link.trouble.clone() {
+        while !self.desktop_app.state().hand().link.state.is_live() {
+            if let Some(trouble) = self.desktop_app.state().hand().link.trouble.clone() {
                 return Err(DriveError::NoHand {
                     endpoint: self.endpoint.clone(),
                     trouble,
@@ -254,13 +254,13 @@ impl Driver {
     pub(crate) fn act(&mut self, action: Action) {
         let now = self.now();
         let _inside = self.runtime.enter();
-        self.cockpit.app().act(action, now);
+        self.desktop_app.app().act(action, now);
     }
 
     /// Lets time pass until something is so, or for so long at most.
     pub(crate) fn until(&mut self, within: Duration, so: impl Fn(&State) -> bool) {
         let begun = self.now();
-        while !so(self.cockpit.state()) && self.now().since(begun) < within {
+        while !so(self.desktop_app.state()) && self.now().since(begun) < within {
             self.step(STEP);
         }
     }
@@ -284,19 +284,19 @@ impl Driver {
             line.is_some_and(|line| line.at == to && !line.waits)
         };
         self.until(REPLAYED_WITHIN, is_there);
-        if !is_there(self.cockpit.state()) {
+        if !is_there(self.desktop_app.state()) {
             return Err(DriveError::NotReplayed { path, within_s });
         }
         // The plots begin anew with a hand they see for the first time.
         self.hold_still();
-        self.cockpit.show_stretch((from, to));
+        self.desktop_app.show_stretch((from, to));
         Ok(())
     }
 
     /// Reads what the hand keeps, and waits for it.
     pub(crate) fn read_rows(&mut self) {
         let now = self.now();
-        if !self.cockpit.state().hand().params.is_due(now) {
+        if !self.desktop_app.state().hand().params.is_due(now) {
             return;
         }
         self.act(Action::Param(ParamAction::Read));
@@ -341,9 +341,10 @@ impl Driver {
             self.read_rows();
         }
         let now = self.now();
-        self.cockpit.show(view);
+        self.desktop_app.show(view);
         let _inside = self.runtime.enter();
-        let cockpit = &mut self.cockpit;
-        self.canvas.picture(now.secs(), |ui| cockpit.ui(ui, now))
+        let desktop_app = &mut self.desktop_app;
+        self.canvas
+            .picture(now.secs(), |ui| desktop_app.ui(ui, now))
     }
 }

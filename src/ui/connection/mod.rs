@@ -205,7 +205,7 @@ impl ConnectionForm {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
             let find = Button::said(look, panels::PORTS_REFRESH);
-            find.sends(ui, pane, Action::FindPorts);
+            find.on_click(ui, pane, Action::FindPorts);
             if pane.state.ports.is_empty() {
                 Label::note(look, panels::PORTS_NONE).wrap().ui(ui);
             }
@@ -302,7 +302,7 @@ impl ConnectionForm {
             let none = pane.state.hand().endpoint.is_none();
             let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
-            disconnect.large().sends(ui, pane, Action::Disconnect);
+            disconnect.large().on_click(ui, pane, Action::Disconnect);
             self.scan_ui(ui, pane);
         });
         if let (Err(error), true) = (&parsed, self.refused.as_ref() == Some(&spelled)) {
@@ -331,11 +331,12 @@ fn hands_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal_wrapped(|ui| {
         let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
         let add = Button::said(look, window::ADD_HAND).disabled(full);
-        add.large().sends(ui, pane, Action::Hands(HandsAction::Add));
+        add.large()
+            .on_click(ui, pane, Action::Hands(HandsAction::Add));
         if hands.is_several() {
             let remove = Button::said(look, window::REMOVE_HAND).large();
             let action = Action::Hands(HandsAction::Remove(slot));
-            remove.sends(ui, pane, action);
+            remove.on_click(ui, pane, action);
         }
     });
 }

@@ -45,7 +45,7 @@ impl ScanPanel {
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
                 let cancel = Button::said(look, scan::CANCEL);
-                cancel.large().sends(ui, pane, Action::CancelScan);
+                cancel.large().on_click(ui, pane, Action::CancelScan);
             } else {
                 let (text, tip) = (look.say(scan::SCAN_PORTS), look.tip(scan::SCAN_PORTS));
                 let button = Button::new(text, tip).weight(Weight::Strong).large();

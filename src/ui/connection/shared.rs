@@ -68,7 +68,7 @@ impl SharedPanel {
             let missing = missing.then(|| look.say(inputs::INTERFACE_WRONG));
             let action = Action::FindShared((!is_on).then_some(interface));
             let button = Button::said(look, text).disabled(missing);
-            button.sends(ui, pane, action);
+            button.on_click(ui, pane, action);
         });
     }
 }

@@ -137,7 +137,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         let text = look.say(faults::SEEN);
         let name = format!("{text}: {title}");
         let button = Button::new(text, look.tip(faults::SEEN)).named(&name);
-        button.sends(ui, pane, Action::SeenFault(entry.dof, entry.what));
+        button.on_click(ui, pane, Action::SeenFault(entry.dof, entry.what));
     });
 }
 
@@ -271,5 +271,5 @@ pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::said(look, faults::SEEN_ALL);
     button
         .disabled_if(none, look.say(faults::SEEN_NONE))
-        .sends(ui, pane, Action::SeenFaults);
+        .on_click(ui, pane, Action::SeenFaults);
 }

@@ -158,7 +158,9 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
-    button.disabled(reason).sends(ui, pane, Action::ClearErrors);
+    button
+        .disabled(reason)
+        .on_click(ui, pane, Action::ClearErrors);
 }
 
 /// That nothing is wrong, or that nobody knows.
@@ -257,6 +259,6 @@ fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
         let name = format!("{}: {text}", pane.look.say(main::DISMISS));
         let button = Button::said(pane.look, main::DISMISS);
         let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-        button.sends(ui, pane, Action::Dismiss(notice.id));
+        button.on_click(ui, pane, Action::Dismiss(notice.id));
     });
 }

@@ -225,7 +225,7 @@ fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, (kind, text, action): Switch, (at
     let wrong = wrong.filter(|_| at.is_none()).map(|wrong| look.say(wrong));
     let button = Button::said(look, text).selected(at.is_some()).large();
     let button = button.disabled(no_hand(pane).or(wrong));
-    button.sends(ui, pane, Action::Input(action));
+    button.on_click(ui, pane, Action::Input(action));
     let refused = pane.state.hand().inputs.refused.as_ref();
     match (at, refused.filter(|(refused, _)| *refused == kind)) {
         (Some((ip, at)), _) if !ip.is_loopback() => {
@@ -263,7 +263,7 @@ pub(crate) fn grant_ui(
         .weight(Weight::Strong)
         .large();
     let button = button.disabled(reason.as_deref());
-    button.sends(ui, pane, Action::Input(action));
+    button.on_click(ui, pane, Action::Input(action));
 }
 
 /// Why nobody can be followed now who was heard last at this moment.

@@ -30,7 +30,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
             button
                 .large()
-                .sends(ui, pane, Action::Input(InputAction::TakeBack));
+                .on_click(ui, pane, Action::Input(InputAction::TakeBack));
         }
         let run = pane.state.hand().inputs.follow.as_ref();
         if let Some(view) = run.and_then(|run| run.view) {

@@ -78,7 +78,7 @@ fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
         let button = Button::said(look, inputs::READ_PAD).selected(view.is_some());
         let button = button.disabled(no_hand(pane)).large();
         let action = InputAction::ReadPad(view.is_none());
-        button.sends(ui, pane, Action::Input(action));
+        button.on_click(ui, pane, Action::Input(action));
         let is_there = view.is_some_and(|view| view.name.is_some());
         let missing = (!is_there).then_some(look.say(inputs::NONE));
         grant_ui(

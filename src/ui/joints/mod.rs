@@ -83,7 +83,7 @@ impl JointsView {
         let button = Button::new(text, look.say(main::UNIT_TIP))
             .named(look.say(main::UNIT_NAME))
             .weight(Weight::Quiet);
-        button.sends(ui, pane, Action::AngleUnit(unit.next()));
+        button.on_click(ui, pane, Action::AngleUnit(unit.next()));
         let button = Button::said(look, main::LINK_FINGERS);
         let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {
@@ -135,7 +135,7 @@ fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
             let button = Button::said(look, text).large().disabled(not_armed);
             kit::wide_ui(ui, |ui| {
-                button.sends(ui, pane, Action::Preset(preset));
+                button.on_click(ui, pane, Action::Preset(preset));
             });
         }
     });

@@ -8,7 +8,7 @@ use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
-use crate::ui::kit::{self, Button, Label, Opens, Pane};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest};
 use crate::ui::text::{faults, main};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -129,7 +129,7 @@ pub(crate) fn explain_ui(
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     kit::focus_ring(ui, pane.look, &response, rect);
     if response.clicked() {
-        pane.open(Opens::Drive(row.dof));
+        pane.open(ViewRequest::Drive(row.dof));
     }
     let tip = pane.look.tip(faults::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
@@ -172,5 +172,5 @@ fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let name = row.named(pane, main::NAME_LOCK);
     let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);
     button.height = ui.spacing().interact_size.y;
-    button.sends(ui, pane, Action::Lock(row.dof, !locked));
+    button.on_click(ui, pane, Action::Lock(row.dof, !locked));
 }

@@ -15,7 +15,7 @@ use std::fmt::Display;
 
 /// What pressing a button of a card means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Manner {
+pub(crate) enum ButtonRole {
     /// Nothing is changed by it. It has the keyboard first, and Esc does the same after it stopped the hand; where it is
     /// all that a card offers and the hand rests, without a stop.
     Safe,
@@ -31,14 +31,14 @@ pub(crate) enum Manner {
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     text: Text,
-    manner: Manner,
+    manner: ButtonRole,
     disabled: Option<Text>,
     does: Vec<Action>,
 }
 
 impl Choice {
     /// A button that asks for nothing yet.
-    pub(crate) const fn new(text: Text, manner: Manner) -> Self {
+    pub(crate) const fn new(text: Text, manner: ButtonRole) -> Self {
         Self {
             text,
             manner,
@@ -218,7 +218,7 @@ impl CardView {
         let key = (card.title.clone(), card.choices.len());
         let mut choices = card.choices.iter();
         self.informs =
-            !card.choices.is_empty() && choices.all(|choice| choice.manner == Manner::Safe);
+            !card.choices.is_empty() && choices.all(|choice| choice.manner == ButtonRole::Safe);
         let is_new = self.shown.as_ref() != Some(&key);
         if is_new {
             self.shown = Some(key);
@@ -328,7 +328,7 @@ impl CardView {
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
         let untyped = untyped.map(|word| look.told(cards::TYPE, word));
         for (index, choice) in card.choices.iter().enumerate().rev() {
-            let is_danger = choice.manner == Manner::Danger;
+            let is_danger = choice.manner == ButtonRole::Danger;
             let reason = choice.disabled.map(|reason| look.say(reason).to_owned());
             let reason = reason.or_else(|| untyped.clone().filter(|_| is_danger));
             let button = Button::said(look, choice.text)
@@ -339,7 +339,7 @@ impl CardView {
             if button.clicked() && !(is_danger && entered) {
                 pressed = Some(index);
             }
-            let is_safe = choice.manner == Manner::Safe;
+            let is_safe = choice.manner == ButtonRole::Safe;
             if is_new && is_safe && card.word.is_none() {
                 button.request_focus();
             }
@@ -351,11 +351,11 @@ impl CardView {
     }
 }
 
-const fn weight(manner: Manner) -> Weight {
+const fn weight(manner: ButtonRole) -> Weight {
     match manner {
-        Manner::Safe | Manner::Plain => Weight::Normal,
-        Manner::Main => Weight::Strong,
-        Manner::Danger => Weight::Danger,
+        ButtonRole::Safe | ButtonRole::Plain => Weight::Normal,
+        ButtonRole::Main => Weight::Strong,
+        ButtonRole::Danger => Weight::Danger,
     }
 }
 

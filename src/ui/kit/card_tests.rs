@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::settings::{Language, Theme};
-use crate::ui::kit::card::{Card, CardView, Choice, Manner};
+use crate::ui::kit::card::{ButtonRole, Card, CardView, Choice};
 use crate::ui::kit::controls::{Button, pressed};
 use crate::ui::style::Look;
 use crate::ui::text::{Text, cards};
@@ -71,7 +71,7 @@ fn card() -> Card {
 }
 
 fn titled(title: &'static str) -> Card {
-    let cancel = Choice::new(cards::CANCEL, Manner::Safe);
+    let cancel = Choice::new(cards::CANCEL, ButtonRole::Safe);
     let cancel = cancel.does(Action::Param(ParamAction::Decline));
     offering(said(title).choice(cancel))
 }
@@ -93,9 +93,9 @@ fn said(title: &'static str) -> Card {
 }
 
 fn offering(card: Card) -> Card {
-    let best = Choice::new(text("Best"), Manner::Main).disabled(Some(text("not yet")));
-    let danger = Choice::new(cards::TYPE, Manner::Danger).does(Action::Disarm);
-    card.choice(Choice::new(text("Other"), Manner::Plain))
+    let best = Choice::new(text("Best"), ButtonRole::Main).disabled(Some(text("not yet")));
+    let danger = Choice::new(cards::TYPE, ButtonRole::Danger).does(Action::Disarm);
+    card.choice(Choice::new(text("Other"), ButtonRole::Plain))
         .choice(best)
         .choice(danger)
 }

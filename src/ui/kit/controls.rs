@@ -285,7 +285,7 @@ impl<'a> Button<'a> {
     }
 
     /// Draws it, and asks for `action` when it is pressed.
-    pub(crate) fn sends(self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
+    pub(crate) fn on_click(self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
         if self.ui(ui, pane.look).clicked() {
             pane.actions.push(action);
         }

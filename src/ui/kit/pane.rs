@@ -21,12 +21,12 @@ pub(crate) struct Pane<'a> {
     /// The field being typed into.
     pub(crate) typing: &'a mut Typing,
     /// What is to be opened after this frame.
-    pub(crate) opens: &'a mut Option<Opens>,
+    pub(crate) opens: &'a mut Option<ViewRequest>,
 }
 
 /// What a person opens from another part of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Opens {
+pub(crate) enum ViewRequest {
     /// A view.
     View(View),
     /// What is and was wrong.
@@ -41,7 +41,7 @@ pub(crate) enum Opens {
 
 impl Pane<'_> {
     /// Opens this after the frame.
-    pub(crate) const fn open(&mut self, opens: Opens) {
+    pub(crate) const fn open(&mut self, opens: ViewRequest) {
         *self.opens = Some(opens);
     }
 

@@ -5,7 +5,7 @@ use crate::app::state::State;
 use crate::hand::{Dof, ForceReading};
 use crate::record::Calibrated;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Check, Checks, Offsets, TAKES};
-use crate::ui::kit::{Card, Look, Manner, format};
+use crate::ui::kit::{ButtonRole, Card, Look, format};
 use crate::ui::params::choices::{asking, close};
 use crate::ui::text::{Text, cards, errors, words};
 
@@ -33,7 +33,7 @@ fn ask(state: &State, card: Card, run: &Checks) -> Card {
     let force = sample.force.map(|force| force.value.map(ForceReading::raw));
     let card = offsets(card, &[(cards::OFFSET_NOW, force)]);
     let not_yet = (!run.is_ready(sample, link, now)).then_some(cards::CALIBRATE_NOT_YET);
-    asking(state, card, (cards::CALIBRATE, Manner::Main), not_yet)
+    asking(state, card, (cards::CALIBRATE, ButtonRole::Main), not_yet)
 }
 
 fn over(look: Look, card: Card, before: Option<Offsets>, report: &CalibrateReport) -> Card {

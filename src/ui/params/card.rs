@@ -7,7 +7,7 @@ use crate::app::params::state::{WriteQuestion, WriteRequest};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::params::danger::Danger;
-use crate::ui::kit::{Card, Choice, Look, Manner};
+use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, main, poses, tune, words};
 
@@ -30,13 +30,13 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     if matches!(question.what, WriteRequest::Save) {
         card = changes(state, look, card);
     }
-    let mut manner = Manner::Main;
+    let mut manner = ButtonRole::Main;
     if hurts {
         card = dangers(look, card, &question.dangers);
-        manner = Manner::Danger;
+        manner = ButtonRole::Danger;
     }
     let why = state.hand().write_refusal().map(device::refusal);
-    let back = Choice::new(device::DECLINE, Manner::Safe);
+    let back = Choice::new(device::DECLINE, ButtonRole::Safe);
     let agree = Choice::new(agree, manner).does(Action::Param(ParamAction::Agree));
     card.choice(back.does(Action::Param(ParamAction::Decline)))
         .choice(agree.disabled(why))

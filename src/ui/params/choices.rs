@@ -3,27 +3,31 @@
 use crate::app::action::Action;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
-use crate::ui::kit::{Card, Choice, Manner};
+use crate::ui::kit::{ButtonRole, Card, Choice};
 use crate::ui::text::{Text, cards, device};
 
 /// A button that goes one step further.
-pub(crate) fn step(text: Text, manner: Manner, step: ProcedureAction) -> Choice {
+pub(crate) fn step(text: Text, manner: ButtonRole, step: ProcedureAction) -> Choice {
     Choice::new(text, manner).does(Action::Procedure(step))
 }
 
 /// The way out of a card that was read.
 pub(crate) fn close() -> Choice {
-    step(cards::CLOSE, Manner::Safe, ProcedureAction::Close)
+    step(cards::CLOSE, ButtonRole::Safe, ProcedureAction::Close)
 }
 
 /// A card that asks whether to begin, unless nothing can begin now or not yet.
 pub(crate) fn asking(
     state: &State,
     card: Card,
-    (begin, manner): (Text, Manner),
+    (begin, manner): (Text, ButtonRole),
     not_yet: Option<Text>,
 ) -> Card {
     let why = state.hand().rest_refusal().map(device::refusal).or(not_yet);
-    card.choice(step(cards::CANCEL, Manner::Safe, ProcedureAction::Close))
-        .choice(step(begin, manner, ProcedureAction::Begin).disabled(why))
+    card.choice(step(
+        cards::CANCEL,
+        ButtonRole::Safe,
+        ProcedureAction::Close,
+    ))
+    .choice(step(begin, manner, ProcedureAction::Begin).disabled(why))
 }

@@ -56,9 +56,9 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
         .named(look.say(device::STAGE_TICKED))
         .weight(Weight::Strong)
         .disabled_if(count == 0, look.say(device::STAGE_NONE));
-    stage.sends(ui, pane, Action::Param(ParamAction::StageTicked));
+    stage.on_click(ui, pane, Action::Param(ParamAction::StageTicked));
     let close = Button::said(look, device::CLOSE_FILE);
-    close.sends(ui, pane, Action::Param(ParamAction::CloseFile));
+    close.on_click(ui, pane, Action::Param(ParamAction::CloseFile));
 }
 
 fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {

@@ -45,7 +45,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let save = Button::said(look, device::SAVE);
     let save = save.weight(weight).disabled(reason);
     kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
-        save.sends(ui, pane, Action::Param(ParamAction::Save));
+        save.on_click(ui, pane, Action::Param(ParamAction::Save));
     });
     let lines = lines(pane, reason);
     let area = ScrollArea::vertical().id_salt("flash").max_height(most);
@@ -122,8 +122,8 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let dump = Button::said(look, device::DUMP);
         let open = Button::said(look, device::OPEN);
         dump.disabled(nothing)
-            .sends(ui, pane, Action::Param(ParamAction::Dump));
-        open.sends(ui, pane, Action::Param(ParamAction::Open(None)));
+            .on_click(ui, pane, Action::Param(ParamAction::Dump));
+        open.on_click(ui, pane, Action::Param(ParamAction::Open(None)));
     });
     if let Some(refused) = &pane.state.hand().params.file_refused {
         let words = notices::notice(look, refused);
@@ -187,6 +187,6 @@ pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),
     ] {
         let button = Button::said(look, text).disabled_if(!live, look.say(main::REFUSED_OFFLINE));
-        button.sends(ui, pane, action);
+        button.on_click(ui, pane, action);
     }
 }

@@ -56,7 +56,7 @@ impl DeviceView {
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
             read.disabled(refusal)
-                .sends(ui, pane, Action::Param(ParamAction::Read));
+                .on_click(ui, pane, Action::Param(ParamAction::Read));
             let only = Button::said(look, device::ONLY);
             if only.choice(self.shown.only).ui(ui, look).clicked() {
                 self.shown.only = !self.shown.only;
@@ -96,7 +96,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     for (button, disabled, wish) in tools {
         button
             .disabled(disabled)
-            .sends(ui, pane, Action::Param(wish));
+            .on_click(ui, pane, Action::Param(wish));
     }
 }
 

@@ -16,7 +16,7 @@ use crate::tasks::place::{
 };
 use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport, ResetStep};
 use crate::transport::Endpoint;
-use crate::ui::kit::{Card, Choice, Look, Manner};
+use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{asking, close, step};
@@ -80,7 +80,7 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
         _ if places.new == places.old => cards::POWERED,
         _ => cards::FOLLOWED,
     });
-    asking(state, card, (cards::CHANGE, Manner::Danger), None)
+    asking(state, card, (cards::CHANGE, ButtonRole::Danger), None)
 }
 
 fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
@@ -120,7 +120,7 @@ fn keep_card(
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
     let lost = (!state.hand().link.state.is_live()).then_some(main::REFUSED_OFFLINE);
-    let keep = step(cards::KEEP, Manner::Main, ProcedureAction::Keep);
+    let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))
         .words(match place {
@@ -132,20 +132,24 @@ fn keep_card(
             seconds / KEEP_WITHIN.as_secs_f32(),
             (cards::GOES_BACK_IN, left),
         )
-        .choice(step(cards::GO_BACK, Manner::Plain, ProcedureAction::GoBack))
+        .choice(step(
+            cards::GO_BACK,
+            ButtonRole::Plain,
+            ProcedureAction::GoBack,
+        ))
         .choice(keep.disabled(lost))
 }
 
 fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
     let mut card =
         Card::new(look, cards::OFFER_TITLE).words((cards::OFFER, &run.change.places.old));
-    let (mut text, mut manner) = (cards::SAVE, Manner::Main);
+    let (mut text, mut manner) = (cards::SAVE, ButtonRole::Main);
     if !run.dangers.is_empty() {
         card = device_card::dangers(look, card.words(cards::OFFER_ALL), &run.dangers);
-        (text, manner) = (device::AGREE_SAVE, Manner::Danger);
+        (text, manner) = (device::AGREE_SAVE, ButtonRole::Danger);
     }
     let leave = ProcedureAction::LeaveUnsaved;
-    card.choice(step(cards::UNSAVED, Manner::Safe, leave))
+    card.choice(step(cards::UNSAVED, ButtonRole::Safe, leave))
         .choice(step(text, manner, ProcedureAction::Save))
 }
 
@@ -216,7 +220,7 @@ fn backup(card: Card, backup: &Path) -> Card {
 /// The ways back to a hand: each place where it may be.
 fn ways(card: Card, places: &PlacePair) -> Card {
     let connect = |text, place: &Endpoint| {
-        Choice::new(text, Manner::Plain).does(Action::Connect(place.clone()))
+        Choice::new(text, ButtonRole::Plain).does(Action::Connect(place.clone()))
     };
     let card = card.choice(connect(cards::TO_OLD, &places.old));
     match places.new == places.old {
@@ -231,7 +235,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
         ProcedureStage::Asking => {
             let card = Card::new(look, cards::RESET_TITLE).words(cards::RESET_WORDS);
             let card = now_and_then(card, places).typed(RESET_WORD);
-            asking(state, card, (cards::RESET, Manner::Danger), None)
+            asking(state, card, (cards::RESET, ButtonRole::Danger), None)
         }
         ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, device::BACKING_UP),
         ProcedureStage::Doing(ResetStep::Sending, _) => card.progress(0.4, cards::RESET_SENDING),

@@ -312,7 +312,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     if staged.is_some() {
         let label = look.told(device::UNSTAGE, whole_name);
         let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
-        drop.sends(ui, pane, Action::Stage(id, None));
+        drop.on_click(ui, pane, Action::Stage(id, None));
     }
 }
 

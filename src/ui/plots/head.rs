@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::files::export::Export;
 use crate::app::settings::PlotWindow;
 use crate::hand::Dof;
-use crate::ui::kit::{self, Button, Look, Opens, Pane, Weight};
+use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
@@ -30,7 +30,7 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
             let note = Button::said(look, panels::NOTE);
             let note = note.named(look.say(panels::NOTE_NAME)).ui(ui, look);
             if note.clicked() {
-                pane.open(Opens::Note);
+                pane.open(ViewRequest::Note);
             }
         }
         pause_ui(ui, pane, view, is_narrow);
@@ -53,7 +53,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         ui.separator();
         ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
         if entry_ui(ui, look, panels::NOTE_NAME) {
-            pane.open(Opens::Note);
+            pane.open(ViewRequest::Note);
             Popup::close_all(ui.ctx());
         }
         ui.separator();

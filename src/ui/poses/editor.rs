@@ -136,7 +136,7 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     ] {
         ui.horizontal(|ui| {
             for (button, action) in row {
-                button.sends(ui, pane, action.clone());
+                button.on_click(ui, pane, action.clone());
             }
         });
     }

@@ -157,7 +157,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (poses::UNDO, no_undo, undo),
     ] {
         let button = Button::said(look, text).disabled(disabled);
-        button.sends(ui, pane, action);
+        button.on_click(ui, pane, action);
     }
 }
 

@@ -252,6 +252,6 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
             false => Weight::Normal,
         };
         let button = Button::said(look, text).weight(weight).large();
-        button.disabled(disabled).sends(ui, pane, action);
+        button.disabled(disabled).on_click(ui, pane, action);
     }
 }

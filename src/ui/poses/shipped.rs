@@ -61,12 +61,12 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
         let copy = copy.disabled_if(is_reaction, look.say(poses::COPY_REACTION));
         let label = look.told(poses::COPY, name);
         let action = Action::Library(LibraryEdit::Copy(entry));
-        copy.named(&label).sends(left, pane, action);
+        copy.named(&label).on_click(left, pane, action);
         let text = if hidden { poses::SHOW } else { poses::HIDE };
         let label = look.told(text, name);
         let hide = Button::said(look, text).weight(Weight::Quiet);
         let hide = hide.disabled_if(overridden, look.say(poses::OVERRIDDEN));
         hide.named(&label)
-            .sends(right, pane, Action::HideShipped(key.to_owned(), !hidden));
+            .on_click(right, pane, Action::HideShipped(key.to_owned(), !hidden));
     });
 }

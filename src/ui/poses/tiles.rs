@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::library::{EntryId, LibraryPose};
 use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -92,7 +92,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     kit::card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
             if Button::said(look, poses::EVERY).ui(ui, look).clicked() {
-                pane.open(Opens::View(View::Poses));
+                pane.open(ViewRequest::View(View::Poses));
             }
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
@@ -119,7 +119,7 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let on = hands.poses_for_all();
         let switch = Button::said(pane.look, window::POSES_FOR_ALL).switch(on);
         let action = Action::Hands(HandsAction::PosesForAll(!on));
-        switch.sends(ui, pane, action);
+        switch.on_click(ui, pane, action);
     }
 }
 
@@ -251,7 +251,7 @@ pub(crate) fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
         .named(&label)
         .disabled(entry_refusal(pane, entry))
         .weight(Weight::Strong);
-    button.sends(ui, pane, press(state, entry));
+    button.on_click(ui, pane, press(state, entry));
 }
 
 /// What a press on an entry does: it starts it, or ends it while it runs. A pose starts again.

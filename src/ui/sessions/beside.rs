@@ -24,7 +24,7 @@ pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let off = Button::new(&beside.title, look.say(sessions::BESIDE_OFF));
     let name = look.pair(look.say(sessions::BESIDE_OFF), &beside.title);
     let off = off.named(&name).switch(true);
-    off.sends(ui, pane, Action::Session(SessionAction::Beside(None)));
+    off.on_click(ui, pane, Action::Session(SessionAction::Beside(None)));
     let align = Button::said(look, sessions::ALIGN).ui(ui, look);
     let stays = PopupCloseBehavior::CloseOnClickOutside;
     let menu = Popup::menu(&align).close_behavior(stays);

@@ -9,7 +9,7 @@ use crate::app::action::Action;
 use crate::app::sessions::{SessionAction, SessionItem};
 use crate::app::state::State;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
-use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, format};
+use crate::ui::kit::{self, Button, ButtonRole, Card, Choice, Label, Look, Pane, format};
 use crate::ui::text::sessions;
 use egui::Ui;
 
@@ -100,10 +100,10 @@ fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let default = Button::said(look, sessions::FOLDER_DEFAULT);
             let default = default.disabled_if(is_default, look.say(sessions::FOLDER_IS_DEFAULT));
             let action = Action::Session(SessionAction::DefaultFolder);
-            default.sends(ui, pane, action);
+            default.on_click(ui, pane, action);
             let change = Button::said(look, sessions::FOLDER_CHANGE);
             let action = Action::Session(SessionAction::ChooseFolder(None));
-            change.sends(ui, pane, action);
+            change.on_click(ui, pane, action);
             kit::left_ui(ui, |ui| {
                 Label::muted(look, sessions::FOLDER).ui(ui);
                 let folder = pane.state.sessions.folder.as_ref();
@@ -164,7 +164,7 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (sessions::ROOM_KEEP, SessionAction::KeepPlanned),
         (sessions::ROOM_NOW, SessionAction::MakeRoom),
     ] {
-        Button::said(look, text).sends(ui, pane, Action::Session(action));
+        Button::said(look, text).on_click(ui, pane, Action::Session(action));
     }
 }
 
@@ -174,8 +174,8 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let mut all = state.sessions.items.iter();
     let title = all.find(|item| item.path == *path).map(SessionItem::title);
     let title = title.unwrap_or_else(|| path.display().to_string());
-    let back = Choice::new(sessions::DELETE_NOT, Manner::Safe);
-    let delete = Choice::new(sessions::DELETE_SURE, Manner::Danger);
+    let back = Choice::new(sessions::DELETE_NOT, ButtonRole::Safe);
+    let delete = Choice::new(sessions::DELETE_SURE, ButtonRole::Danger);
     let card = Card::new(look, sessions::DELETE_TITLE)
         .warning(look.fill(sessions::DELETE_WHAT, &[&title]))
         .choice(back.does(Action::Session(SessionAction::KeepIt)))

@@ -144,7 +144,7 @@ fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     let button = Button::new(look.say(sessions::STAR), tip).named(&name);
     let button = button.icon(icon).weight(Weight::Quiet).selected(star);
     let action = SessionAction::Star(item.path.clone(), !star);
-    button.sends(ui, pane, Action::Session(action));
+    button.on_click(ui, pane, Action::Session(action));
 }
 
 /// The name, and below it the hand.
@@ -183,7 +183,7 @@ fn ends_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     let named = look.pair(look.say(sessions::REPLAY), &title);
     let replay = Button::said(look, sessions::REPLAY).named(&named);
     let open = SessionAction::Open(item.path.clone());
-    replay.sends(ui, pane, Action::Session(open));
+    replay.on_click(ui, pane, Action::Session(open));
     let named = look.pair(look.say(sessions::MORE), &title);
     let more = Button::said(look, sessions::MORE).named(&named);
     let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);

@@ -6,8 +6,8 @@ use crate::ui::style::phrase::texts;
 texts! {
     TAB_COMPARE: "Compare", "对比";
     TAB_TUNE: "Tune", "整定";
-    EXHIBIT_NOT_BEGUN: "No exhibition: connect a hand, and end what is done to it first.", "无法进入展示：请先连接灵巧手，并结束正在进行的操作。";
-    SERIES_RUNS: "A series of trials runs: stop it first.", "正在运行抓取试验：请先停止。";
+    EXHIBIT_NOT_BEGUN: "Cannot start the exhibition: connect a hand and finish the open task first.", "无法进入展示：请先连接灵巧手，并结束正在进行的操作。";
+    SERIES_RUNS: "A trial series is running. Stop it first.", "正在运行抓取试验：请先停止。";
     SIMULATED: "SIMULATED", "仿真", "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
     ONLY_FROM_TO: "Only a number within", "只接受此范围内的数字：";
     REAL_HAND: "HAND", "真机";
@@ -24,7 +24,7 @@ texts! {
     RATES_TIP: "Reads of the motion state and of all fingertips a second, over the last second.", "最近一秒内每秒读取运动状态和全部指尖的次数。";
 
     ARM: "Arm", "使能", "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力阈值和速度发送到灵巧手。使能本身不会产生动作。";
-    DISARM: "Armed", "已使能", "Setpoints pass. Press to let none pass any more; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
+    DISARM: "Armed", "已使能", "Armed: commands reach the hand. Press to disarm; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
     ARM_NAME: "Arm the hand", "使能灵巧手";
     HOLD_KEY: "Hold H", "按住 H", "Hold to run is on: holding the H key arms this hand, and letting go stops every hand.", "已开启“按住运行”：按住 H 键即使能此手，松开则所有手停下。";
     DISARM_NAME: "Disarm the hand", "取消使能";

@@ -250,13 +250,13 @@ impl TouchView {
                 (undo, panels::TARE_UNDO.tip(), nothing, Action::UndoTare),
             ] {
                 let button = Button::new(words, look.say(tip)).disabled(disabled);
-                button.sends(ui, pane, action);
+                button.on_click(ui, pane, action);
             }
             if let Some(age) = offered {
                 let words = panels::kept_tare(look, age);
                 let kept = Button::new(&words, look.tip(panels::KEPT_TARE));
                 let kept = kept.named(look.say(panels::KEPT_TARE)).disabled(offline);
-                kept.sends(ui, pane, Action::TakeKeptTare);
+                kept.on_click(ui, pane, Action::TakeKeptTare);
             }
         });
     }

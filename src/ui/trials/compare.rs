@@ -5,7 +5,7 @@ use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Card, Choice, Label, Look, Manner, Pane, TextField};
+use crate::ui::kit::{self, Button, ButtonRole, Card, Choice, Label, Look, Pane, TextField};
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::BestView;
@@ -169,8 +169,8 @@ pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (St
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(tune::FORGET_NOT, Manner::Safe);
-    let forget = Choice::new(tune::FORGET_SURE, Manner::Danger);
+    let back = Choice::new(tune::FORGET_NOT, ButtonRole::Safe);
+    let forget = Choice::new(tune::FORGET_SURE, ButtonRole::Danger);
     let card = Card::new(look, tune::FORGET_TITLE)
         .words(compare_list::name(look, session.id))
         .warning(loses)

@@ -93,7 +93,7 @@ fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = button.disabled(reason.as_deref()).weight(Weight::Strong);
     kit::wide_ui(ui, |ui| {
         ui.set_max_height(theme::CONTROL_LARGE);
-        button.sends(ui, pane, Action::Trial(TrialAction::Start));
+        button.on_click(ui, pane, Action::Trial(TrialAction::Start));
     });
     kit::say_ui(ui, reason.as_deref().unwrap_or(" "), look.palette.warn);
 }

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::trials::{Comparison, TrialSession};
 use crate::trials::Criterion;
 use crate::trials::best::{Score, best};
-use crate::ui::kit::{self, Button, Opens, Pane, Weight};
+use crate::ui::kit::{self, Button, Pane, ViewRequest, Weight};
 use crate::ui::text::tune;
 use crate::ui::trials::compare;
 use crate::ui::trials::compare_best::staging;
@@ -59,11 +59,11 @@ impl ResultView {
         };
         ui.horizontal_wrapped(|ui| {
             if button_ui(ui, tune::SEE_COMPARE, Weight::Normal) {
-                pane.open(Opens::View(View::Compare));
+                pane.open(ViewRequest::View(View::Compare));
             }
             if is_staged {
                 if button_ui(ui, tune::SEE_DEVICE, Weight::Strong) {
-                    pane.open(Opens::View(View::Device));
+                    pane.open(ViewRequest::View(View::Device));
                 }
             } else if let Some(staged) = staged
                 && button_ui(ui, tune::PROMOTE, Weight::Normal)

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::state::State;
-use crate::ui::kit::{Card, Choice, Look, Manner};
+use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures;
 use crate::ui::sessions;
@@ -37,7 +37,7 @@ fn leave_card(state: &State, look: Look) -> Option<Card> {
     if question.edits > 0 {
         card = card.warning(look.fill(window::LEAVE_EDITS, &[&question.edits]));
     }
-    let stay = Choice::new(window::STAY, Manner::Safe).does(Action::Stay);
-    let leave = Choice::new(window::LEAVE, Manner::Danger).does(Action::Leave);
+    let stay = Choice::new(window::STAY, ButtonRole::Safe).does(Action::Stay);
+    let leave = Choice::new(window::LEAVE, ButtonRole::Danger).does(Action::Leave);
     Some(card.choice(stay).choice(leave))
 }

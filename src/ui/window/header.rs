@@ -7,7 +7,7 @@ use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
-use crate::ui::kit::{self, Button, Label, Look, Opens, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
 use crate::ui::text::{Text, faults, inputs, main, sessions, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -93,7 +93,7 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     };
     let button = Button::new(look.say(text), look.tip(sessions::BACK));
     let button = button.weight(Weight::Strong).large();
-    button.sends(ui, pane, Action::Session(SessionAction::Close));
+    button.on_click(ui, pane, Action::Session(SessionAction::Close));
 }
 
 /// Whether this hand is recorded, and the switch for it.
@@ -174,7 +174,7 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let text = format!("{before} {count} {after}");
     let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
     if lamp_button_ui(ui, look, button, color).clicked() {
-        pane.open(Opens::Faults);
+        pane.open(ViewRequest::Faults);
     }
 }
 
@@ -223,7 +223,7 @@ fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .named(&name)
         .weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
-        pane.open(Opens::View(View::Connection));
+        pane.open(ViewRequest::View(View::Connection));
     }
 }
 
@@ -248,7 +248,7 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let words = words.join(" · ");
     let button = Button::new(&words, look.tip(inputs::SHARED)).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, look.palette.accent).clicked() {
-        pane.open(Opens::View(View::Inputs));
+        pane.open(ViewRequest::View(View::Inputs));
     }
 }
 
@@ -309,7 +309,7 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View) {
         let button = Button::new(text, look.say(main::LANGUAGE_TIP))
             .named(look.say(main::LANGUAGE_NAME))
             .weight(Weight::Quiet);
-        button.sends(ui, pane, Action::Language(language.other()));
+        button.on_click(ui, pane, Action::Language(language.other()));
         let icon = match theme {
             Theme::Dark => theme::DARK,
             Theme::Light => theme::LIGHT,
@@ -317,12 +317,12 @@ pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View) {
         let button = Button::new(look.say(main::THEME_NAME), look.say(main::THEME_TIP))
             .icon(icon)
             .weight(Weight::Quiet);
-        button.sends(ui, pane, Action::Theme(theme.other()));
+        button.on_click(ui, pane, Action::Theme(theme.other()));
         let list = Button::new("?", look.tip(window::KEYS))
             .named(look.say(window::KEYS))
             .weight(Weight::Quiet);
         if list.ui(ui, look).clicked() {
-            pane.open(Opens::Keys);
+            pane.open(ViewRequest::Keys);
         }
         kit::left_ui(ui, |ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
@@ -351,6 +351,6 @@ fn tab_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: View, is_open: bool) {
         fault_entry::badge_ui(ui, place.right_top() + vec2(2.0, -2.0), pane);
     }
     if response.clicked() {
-        pane.open(Opens::View(tab));
+        pane.open(ViewRequest::View(tab));
     }
 }

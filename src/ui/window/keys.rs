@@ -4,7 +4,7 @@
 use crate::app::hand::held_key::HoldKey;
 use crate::hand::Dof;
 use crate::poses::library::EntryKey;
-use crate::ui::kit::Opens;
+use crate::ui::kit::ViewRequest;
 use crate::ui::text::{Text, main, panels, window, words};
 use crate::ui::view::View;
 use egui::{Event, InputState, Key, Modifiers, Ui};
@@ -45,7 +45,7 @@ pub(crate) enum Wish {
     /// The other colours.
     Theme,
     /// Opens something.
-    Opens(Opens),
+    Opens(ViewRequest),
 }
 
 /// What Esc does.
@@ -90,20 +90,56 @@ pub(crate) static ROWS: [KeyRow; 41] = [
     row(SHIFT, Key::O, Wish::Open),
     row(SHIFT, Key::H, Wish::Half),
     row(SHIFT, Key::C, Wish::Close),
-    row(COMMAND, Key::Num1, Wish::Opens(Opens::View(View::Live))),
-    row(COMMAND, Key::Num2, Wish::Opens(Opens::View(View::Touch))),
-    row(COMMAND, Key::Num3, Wish::Opens(Opens::View(View::Tune))),
-    row(COMMAND, Key::Num4, Wish::Opens(Opens::View(View::Compare))),
-    row(COMMAND, Key::Num5, Wish::Opens(Opens::View(View::Faults))),
-    row(COMMAND, Key::Num6, Wish::Opens(Opens::View(View::Poses))),
-    row(COMMAND, Key::Num7, Wish::Opens(Opens::View(View::Device))),
+    row(
+        COMMAND,
+        Key::Num1,
+        Wish::Opens(ViewRequest::View(View::Live)),
+    ),
+    row(
+        COMMAND,
+        Key::Num2,
+        Wish::Opens(ViewRequest::View(View::Touch)),
+    ),
+    row(
+        COMMAND,
+        Key::Num3,
+        Wish::Opens(ViewRequest::View(View::Tune)),
+    ),
+    row(
+        COMMAND,
+        Key::Num4,
+        Wish::Opens(ViewRequest::View(View::Compare)),
+    ),
+    row(
+        COMMAND,
+        Key::Num5,
+        Wish::Opens(ViewRequest::View(View::Faults)),
+    ),
+    row(
+        COMMAND,
+        Key::Num6,
+        Wish::Opens(ViewRequest::View(View::Poses)),
+    ),
+    row(
+        COMMAND,
+        Key::Num7,
+        Wish::Opens(ViewRequest::View(View::Device)),
+    ),
     row(
         COMMAND,
         Key::Num8,
-        Wish::Opens(Opens::View(View::Connection)),
+        Wish::Opens(ViewRequest::View(View::Connection)),
     ),
-    row(COMMAND, Key::Num9, Wish::Opens(Opens::View(View::Traffic))),
-    row(COMMAND, Key::R, Wish::Opens(Opens::View(View::Sessions))),
+    row(
+        COMMAND,
+        Key::Num9,
+        Wish::Opens(ViewRequest::View(View::Traffic)),
+    ),
+    row(
+        COMMAND,
+        Key::R,
+        Wish::Opens(ViewRequest::View(View::Sessions)),
+    ),
     row(ALT, Key::Num1, Wish::Hand(0)),
     row(ALT, Key::Num2, Wish::Hand(1)),
     row(ALT, Key::Num3, Wish::Hand(2)),
@@ -123,11 +159,11 @@ pub(crate) static ROWS: [KeyRow; 41] = [
     row(SHIFT, Key::T, Wish::UndoTare),
     row(NONE, Key::T, Wish::Tare),
     row(NONE, Key::P, Wish::Pause),
-    row(NONE, Key::N, Wish::Opens(Opens::Note)),
+    row(NONE, Key::N, Wish::Opens(ViewRequest::Note)),
     row(COMMAND, Key::L, Wish::Language),
     row(COMMAND, Key::D, Wish::Theme),
-    row(NONE, Key::F1, Wish::Opens(Opens::Keys)),
-    row(NONE, Key::Questionmark, Wish::Opens(Opens::Keys)),
+    row(NONE, Key::F1, Wish::Opens(ViewRequest::Keys)),
+    row(NONE, Key::Questionmark, Wish::Opens(ViewRequest::Keys)),
 ];
 
 /// The keys with which egui itself makes everything larger and smaller.
@@ -194,11 +230,11 @@ impl Wish {
             Self::Pause => panels::PAUSE_NAME,
             Self::Language => window::KEY_LANGUAGE,
             Self::Theme => window::KEY_THEME,
-            Self::Opens(Opens::View(view)) => view.title(),
-            Self::Opens(Opens::Note) => window::KEY_NOTE,
-            Self::Opens(Opens::Keys) => window::KEY_LIST,
-            Self::Opens(Opens::Drive(dof)) => words::dof(dof),
-            Self::Opens(Opens::Faults) => View::Faults.title(),
+            Self::ViewRequest(ViewRequest::View(view)) => view.title(),
+            Self::ViewRequest(ViewRequest::Note) => window::KEY_NOTE,
+            Self::ViewRequest(ViewRequest::Keys) => window::KEY_LIST,
+            Self::ViewRequest(ViewRequest::Drive(dof)) => words::dof(dof),
+            Self::ViewRequest(ViewRequest::Faults) => View::Faults.title(),
         }
     }
 
@@ -214,7 +250,7 @@ impl Wish {
             | Self::Entry(_) => window::KEY_MOTION,
             Self::Hand(_) => window::KEY_HANDS,
             Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => window::KEY_JOINTS,
-            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(Opens::Note) => {
+            Self::Tare | Self::UndoTare | Self::Pause | Self::ViewRequest(ViewRequest::Note) => {
                 window::KEY_MEASURING
             }
             Self::Opens(_) | Self::Language | Self::Theme => window::KEY_WINDOW,
@@ -295,7 +331,7 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
             && (row.key != Key::Escape || escape == Escape::Stops)
         {
             wishes.push(row.wish);
-            opens_a_field |= row.wish == Wish::Opens(Opens::Note);
+            opens_a_field |= row.wish == Wish::Opens(ViewRequest::Note);
         }
         // Esc goes on: it also closes menus and dialogs.
         row.key == Key::Escape
@@ -427,7 +463,7 @@ mod tests {
 
     #[test]
     fn while_trials_run_any_key_is_a_stop_and_a_held_one_is_not() {
-        let press = |repeat| row(NONE, Key::F7, Wish::Opens(Opens::Keys)).pressed(repeat);
+        let press = |repeat| row(NONE, Key::F7, Wish::Opens(ViewRequest::Keys)).pressed(repeat);
         for (events, wishes) in [
             (vec![press(false)], vec![Wish::Stop]),
             (vec![press(true)], vec![]),
@@ -460,11 +496,11 @@ mod tests {
     fn a_note_does_not_begin_with_its_own_key() {
         let note = ROWS
             .into_iter()
-            .find(|row| row.wish == Wish::Opens(Opens::Note));
+            .find(|row| row.wish == Wish::Opens(ViewRequest::Note));
         let events = note.map(|row| vec![event(row, false), Event::Text("n".into())]);
         assert_eq!(
             taken(events.unwrap_or_default(), false),
-            (vec![Wish::Opens(Opens::Note)], 0)
+            (vec![Wish::Opens(ViewRequest::Note)], 0)
         );
     }
 
@@ -472,7 +508,7 @@ mod tests {
     fn keys_have_the_names_that_stand_on_them() {
         assert_eq!(Wish::Stop.keys(), "Space, Esc");
         assert_eq!(Wish::ArmOrNot.keys(), "Shift+A");
-        assert_eq!(Wish::Opens(Opens::Keys).keys(), "F1, ?");
+        assert_eq!(Wish::Opens(ViewRequest::Keys).keys(), "F1, ?");
         assert_eq!(Wish::Joint(Dof::Index).keys(), "4");
     }
 }

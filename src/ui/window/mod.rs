@@ -34,7 +34,7 @@ use crate::app::state::State;
 use crate::hand::Moment;
 use crate::ui::exhibit::{self, ExhibitPage};
 use crate::ui::hands::strips;
-use crate::ui::kit::{self, CardView, Look, Opens, Pane, Typing};
+use crate::ui::kit::{self, CardView, Look, Pane, Typing, ViewRequest};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::body::Body;
@@ -176,16 +176,16 @@ impl Window {
         Escape::Closes
     }
 
-    fn open(&mut self, opens: Opens, now: Moment) {
-        if let Opens::Faults | Opens::Drive(_) = opens {
+    fn open(&mut self, opens: ViewRequest, now: Moment) {
+        if let ViewRequest::Faults | ViewRequest::Drive(_) = opens {
             self.body.view = View::Faults;
         }
         match opens {
-            Opens::View(view) => self.body.view = view,
-            Opens::Faults => self.body.own.faults.choose(None),
-            Opens::Drive(dof) => self.body.own.faults.choose(Some(dof)),
-            Opens::Note => self.body.own.status.open_note(now),
-            Opens::Keys => self.key_list.toggle(),
+            ViewRequest::View(view) => self.body.view = view,
+            ViewRequest::Faults => self.body.own.faults.choose(None),
+            ViewRequest::Drive(dof) => self.body.own.faults.choose(Some(dof)),
+            ViewRequest::Note => self.body.own.status.open_note(now),
+            ViewRequest::Keys => self.key_list.toggle(),
         }
     }
 

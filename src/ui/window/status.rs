@@ -12,7 +12,7 @@ use crate::link::Dialling;
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
-use crate::ui::kit::{self, Button, Label, Opens, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight, format};
 use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
@@ -379,7 +379,7 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     if let Some(end) = end {
         let button = Button::said(look, window::END);
         let name = format!("{}: {words}", look.say(window::END));
-        button.named(&name).sends(ui, pane, end);
+        button.named(&name).on_click(ui, pane, end);
     }
     if is_aside {
         Label::new(&words, look.palette.text).ui(ui);
@@ -462,12 +462,12 @@ fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
     match help {
         Help::View(view, text) => {
             if Button::said(pane.look, *text).ui(ui, pane.look).clicked() {
-                pane.open(Opens::View(*view));
+                pane.open(ViewRequest::View(*view));
             }
         }
         Help::Dismiss(id) => {
             let button = Button::said(pane.look, window::UNDERSTOOD);
-            button.sends(ui, pane, Action::Dismiss(*id));
+            button.on_click(ui, pane, Action::Dismiss(*id));
         }
     }
 }

@@ -54,14 +54,14 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
     let icon = |text: Text, icon| Button::said(look, text).icon(icon);
     let back = icon(sessions::STEP_BACK, theme::TO_LEFT);
-    back.sends(ui, pane, Action::Session(SessionAction::Step(false)));
+    back.on_click(ui, pane, Action::Session(SessionAction::Step(false)));
     let run = match line.runs {
         true => icon(sessions::PAUSE, theme::PAUSE),
         false => icon(sessions::RUN, theme::PLAY),
     };
-    run.sends(ui, pane, Action::Session(SessionAction::Run(!line.runs)));
+    run.on_click(ui, pane, Action::Session(SessionAction::Run(!line.runs)));
     let on = icon(sessions::STEP_ON, theme::TO_RIGHT);
-    on.sends(ui, pane, Action::Session(SessionAction::Step(true)));
+    on.on_click(ui, pane, Action::Session(SessionAction::Step(true)));
     let mut pace = line.pace;
     let name = look.say(sessions::PACE);
     ui.scope(|ui| {
@@ -72,7 +72,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     });
     if line.looped.is_some() {
         let off = Button::said(look, sessions::LOOP_OFF);
-        off.sends(ui, pane, Action::Session(SessionAction::Loop(None)));
+        off.on_click(ui, pane, Action::Session(SessionAction::Loop(None)));
     }
     let at = clock(line.at.since(line.first));
     let whole = clock(line.last.since(line.first));
@@ -86,7 +86,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     beside::beside_ui(ui, pane, line);
     let note = Button::said(look, sessions::NOTE_HERE);
     if note.ui(ui, look).clicked() {
-        pane.open(kit::Opens::Note);
+        pane.open(kit::ViewRequest::Note);
     }
     if line.damaged {
         kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(sessions::DAMAGED));
@@ -200,7 +200,7 @@ fn entry_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, entry: TimelineEn
             let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
             let none = SessionAction::EditNote(entry.at, String::new());
             let delete = delete.weight(Weight::Quiet);
-            delete.sends(ui, pane, Action::Session(none));
+            delete.on_click(ui, pane, Action::Session(none));
         }
     });
 }

@@ -196,9 +196,9 @@ fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Pic
     driver.connect().unwrap();
     let now = driver.now();
     let choose = SessionAction::ChooseFolder(Some(folder.path().into()));
-    driver.cockpit().app().act(Action::Session(choose), now);
+    driver.desktop_app().app().act(Action::Session(choose), now);
     driver.run_for(Duration::from_secs(2));
-    assert_eq!(driver.cockpit().state().sessions.items.len(), 3);
+    assert_eq!(driver.desktop_app().state().sessions.items.len(), 3);
     let mut shoot = |driver: &mut Driver, name: &str, view| {
         for (theme, language, of_dress) in DRESSES {
             let name = format!("{name}{of_dress}");

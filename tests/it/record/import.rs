@@ -388,7 +388,7 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
         (
             "time_s,event\nsoon,\n",
             2,
-            "'soon' cannot stand in the column time_s",
+            "invalid value 'soon' in column time_s",
         ),
         ("time_s,event\n,\n", 2, "'' cannot stand"),
         ("time_s,event\n-1,\n", 2, "'-1' cannot stand"),
@@ -397,7 +397,7 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
         (
             "time_s,angle_index\n1,1001\n",
             2,
-            "'1001' cannot stand in the column angle_index",
+            "invalid value '1001' in column angle_index",
         ),
         ("time_s,angle_index\n1,5.5\n", 2, "'5.5'"),
         ("time_s,angle_index\n1,1001.0\n", 2, "'1001.0'"),

@@ -110,7 +110,7 @@ impl Person {
 
     fn open(&mut self, tab: &str, view: View) {
         self.press(tab);
-        assert_eq!(self.harness.state().cockpit.view(), view);
+        assert_eq!(self.harness.state().desktop_app.view(), view);
     }
 
     fn enter(&mut self, field: &str, text: &str) {

@@ -43,13 +43,13 @@ impl Twin {
     /// Does what the mouse did in the real window.
     pub(crate) fn act(&mut self, action: Action) {
         let now = self.driver.now();
-        self.driver.cockpit().app().act(action, now);
+        self.driver.desktop_app().app().act(action, now);
         self.pass(Duration::from_millis(100));
     }
 
     /// Shows the moment at this share of the recording's length, as a drag of its time line does.
     pub(crate) fn seek(&mut self, share: f64) {
-        let state = self.driver.cockpit().app().state();
+        let state = self.driver.desktop_app().app().state();
         let line = state.timeline.as_ref().unwrap();
         let at = line.first.plus(line.last.since(line.first).mul_f64(share));
         self.act(Action::Session(SessionAction::Seek(at)));
@@ -63,7 +63,10 @@ impl Twin {
     pub(crate) fn exhibit(&mut self, file: &Path) {
         let exhibition = exhibit_file::read(file).unwrap();
         let now = self.driver.now();
-        self.driver.cockpit().app().enter_exhibit(exhibition, now);
+        self.driver
+            .desktop_app()
+            .app()
+            .enter_exhibit(exhibition, now);
         self.pass(Duration::from_secs(1));
     }
 
@@ -107,10 +110,10 @@ impl Twin {
         pixels: &[[u8; 3]],
         among: &[(View, Language)],
     ) -> (View, Language, f64) {
-        let before = self.driver.cockpit().state().settings.language;
+        let before = self.driver.desktop_app().state().settings.language;
         let mut all = Vec::new();
         for (view, language) in among.iter().copied() {
-            if self.driver.cockpit().state().settings.language != language {
+            if self.driver.desktop_app().state().settings.language != language {
                 self.act(Action::Language(language));
             }
             let differs = difference(&self.picture(view), pixels);

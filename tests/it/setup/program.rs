@@ -13,7 +13,7 @@ use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
-use handscope::shell::Cockpit;
+use handscope::shell::DesktopApp;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -44,7 +44,7 @@ pub(crate) fn start(env: Env, settings: Settings, hand: Option<&str>) -> App {
 
 /// A program, its window and the time it lives in.
 pub(crate) struct Program {
-    pub(crate) cockpit: Cockpit,
+    pub(crate) desktop_app: DesktopApp,
     clock: Clock,
     runtime: Runtime,
 }
@@ -60,17 +60,17 @@ impl Program {
         let inside = runtime.enter();
         let (env, settings) = set_up();
         let clock = env.clock;
-        let cockpit = Cockpit::new(start(env, settings, hand));
+        let desktop_app = DesktopApp::new(start(env, settings, hand));
         drop(inside);
         Self {
-            cockpit,
+            desktop_app,
             clock,
             runtime,
         }
     }
 
     pub(crate) fn state(&self) -> &State {
-        self.cockpit.state()
+        self.desktop_app.state()
     }
 
     /// For what needs the runtime's time.
@@ -86,14 +86,14 @@ impl Program {
     /// Asks for something as a view does.
     pub(crate) fn act(&mut self, action: Action) {
         let _inside = self.runtime.enter();
-        self.cockpit.app().act(action, self.clock.now());
+        self.desktop_app.app().act(action, self.clock.now());
     }
 
     /// Shows an exhibition, as the command line does.
     pub(crate) fn exhibit(&mut self, start: Exhibition) {
         let _inside = self.runtime.enter();
         let now = self.clock.now();
-        self.cockpit.app().enter_exhibit(start, now);
+        self.desktop_app.app().enter_exhibit(start, now);
     }
 
     /// Time goes by, and the program looks at what came.
@@ -118,22 +118,22 @@ impl Program {
     /// The window is about to close. True once it may go.
     pub(crate) fn close(&mut self) -> bool {
         let _inside = self.runtime.enter();
-        self.cockpit.app().close(self.clock.now())
+        self.desktop_app.app().close(self.clock.now())
     }
 
     /// The program looks at what came.
     pub(crate) fn logic(&mut self) {
         let _inside = self.runtime.enter();
         let now = self.clock.now();
-        self.cockpit.logic(now);
+        self.desktop_app.logic(now);
         // A window draws as often.
-        self.cockpit.app().drawn(now);
+        self.desktop_app.app().drawn(now);
     }
 
     /// Draws the window.
     pub(crate) fn ui(&mut self, ui: &mut egui::Ui) {
         let _inside = self.runtime.enter();
-        self.cockpit.ui(ui, self.clock.now());
+        self.desktop_app.ui(ui, self.clock.now());
     }
 }
 

@@ -202,8 +202,8 @@ impl Room {
             };
             (env, settings)
         });
-        program.cockpit = program
-            .cockpit
+        program.desktop_app = program
+            .desktop_app
             .with_snap(handscope::shell::headless::snap::snap);
         Self {
             program,
@@ -640,14 +640,14 @@ impl Bench {
 
     /// Opens a view as the program does it.
     pub(crate) fn show(&mut self, view: View) {
-        self.harness.state_mut().program.cockpit.show(view);
+        self.harness.state_mut().program.desktop_app.show(view);
         self.run(40);
     }
 
     /// The cross of the window is pressed: whether the person is asked first.
     pub(crate) fn wants_to_close(&mut self) -> bool {
-        let cockpit = &mut self.harness.state_mut().program.cockpit;
-        cockpit.app().asks_before_closing()
+        let desktop_app = &mut self.harness.state_mut().program.desktop_app;
+        desktop_app.app().asks_before_closing()
     }
 
     pub(crate) fn step(&mut self) {
@@ -662,11 +662,11 @@ impl Bench {
 
     /// The live hands, whatever is shown.
     pub(crate) fn live_state(&mut self) -> &State {
-        self.harness.state_mut().program.cockpit.app().live()
+        self.harness.state_mut().program.desktop_app.app().live()
     }
 
     pub(crate) fn view(&self) -> View {
-        self.harness.state().program.cockpit.view()
+        self.harness.state().program.desktop_app.view()
     }
 
     /// The name of what has the keyboard.
