@@ -178,9 +178,10 @@ impl Default for ShownPlots {
 
 impl From<BTreeSet<PlotKind>> for ShownPlots {
     fn from(kinds: BTreeSet<PlotKind>) -> Self {
-        match kinds.is_empty() {
-            true => Self::default(),
-            false => Self(kinds),
+        if kinds.is_empty() {
+            Self::default()
+        } else {
+            Self(kinds)
         }
     }
 }

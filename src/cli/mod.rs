@@ -111,10 +111,13 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => registers::run(&mut out, args.json),
-        Command::Hold(args) => match hold::is_needed() {
-            true => wait_for(hold::run(&args)),
-            false => Ok(()),
-        },
+        Command::Hold(args) => {
+            if hold::is_needed() {
+                wait_for(hold::run(&args))
+            } else {
+                Ok(())
+            }
+        }
         Command::Help(args) => help::run(&mut out, &args, Cli::command()),
     };
     // Output from before a failure is shown as well.

@@ -73,9 +73,10 @@ impl Out {
         object: &impl Serialize,
         lines: impl IntoIterator<Item = impl AsRef<str>>,
     ) -> anyhow::Result<()> {
-        match as_json {
-            true => self.object(object),
-            false => self.lines(lines),
+        if as_json {
+            self.object(object)
+        } else {
+            self.lines(lines)
         }
     }
 
@@ -95,9 +96,10 @@ fn checked(written: io::Result<()>) -> anyhow::Result<()> {
 
 /// How a command ends that has said everything already.
 pub(crate) fn end(is_done: bool) -> anyhow::Result<()> {
-    match is_done {
-        true => Ok(()),
-        false => Err(AlreadyReported.into()),
+    if is_done {
+        Ok(())
+    } else {
+        Err(AlreadyReported.into())
     }
 }
 

@@ -43,9 +43,10 @@ impl EndWished {
 
     /// Goes on until the end is wished.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
-        match self.0.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if self.0.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     }
 }
@@ -101,9 +102,10 @@ fn words(share: f64, since: Duration) -> Option<String> {
     }
     let left_s = since.as_secs_f64() * (1.0 - share) / share;
     let (minutes, seconds) = ((left_s / 60.0).floor(), left_s % 60.0);
-    Some(match minutes < 1.0 {
-        true => format!("{percent:.0} %, {seconds:.0} s left"),
-        false => format!("{percent:.0} %, {minutes:.0} min {seconds:.0} s left"),
+    Some(if minutes < 1.0 {
+        format!("{percent:.0} %, {seconds:.0} s left")
+    } else {
+        format!("{percent:.0} %, {minutes:.0} min {seconds:.0} s left")
     })
 }
 

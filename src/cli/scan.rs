@@ -97,11 +97,12 @@ impl ScanArgs {
     /// Several ranges together are bounded as one is.
     fn check_hosts(&self) -> anyhow::Result<()> {
         let hosts: usize = self.tcp.iter().map(Hosts::count).sum();
-        match hosts <= HOSTS_MAX {
-            true => Ok(()),
-            false => Err(WrongUsage::error(format!(
+        if hosts <= HOSTS_MAX {
+            Ok(())
+        } else {
+            Err(WrongUsage::error(format!(
                 "--tcp names {hosts} addresses; at most {HOSTS_MAX} can be checked"
-            ))),
+            )))
         }
     }
 }
@@ -202,9 +203,10 @@ impl ScanPrinter<'_> {
             ),
             Some(summary) => {
                 let (asked, took_s) = (summary.asked, summary.took.as_secs_f64());
-                let more = match self.args.all_ids {
-                    true => "",
-                    false => "; --all-ids asks all ids",
+                let more = if self.args.all_ids {
+                    ""
+                } else {
+                    "; --all-ids asks all ids"
                 };
                 say(&format!(
                     "no hand answered ({asked} questions, {took_s:.1} s): check power and cable{more}"

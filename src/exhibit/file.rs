@@ -168,9 +168,10 @@ impl<'a> ExhibitFile<'a> {
         };
         let mut parts = file.get_ref().components();
         let is_inside = parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        match is_inside {
-            true => Ok(named),
-            false => Err(named.outside()),
+        if is_inside {
+            Ok(named)
+        } else {
+            Err(named.outside())
         }
     }
 
@@ -278,9 +279,10 @@ impl ExhibitReader<'_> {
             let entry = entries.find(is_it)?;
             let (names, mut plan) = (library.named(entry)?, library.plan(entry)?);
             let again = std::mem::take(&mut plan.looped);
-            let zh = match names.zh.is_empty() {
-                true => names.text,
-                false => names.zh,
+            let zh = if names.zh.is_empty() {
+                names.text
+            } else {
+                names.zh
             };
             (!plan.cues.is_empty()).then(|| ExhibitPiece {
                 name: BothWords {
@@ -372,9 +374,6 @@ impl ExhibitReader<'_> {
 /// The start of a text, on one line.
 fn quoted(text: &str) -> String {
     let start: String = text.chars().take(QUOTED_CHARS).collect();
-    let more = match start.len() < text.len() {
-        true => "…",
-        false => "",
-    };
+    let more = if start.len() < text.len() { "…" } else { "" };
     format!("\"{}{more}\"", start.escape_debug())
 }

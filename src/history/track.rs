@@ -347,9 +347,10 @@ impl HistoryTrack {
             return;
         };
         let rises = column.get(rows.start) <= column.get(last);
-        let (one, two) = match rises {
-            true => (extremes.min, extremes.max),
-            false => (extremes.max, extremes.min),
+        let (one, two) = if rises {
+            (extremes.min, extremes.max)
+        } else {
+            (extremes.max, extremes.min)
         };
         let middle = rows.start.midpoint(rows.end).min(last);
         grid.point(self.time_s(rows.start).unwrap_or_default(), one);

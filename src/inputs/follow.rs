@@ -166,9 +166,10 @@ impl Follow {
         let is_silent = age >= HOLDS_AFTER;
         let is_let_go = [offer.held, seen.held].contains(&Some(false));
         if is_let_go || is_silent && offer.held.is_some() {
-            let phase = match is_silent {
-                true => FollowPhase::Silent,
-                false => FollowPhase::Released,
+            let phase = if is_silent {
+                FollowPhase::Silent
+            } else {
+                FollowPhase::Released
             };
             return self.halt(phase, seen.state);
         }
@@ -192,9 +193,10 @@ impl Follow {
         let is_frozen = offer.mark.is_some()
             && now.since(self.same_since) >= FROZEN_AFTER
             && is_away_from_ends(&offer.aims);
-        self.phase = match is_frozen {
-            true => FollowPhase::Frozen,
-            false => FollowPhase::Following,
+        self.phase = if is_frozen {
+            FollowPhase::Frozen
+        } else {
+            FollowPhase::Following
         };
         self.step(&offer.aims, &seen.pose, now)
     }

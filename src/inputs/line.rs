@@ -155,9 +155,10 @@ fn malformed(line: &[u8], unread: &serde_json::Error) -> LineFault {
     let words: [&[u8]; 2] = [b"NaN", b"Infinity"];
     let has = |word: &&[u8]| line.windows(word.len()).any(|part| part == *word);
     let is_too_large = unread.to_string().starts_with("number out of range");
-    match is_too_large || words.iter().any(has) {
-        true => LineFault::NotFinite,
-        false => LineFault::Malformed,
+    if is_too_large || words.iter().any(has) {
+        LineFault::NotFinite
+    } else {
+        LineFault::Malformed
     }
 }
 

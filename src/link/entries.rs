@@ -98,9 +98,10 @@ impl LinkEntries {
         let now = self.clock.now();
         let status = self.observed.status.borrow().clone();
         let mut text = json(&status);
-        match text == self.status {
-            true => text.clear(),
-            false => self.status.clone_from(&text),
+        if text == self.status {
+            text.clear()
+        } else {
+            self.status.clone_from(&text)
         }
         let is_due = self
             .figures_at

@@ -89,9 +89,10 @@ impl RecentReads {
     async fn ask(&self, span: Span) -> Result<(), RequestError> {
         let [parts, others] = &self.turns;
         let is_part = ReadPart::ALL.into_iter().any(|part| part.span() == span);
-        let (turn, pause_min) = match is_part {
-            true => (parts, Duration::ZERO),
-            false => (others, PAUSE_MIN),
+        let (turn, pause_min) = if is_part {
+            (parts, Duration::ZERO)
+        } else {
+            (others, PAUSE_MIN)
         };
         let since = self.clock.now();
         let mut turn = turn.lock().await;

@@ -239,9 +239,12 @@ impl Backups {
     /// # Errors
     /// What is wrong with the files; a missing one is no error.
     pub fn known(&self) -> Result<Known, FileError> {
-        let optional = |path: PathBuf| match path.exists() {
-            true => file::load(&path).map(Some),
-            false => Ok(None),
+        let optional = |path: PathBuf| {
+            if path.exists() {
+                file::load(&path).map(Some)
+            } else {
+                Ok(None)
+            }
         };
         let attempt = optional(self.attempt_path())?;
         Ok(Known {

@@ -233,9 +233,10 @@ impl PoseReader<'_> {
             return Ok(String::new());
         };
         let text = name.get_ref();
-        match text.is_empty() || clean(text) != *text {
-            true => Err(self.0.blame(name.span(), "name_zh", bad_name(text))),
-            false => Ok(text.clone()),
+        if text.is_empty() || clean(text) != *text {
+            Err(self.0.blame(name.span(), "name_zh", bad_name(text)))
+        } else {
+            Ok(text.clone())
         }
     }
 

@@ -32,9 +32,10 @@ impl TouchForce {
 impl TryFrom<f32> for TouchForce {
     type Error = BadTouchForce;
     fn try_from(got: f32) -> Result<Self, BadTouchForce> {
-        match (0.1..=20.0).contains(&got) {
-            true => Ok(Self(got)),
-            false => Err(BadTouchForce { got }),
+        if (0.1..=20.0).contains(&got) {
+            Ok(Self(got))
+        } else {
+            Err(BadTouchForce { got })
         }
     }
 }

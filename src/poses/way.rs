@@ -21,9 +21,10 @@ pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     let ends = |dof: Dof| {
         let from = from[dof].unwrap_or(0);
         let to = to[dof].map_or(from, Angle::get);
-        match from.abs_diff(to) <= Angle::ARRIVED_WITHIN {
-            true => (to, to),
-            false => (from, to),
+        if from.abs_diff(to) <= Angle::ARRIVED_WITHIN {
+            (to, to)
+        } else {
+            (from, to)
         }
     };
     let [index, bend, rotate] = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate].map(ends);

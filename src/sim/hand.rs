@@ -407,9 +407,10 @@ impl SimHand {
 
     /// Whether a recorded hand answers.
     pub const fn put_silent(&mut self, silent: bool) {
-        match silent {
-            true => self.supply.switch_off(),
-            false => self.supply.switch_on(),
+        if silent {
+            self.supply.switch_off()
+        } else {
+            self.supply.switch_on()
         }
     }
 

@@ -156,9 +156,10 @@ async fn undo<H: Hand>(hand: &H, rows: &mut [RowOutcome]) -> bool {
         return true;
     }
     let live = read::rows(hand, |_, _| ()).await.params;
-    let plan = match live.is_empty() {
-        true => WritePlan::default(),
-        false => changes::plan_writes(&wanted, &live),
+    let plan = if live.is_empty() {
+        WritePlan::default()
+    } else {
+        changes::plan_writes(&wanted, &live)
     };
     let (put_back, _broken_off) = write(hand, &plan, &live).await;
     for row in rows.iter_mut().filter(|row| wanted.get(row.id).is_some()) {

@@ -99,9 +99,10 @@ impl Consent {
                 dangers.all(|danger| agreed.contains(danger)) && risks.places.is_empty()
             }
         };
-        match is_meant {
-            true => Ok(()),
-            false => Err(TaskError::NotMeant(risks.clone())),
+        if is_meant {
+            Ok(())
+        } else {
+            Err(TaskError::NotMeant(risks.clone()))
         }
     }
 }

@@ -250,9 +250,10 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
             self.adopt(WhichPlace::New, WhichPlace::Old).await;
         }
         (self.tell)(PlaceStep::Offering(at));
-        match decisions.saves.await {
-            true => self.save(at, params).await,
-            false => PlaceEnd::Kept { at, saved: None },
+        if decisions.saves.await {
+            self.save(at, params).await
+        } else {
+            PlaceEnd::Kept { at, saved: None }
         }
     }
 

@@ -124,11 +124,12 @@ impl LinkView {
     /// Why this arming is over, if it is.
     pub(crate) fn arming_ended(&self, epoch: ArmEpoch) -> Option<Abort> {
         let by_other = self.armed.is_none() && self.disarmed == Some(Disarmed::OtherController);
-        (self.armed != Some(epoch)).then_some(match by_other {
-            true => Abort::OtherController {
+        (self.armed != Some(epoch)).then_some(if by_other {
+            Abort::OtherController {
                 wrote: self.foreign_setpoint,
-            },
-            false => Abort::Disarmed,
+            }
+        } else {
+            Abort::Disarmed
         })
     }
 }

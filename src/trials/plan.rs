@@ -308,9 +308,10 @@ mod seconds {
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Duration, D::Error> {
         let seconds = f64::deserialize(from)?;
         let time = Duration::try_from_secs_f64(seconds).map_err(D::Error::custom)?;
-        match time <= WAIT_MAX {
-            true => Ok(time),
-            false => Err(D::Error::custom(format!("{seconds} s is too long"))),
+        if time <= WAIT_MAX {
+            Ok(time)
+        } else {
+            Err(D::Error::custom(format!("{seconds} s is too long")))
         }
     }
 }
@@ -458,15 +459,16 @@ fn within(
     range: RangeInclusive<f64>,
 ) -> Result<(), PlanError> {
     let (least, most) = range.into_inner();
-    match (least..=most).contains(&got) {
-        true => Ok(()),
-        false => Err(PlanError::Range {
+    if (least..=most).contains(&got) {
+        Ok(())
+    } else {
+        Err(PlanError::Range {
             field,
             what,
             got,
             least,
             most,
-        }),
+        })
     }
 }
 

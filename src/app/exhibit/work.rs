@@ -101,11 +101,12 @@ impl ExhibitWork {
             state.settings.language = exhibit.language;
         }
         if let Some(mut report) = self.left.take() {
-            match report.flush(now) {
-                true => report
+            if report.flush(now) {
+                report
                     .troubles()
-                    .for_each(|told| state.notices.push(now, told.clone())),
-                false => self.left = Some(report),
+                    .for_each(|told| state.notices.push(now, told.clone()))
+            } else {
+                self.left = Some(report)
             }
         }
     }
@@ -120,8 +121,9 @@ impl ExhibitWork {
 
 /// Stops a hand that may move. One that rests is not armed later by what was asked before.
 fn stop_or_disarm(hand: &mut HandState, notices: &mut Notices) {
-    match hand.may_move() {
-        true => hand.stop(notices),
-        false => hand.disarm(),
+    if hand.may_move() {
+        hand.stop(notices)
+    } else {
+        hand.disarm()
     }
 }

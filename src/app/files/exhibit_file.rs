@@ -98,17 +98,19 @@ fn is_private(_path: &Path) -> Result<(), FileError> {
 
 /// A file that is named lies below the folder of the one that names it, also where links lead.
 fn stays_inside(folder: &Path, named: &NamedFile<'_>) -> Result<(), FileError> {
-    let folder = match folder.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => folder,
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
     };
     // What is not there is told when it is read.
     let (Ok(folder), Ok(file)) = (folder.canonicalize(), named.path.canonicalize()) else {
         return Ok(());
     };
-    match file.starts_with(&folder) {
-        true => Ok(()),
-        false => Err(named.outside()),
+    if file.starts_with(&folder) {
+        Ok(())
+    } else {
+        Err(named.outside())
     }
 }
 

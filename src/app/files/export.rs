@@ -108,9 +108,10 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
         let work = move || {
             let bytes = content.bytes()?;
             // Where a person chose the place, who can read it is as the system has it for new files.
-            let written = match is_chosen {
-                true => std::fs::write(&place, bytes),
-                false => write_private(&place, &bytes),
+            let written = if is_chosen {
+                std::fs::write(&place, bytes)
+            } else {
+                write_private(&place, &bytes)
             };
             written.map(|()| content.entries())
         };

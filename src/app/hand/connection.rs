@@ -83,13 +83,15 @@ impl HandState {
                 ..LinkStatus::default()
             },
             // An id that was changed under a card makes no other hand.
-            history: match is_other && before.procedure.is_none() {
-                true => History::new(),
-                false => before.history,
+            history: if is_other && before.procedure.is_none() {
+                History::new()
+            } else {
+                before.history
             },
-            measured: match is_other {
-                true => endpoint.clone(),
-                false => before.measured,
+            measured: if is_other {
+                endpoint.clone()
+            } else {
+                before.measured
             },
             joints: before.joints,
             recorder: before.recorder,

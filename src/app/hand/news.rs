@@ -121,9 +121,10 @@ impl HandState {
         {
             notices.push(
                 self.now,
-                match self.was_live {
-                    true => NoticeKind::LinkLost(trouble),
-                    false => NoticeKind::NoLink(trouble),
+                if self.was_live {
+                    NoticeKind::LinkLost(trouble)
+                } else {
+                    NoticeKind::NoLink(trouble)
                 },
             );
         }

@@ -28,9 +28,10 @@ impl HandState {
             Play::Step(id) => {
                 let entry = EntryId::Sequence(id);
                 let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
-                match self.sequence.as_ref().is_some_and(waits) {
-                    true => command(PlayCommand::Resume(PlayMode::OneStep)),
-                    false => self.start(poses.plan(entry), PlayMode::OneStep, env),
+                if self.sequence.as_ref().is_some_and(waits) {
+                    command(PlayCommand::Resume(PlayMode::OneStep))
+                } else {
+                    self.start(poses.plan(entry), PlayMode::OneStep, env)
                 }
             }
             Play::Pause => command(PlayCommand::Pause),

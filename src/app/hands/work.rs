@@ -101,9 +101,12 @@ impl State {
     pub(crate) fn stop_all(&mut self) {
         let any = self.hands.iter().any(|hand| hand.endpoint.is_some());
         let shown = self.hands.shown().label.slot;
-        let stops = |hand: &HandState| match any {
-            true => hand.endpoint.is_some(),
-            false => hand.label.slot == shown,
+        let stops = |hand: &HandState| {
+            if any {
+                hand.endpoint.is_some()
+            } else {
+                hand.label.slot == shown
+            }
         };
         let slots: Vec<SlotId> = self
             .hands

@@ -118,9 +118,10 @@ impl HandState {
         };
         let config = GatewayConfig {
             address,
-            writers: match settings.first_client_moves {
-                true => Writers::First,
-                false => Writers::Granted,
+            writers: if settings.first_client_moves {
+                Writers::First
+            } else {
+                Writers::Granted
             },
             silence: SILENCE,
         };

@@ -47,9 +47,10 @@ impl HandState {
 
     /// Why the rows cannot be read now.
     pub fn read_refusal(&self) -> Option<ParamRefusal> {
-        match self.link.state.is_live() {
-            false => Some(ParamRefusal::NoHand),
-            true => self.params.is_busy().then_some(ParamRefusal::Busy),
+        if self.link.state.is_live() {
+            self.params.is_busy().then_some(ParamRefusal::Busy)
+        } else {
+            Some(ParamRefusal::NoHand)
         }
     }
 
@@ -87,9 +88,10 @@ impl HandState {
         };
         let before_loss = self.params.lost_at.is_some_and(|lost| at <= lost);
         let old = self.now.since(at) > OLD_AFTER;
-        match self.link.state.is_live() && !before_loss && !old {
-            true => Freshness::Live,
-            false => Freshness::Stale,
+        if self.link.state.is_live() && !before_loss && !old {
+            Freshness::Live
+        } else {
+            Freshness::Stale
         }
     }
 }

@@ -191,9 +191,10 @@ impl HandState {
             && let Some(agreed) = self.params.save_next.take()
             && self.params.question.is_none()
         {
-            match self.params.is_applied() && self.save_refusal().is_none() {
-                true => self.save(agreed, env),
-                false => self.params.save = Some((SaveEnd::NotApplied, now)),
+            if self.params.is_applied() && self.save_refusal().is_none() {
+                self.save(agreed, env)
+            } else {
+                self.params.save = Some((SaveEnd::NotApplied, now))
             }
         }
         if let Some(read) = BackgroundJob::take_from(&mut self.params.listing) {

@@ -38,9 +38,10 @@ impl State {
 
     pub(super) fn hide_shipped(&mut self, name: String, hide: bool) {
         let hidden = &mut self.settings.hidden_poses;
-        match hide {
-            true => hidden.insert(name),
-            false => hidden.remove(&name),
+        if hide {
+            hidden.insert(name)
+        } else {
+            hidden.remove(&name)
         };
     }
 

@@ -123,9 +123,10 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     };
     let (mut files, mut folders) = (Vec::new(), Vec::new());
     for path in entries(folder) {
-        match path.is_dir() {
-            true => folders.push(path),
-            false => files.push(path),
+        if path.is_dir() {
+            folders.push(path)
+        } else {
+            files.push(path)
         }
     }
     folders.sort();

@@ -126,9 +126,10 @@ fn reading(
     file.entries(Stretch { from, to, wire }, |entry| match &entry {
         Entry::Heard(Record::Reading { fresh, .. }) if fresh.contains(Group::Angle) => {
             found = Some(entry.at());
-            match first {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
+            if first {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         }
         _ => ControlFlow::Continue(()),
@@ -386,9 +387,10 @@ impl SessionPlayer {
             SessionAction::Loop(stretch) => self.set_loop(*stretch),
             SessionAction::Step(forward) => {
                 let at = self.at();
-                self.wanted = Some(match forward {
-                    true => SeekTarget::After(at),
-                    false => SeekTarget::Before(at),
+                self.wanted = Some(if forward {
+                    SeekTarget::After(at)
+                } else {
+                    SeekTarget::Before(at)
                 });
                 if let Some(line) = self.line() {
                     line.runs = false;

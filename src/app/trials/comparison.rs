@@ -135,9 +135,10 @@ impl Comparison {
             .collect();
         let own = trials.session(focus);
         let differences = differences(&sessions);
-        let pooled: Vec<&TrialSession> = match differences.is_empty() {
-            true => sessions.clone(),
-            false => own.into_iter().collect(),
+        let pooled: Vec<&TrialSession> = if differences.is_empty() {
+            sessions.clone()
+        } else {
+            own.into_iter().collect()
         };
         let mut settings: Vec<TrialSetting> = summaries(&sessions).map(|own| own.setting).collect();
         settings.sort_unstable();
@@ -224,9 +225,10 @@ impl Comparison {
         let drawn = |(is_strong, key, line): &(bool, RowKey, &JointLines)| ComparedLine {
             key: *key,
             contact_s: line.contact_s,
-            points: match is_strong {
-                true => line.points(quantity).to_vec(),
-                false => decimated(line.points(quantity), most),
+            points: if is_strong {
+                line.points(quantity).to_vec()
+            } else {
+                decimated(line.points(quantity), most)
             },
         };
         ComparedLines {

@@ -63,9 +63,10 @@ pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<Fi
 /// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
 pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
     open_file(typed, SESSION_FILE, env, |path| {
-        let folder = match path.is_dir() {
-            true => path,
-            false => path.parent().unwrap_or(Path::new(".")),
+        let folder = if path.is_dir() {
+            path
+        } else {
+            path.parent().unwrap_or(Path::new("."))
         };
         let session = Box::new(read_session(folder)?);
         Ok(FilesDone::Opened(path.to_owned(), session))

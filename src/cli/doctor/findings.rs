@@ -163,9 +163,10 @@ fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Finding>) {
         "give this computer an address in the hand's network, for example 'sudo ip addr add {} dev {interface}'",
         neighbour(way)
     );
-    match is_answered {
-        true => found.push(hint(what, "")),
-        false => found.push(wrong(what, advice)),
+    if is_answered {
+        found.push(hint(what, ""))
+    } else {
+        found.push(wrong(what, advice))
     }
 }
 

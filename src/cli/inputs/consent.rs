@@ -39,9 +39,10 @@ impl From<io::Error> for NoConsent {
 pub(crate) async fn forget_earlier(from: Option<ConsentFrom>) -> Result<(), NoConsent> {
     let forgotten = spawn_blocking(move || {
         let is_answered_here = from.is_some() || io::stdin().is_terminal() && input::is_ours();
-        match is_answered_here {
-            true => input::forget(),
-            false => Err(NoConsent::NoTerminal),
+        if is_answered_here {
+            input::forget()
+        } else {
+            Err(NoConsent::NoTerminal)
         }
     });
     // It ends early only with the program.

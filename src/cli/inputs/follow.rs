@@ -139,9 +139,10 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         Err(ended) = at.go_on() => Err(ended),
     };
     drop(at);
-    let done = match args.arm {
-        true => leave(ended, session::stopped(&link, &mut link.records()).await),
-        false => ended,
+    let done = if args.arm {
+        leave(ended, session::stopped(&link, &mut link.records()).await)
+    } else {
+        ended
     };
     drop((source, link));
     recording.end().await;

@@ -38,9 +38,10 @@ pub(crate) struct InputsArgs {
 
 /// Lists the gamepads, or prints what one does until a person ends it.
 pub(crate) async fn run(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
-    match args.watch {
-        true => watch(out, args).await,
-        false => list(out, args),
+    if args.watch {
+        watch(out, args).await
+    } else {
+        list(out, args)
     }
 }
 
@@ -140,9 +141,10 @@ impl PadPrinter {
         }
         let moved = offer.and_then(|offer| self.moved(report.at, &offer, event));
         match (event, &report.news) {
-            (Some(PadEvent::Found), PadNews::Found { facts, .. }) => Some(match self.as_json {
-                true => json!({ "pad": pad_json(facts) }).to_string(),
-                false => pad_text(facts),
+            (Some(PadEvent::Found), PadNews::Found { facts, .. }) => Some(if self.as_json {
+                json!({ "pad": pad_json(facts) }).to_string()
+            } else {
+                pad_text(facts)
             }),
             (Some(PadEvent::Gone), _) => Some(self.told("gone", "the gamepad is gone")),
             (Some(PadEvent::Lost), _) => Some(self.told(
@@ -154,9 +156,10 @@ impl PadPrinter {
     }
 
     fn told(&self, key: &str, words: &str) -> String {
-        match self.as_json {
-            true => json!({ key: words }).to_string(),
-            false => words.into(),
+        if self.as_json {
+            json!({ key: words }).to_string()
+        } else {
+            words.into()
         }
     }
 
@@ -180,9 +183,10 @@ impl PadPrinter {
             });
             return None;
         }
-        Some(match self.as_json {
-            true => move_json(at, control, &now, is_stop).to_string(),
-            false => self.move_text(control, &now, is_stop),
+        Some(if self.as_json {
+            move_json(at, control, &now, is_stop).to_string()
+        } else {
+            self.move_text(control, &now, is_stop)
         })
     }
 

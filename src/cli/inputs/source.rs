@@ -77,9 +77,10 @@ impl SourceArgs {
     pub(super) fn wrong(&self, hand: &Endpoint) -> Option<&'static str> {
         // Each built-in hand is one of its own.
         let is_built_in = matches!(hand, Endpoint::Sim { .. });
-        match self.mirror.as_ref() == Some(hand) && !is_built_in {
-            true => Some("a hand cannot follow itself; name another one with --mirror"),
-            false => self.dds.wrong(),
+        if self.mirror.as_ref() == Some(hand) && !is_built_in {
+            Some("a hand cannot follow itself; name another one with --mirror")
+        } else {
+            self.dds.wrong()
         }
     }
 }
@@ -120,9 +121,10 @@ impl FollowSource {
             side: args.side,
             ..args.dds.card(hand)
         };
-        let can = match allowed.moves {
-            true => "read this hand and move it",
-            false => "read this hand and send to it",
+        let can = if allowed.moves {
+            "read this hand and move it"
+        } else {
+            "read this hand and send to it"
         };
         if let Some(out) = args.dds.open(link, card.clone(), can)? {
             return Self::on_dds((out, card), clock, allowed).await;
@@ -152,9 +154,10 @@ impl FollowSource {
         let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
         let source = StreamSource::open(config, &Handle::current())
             .map_err(|error| listen::refused(at, &error))?;
-        let can = match allowed.moves {
-            true => "move this hand",
-            false => "send to this hand",
+        let can = if allowed.moves {
+            "move this hand"
+        } else {
+            "send to this hand"
         };
         listen::warn_if_reachable(source.local(), can);
         Ok(Self::Stream(place, source))
@@ -338,12 +341,13 @@ fn followed(other: &FleetCard) -> String {
 
 /// Where gamepads come and go; they are waited for there, but not for the folder.
 pub(super) fn is_folder(devices: &Path) -> anyhow::Result<()> {
-    match devices.is_dir() {
-        true => Ok(()),
-        false => bail!(
+    if devices.is_dir() {
+        Ok(())
+    } else {
+        bail!(
             "there is no folder {} to find gamepads in; without --devices it is {FOLDER}",
             devices.display()
-        ),
+        )
     }
 }
 

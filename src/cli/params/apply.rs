@@ -23,9 +23,10 @@ pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     note.iter().for_each(|note| say(note));
     let wanted = args.chosen(&file.params);
     if wanted.is_empty() {
-        let what = match args.only.is_empty() {
-            true => "no speeds or forces; name other rows with --only",
-            false => "none of the rows that --only names",
+        let what = if args.only.is_empty() {
+            "no speeds or forces; name other rows with --only"
+        } else {
+            "none of the rows that --only names"
         };
         let path = args.file.display();
         bail!("{path} holds {what}; nothing was written");
@@ -52,9 +53,10 @@ async fn rows(
         wanted,
         consent: args.consent(),
         backups: Some(args.common.backups()?),
-        otherwise: match args.partial {
-            true => Otherwise::Stay,
-            false => Otherwise::Undo,
+        otherwise: if args.partial {
+            Otherwise::Stay
+        } else {
+            Otherwise::Undo
         },
     };
     let mut patience = Patience::begin()?;

@@ -119,18 +119,22 @@ pub(crate) struct ApplyArgs {
 impl ApplyArgs {
     /// What --yes agrees to.
     pub(crate) const fn consent(&self) -> Consent {
-        match self.yes {
-            true => Consent::Given,
-            false => Consent::To(Vec::new()),
+        if self.yes {
+            Consent::Given
+        } else {
+            Consent::To(Vec::new())
         }
     }
 
     /// The rows of a file that are to be written: those that --only names, else all but those that say where the hand is.
     pub(crate) fn chosen(&self, params: &Params) -> Params {
         let is_named = |id| self.only.iter().any(|rows| rows.0.contains(&id));
-        params.only(|id| match self.only.is_empty() {
-            true => !id.is_place(),
-            false => is_named(id),
+        params.only(|id| {
+            if self.only.is_empty() {
+                !id.is_place()
+            } else {
+                is_named(id)
+            }
         })
     }
 }
@@ -147,11 +151,12 @@ pub(crate) struct FlashArgs {
 impl FlashArgs {
     /// Refuses without --yes; `what` says what it would do.
     pub(crate) fn consented(&self, what: &str) -> anyhow::Result<()> {
-        match self.yes {
-            true => Ok(()),
-            false => Err(WrongUsage::error(format!(
+        if self.yes {
+            Ok(())
+        } else {
+            Err(WrongUsage::error(format!(
                 "{what}: add --yes to confirm; nothing was written"
-            ))),
+            )))
         }
     }
 }

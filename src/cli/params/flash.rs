@@ -117,9 +117,10 @@ fn tell_reset(
     else {
         return Ok(false);
     };
-    let result = match report.is_acknowledged {
-        true => "acknowledged",
-        false => "unanswered",
+    let result = if report.is_acknowledged {
+        "acknowledged"
+    } else {
+        "unanswered"
     };
     let place = places.endpoint(*at);
     let names: Vec<String> = left.iter().map(|id| id.name()).collect();

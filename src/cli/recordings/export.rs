@@ -158,9 +158,10 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     }
     let to_stdout = is_standard(&args.out);
     // What goes to standard output leaves nothing behind, and its reader may not read on.
-    let wished = match to_stdout {
-        true => EndWished::never(),
-        false => EndWished::listen()?,
+    let wished = if to_stdout {
+        EndWished::never()
+    } else {
+        EndWished::listen()?
     };
     let work = Work {
         files: &files,
@@ -287,9 +288,10 @@ impl Work<'_> {
         let folder = Folder::new(out)?;
         let mut places: Vec<Destination> = Vec::new();
         for name in names {
-            let stem = match is_standard(name) {
-                true => "stdin".into(),
-                false => name.file_stem().unwrap_or_default().to_string_lossy(),
+            let stem = if is_standard(name) {
+                "stdin".into()
+            } else {
+                name.file_stem().unwrap_or_default().to_string_lossy()
             };
             let ending = self.form.ending().map(|ending| format!(".{ending}"));
             let ending = ending.unwrap_or_default();
@@ -361,12 +363,11 @@ impl Done {
             }
             warn_read_back(set);
         }
-        match is_standard(&args.out) {
-            true => {
-                say(&format!("{} {}", all.rows, form.rows()));
-                Ok(())
-            }
-            false => out.result(args.json, &object, [line]),
+        if is_standard(&args.out) {
+            say(&format!("{} {}", all.rows, form.rows()));
+            Ok(())
+        } else {
+            out.result(args.json, &object, [line])
         }
     }
 }

@@ -57,20 +57,23 @@ pub(crate) fn run(out: &mut Out, args: &ImportArgs) -> anyhow::Result<()> {
 }
 
 fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
-    let name = match is_standard(file) {
-        true => "standard input".into(),
-        false => file.display().to_string(),
+    let name = if is_standard(file) {
+        "standard input".into()
+    } else {
+        file.display().to_string()
     };
     let beside = || file.with_extension("mcap");
     let path = args.out.clone().unwrap_or_else(beside);
-    let to = match is_standard(&path) {
-        true => Destination::Stdout,
-        false => Destination::Path(path.clone()),
+    let to = if is_standard(&path) {
+        Destination::Stdout
+    } else {
+        Destination::Path(path.clone())
     };
-    let from = match is_standard(file) {
-        true => stdin_as_file()?,
-        false => File::open(file)
-            .map_err(|error| anyhow!("cannot import {name}: {error}; check the path"))?,
+    let from = if is_standard(file) {
+        stdin_as_file()?
+    } else {
+        File::open(file)
+            .map_err(|error| anyhow!("cannot import {name}: {error}; check the path"))?
     };
     let imported = values(from, &to).map_err(|error| match error {
         ImportError::Output(error) => told(error),

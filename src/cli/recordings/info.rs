@@ -85,9 +85,10 @@ impl Told<'_> {
 
     /// A count, and how many of them can be read if not all.
     fn count(written: u64, read: u64) -> String {
-        match written > read {
-            true => format!("{written}, of which {read} can be read"),
-            false => written.to_string(),
+        if written > read {
+            format!("{written}, of which {read} can be read")
+        } else {
+            written.to_string()
         }
     }
 
@@ -146,9 +147,10 @@ impl Told<'_> {
             "" => "not known".to_owned(),
             text => text.to_owned(),
         };
-        let simulated = match opening.is_simulated() == Some(true) {
-            true => " (simulated)",
-            false => "",
+        let simulated = if opening.is_simulated() == Some(true) {
+            " (simulated)"
+        } else {
+            ""
         };
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
         let megabytes = self.bytes as f64 / 1e6;

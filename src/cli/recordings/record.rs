@@ -57,9 +57,10 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     let moments = (clock.now(), calendar::since_1970());
     let opening = Opening::begin(args.hand.to_string(), moments, Side::Right);
     let path = path(args, &opening)?;
-    let rates = match args.full_rate {
-        true => PollRates::FULL,
-        false => PollRates::default(),
+    let rates = if args.full_rate {
+        PollRates::FULL
+    } else {
+        PollRates::default()
     };
     let link = session::open(&args.hand, rates, clock);
     let observed = link.observe();

@@ -65,12 +65,13 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 
 /// Opens a file, or what comes on standard input.
 pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<SessionFile> {
-    match is_standard(path) {
-        true => opened(
+    if is_standard(path) {
+        opened(
             SessionFile::of(stdin_as_file()?, path),
             Path::new("standard input"),
-        ),
-        false => open(path),
+        )
+    } else {
+        open(path)
     }
 }
 

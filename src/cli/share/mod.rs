@@ -64,9 +64,10 @@ pub(crate) struct ShareArgs {
 /// Shares the hand until a person ends it.
 pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
-    let rates = match args.full_rate {
-        true => PollRates::FULL,
-        false => PollRates::default(),
+    let rates = if args.full_rate {
+        PollRates::FULL
+    } else {
+        PollRates::default()
     };
     let link = session::open(&args.hand, rates, Clock::start());
     tokio::select! {
@@ -135,17 +136,19 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
 fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Result<Gateway> {
     let config = GatewayConfig {
         address,
-        writers: match args.writers {
-            true => Writers::First,
-            false => Writers::Granted,
+        writers: if args.writers {
+            Writers::First
+        } else {
+            Writers::Granted
         },
         silence: args.silence.unwrap_or(SILENCE),
     };
     let gateway = Gateway::open(link.clone(), config, &Handle::current())
         .map_err(|error| listen::refused(address, &error))?;
-    let can = match args.writers {
-        true => "move this hand",
-        false => "read this hand",
+    let can = if args.writers {
+        "move this hand"
+    } else {
+        "read this hand"
     };
     listen::warn_if_reachable(gateway.address(), can);
     Ok(gateway)

@@ -155,9 +155,10 @@ fn joint_words(joint: &JointMetrics) -> String {
         Some(format!("{word} {} {}", column.text(joint), column.unit))
     });
     let values: Vec<String> = values.collect();
-    let end = match joint.dead_drive {
-        true => "dead drive: it never moved",
-        false => joint.end_status.as_deref().unwrap_or("-"),
+    let end = if joint.dead_drive {
+        "dead drive: it never moved"
+    } else {
+        joint.end_status.as_deref().unwrap_or("-")
     };
     format!("{} {}, {end}", joint.dof.name(), values.join(", "))
 }

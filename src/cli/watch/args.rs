@@ -32,9 +32,10 @@ pub(crate) struct WatchArgs {
 impl WatchArgs {
     /// How often the link reads.
     pub(crate) fn rates(&self) -> PollRates {
-        match self.full_rate {
-            true => PollRates::FULL,
-            false => PollRates::default(),
+        if self.full_rate {
+            PollRates::FULL
+        } else {
+            PollRates::default()
         }
     }
 

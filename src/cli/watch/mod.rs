@@ -200,16 +200,15 @@ impl<'a> Watch<'a> {
         stats.dropped_events = self.records.lost();
         // A sample is told before it is counted.
         stats.state_reads = stats.state_reads.max(self.taken);
-        match self.args.json {
-            true => {
-                let mut line = stats_json(&stats, elapsed);
-                let fields = line.get_mut("stats").and_then(Value::as_object_mut);
-                if let (Some(datagrams), Some(fields)) = (&self.datagrams, fields) {
-                    fields.insert("udp".into(), datagrams.figures());
-                }
-                self.out.object(&line)?;
+        if self.args.json {
+            let mut line = stats_json(&stats, elapsed);
+            let fields = line.get_mut("stats").and_then(Value::as_object_mut);
+            if let (Some(datagrams), Some(fields)) = (&self.datagrams, fields) {
+                fields.insert("udp".into(), datagrams.figures());
             }
-            false => self.out.line(&stats_text(&stats, elapsed))?,
+            self.out.object(&line)?;
+        } else {
+            self.out.line(&stats_text(&stats, elapsed))?
         }
         self.out.flush()
     }

@@ -50,9 +50,10 @@ impl FramePrinter {
         let open = open.filter(|at| is_open(fresh.get(*at..).unwrap_or_default(), now));
         fresh.truncate(open.unwrap_or(fresh.len()));
         for frame in &fresh {
-            out.line(&match self.json {
-                true => frame.json_line(),
-                false => frame.text_line(),
+            out.line(&if self.json {
+                frame.json_line()
+            } else {
+                frame.text_line()
             })?;
         }
         self.printed = fresh.last().map_or(self.printed, |frame| frame.number);

@@ -34,9 +34,10 @@ impl DayPage<'_> {
 
     fn hands(&self) -> String {
         let hands: Vec<&str> = self.report.hands.iter().map(String::as_str).collect();
-        match hands.is_empty() {
-            true => "-".into(),
-            false => hands.join(", "),
+        if hands.is_empty() {
+            "-".into()
+        } else {
+            hands.join(", ")
         }
     }
 

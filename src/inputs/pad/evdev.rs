@@ -111,9 +111,10 @@ fn facts(path: &Path, device: &RawDevice) -> io::Result<PadFacts> {
         vendor: id.vendor(),
         product: id.product(),
         axes: device.get_absinfo()?.map(range).collect(),
-        face: match is_by_letter {
-            true => FaceOrder::ByLetter,
-            false => FaceOrder::ByPlace,
+        face: if is_by_letter {
+            FaceOrder::ByLetter
+        } else {
+            FaceOrder::ByPlace
         },
     })
 }

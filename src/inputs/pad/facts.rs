@@ -60,9 +60,10 @@ impl PadFacts {
     pub(crate) fn uses(&self) -> BTreeMap<u16, (AxisUse, AxisRange)> {
         let has = |code: u16| self.axes.contains_key(&code);
         let stick_is_rx = has(axis::RX) && has(axis::RY);
-        let right = match stick_is_rx {
-            true => [axis::RX, axis::RY],
-            false => [axis::Z, axis::RZ],
+        let right = if stick_is_rx {
+            [axis::RX, axis::RY]
+        } else {
+            [axis::Z, axis::RZ]
         };
         let candidates = [
             [axis::BRAKE, axis::GAS],

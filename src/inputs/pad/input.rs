@@ -157,9 +157,10 @@ impl PadInput {
                 self.read_anew(now);
                 let stop = self.map.doing(&PadAction::Stop).next();
                 let is_stop = stop.is_some_and(|stop| self.state.is_held(stop));
-                Some(match is_stop {
-                    true => PadEvent::Stop,
-                    false => PadEvent::Lost,
+                Some(if is_stop {
+                    PadEvent::Stop
+                } else {
+                    PadEvent::Lost
                 })
             }
             PadNews::Moved { pad, event } if of_ours(pad) => {
@@ -190,12 +191,11 @@ impl PadInput {
     pub fn offer(&mut self, now: Moment) -> Option<Offer> {
         let at = self.heard?;
         let is_held = self.is_held(now);
-        let aims = match is_held {
-            true => self.aims(now),
-            false => {
-                self.push = None;
-                PerDof::splat(None)
-            }
+        let aims = if is_held {
+            self.aims(now)
+        } else {
+            self.push = None;
+            PerDof::splat(None)
         };
         Some(Offer {
             at,

@@ -34,12 +34,13 @@ impl KernelEvent {
     /// The event of a button or axis by its name in the kernel, such as `BTN_SOUTH` or `ABS_RZ`.
     pub fn named(name: &str, value: i32) -> Option<Self> {
         let code = kernel_code(name)?;
-        Some(match name.starts_with("BTN_") {
-            true => Self::Key {
+        Some(if name.starts_with("BTN_") {
+            Self::Key {
                 code,
                 is_down: value != 0,
-            },
-            false => Self::Axis { code, value },
+            }
+        } else {
+            Self::Axis { code, value }
         })
     }
 }

@@ -141,9 +141,10 @@ impl PadState {
     }
 
     fn set(&mut self, control: PadControl, is_down: bool) {
-        match is_down {
-            true => self.held.insert(control),
-            false => self.held.remove(&control),
+        if is_down {
+            self.held.insert(control)
+        } else {
+            self.held.remove(&control)
         };
     }
 }

@@ -199,9 +199,10 @@ impl LaneScan {
             let mut board = self.room.board();
             board.summary.asked += self.asked;
             board.left(self.nth, [].iter());
-            match self.failed && self.asked == 0 {
-                true => board.summary.failed += 1,
-                false => board.summary.places += 1,
+            if self.failed && self.asked == 0 {
+                board.summary.failed += 1
+            } else {
+                board.summary.places += 1
             }
         }
         let hint = self.noticed.hint(&self.lane.place);

@@ -138,9 +138,10 @@ impl ScanPlan {
             return;
         }
         let is_held = held.iter().any(|held| held.place() == lane.place);
-        match is_held {
-            true => self.held.push(lane.place),
-            false => self.lanes.push(lane),
+        if is_held {
+            self.held.push(lane.place)
+        } else {
+            self.lanes.push(lane)
         }
     }
 

@@ -69,9 +69,10 @@ impl Session {
             None if is_motion => return Err(RequestError::NotArmed),
             None => {}
         }
-        match is_motion && self.status.state != LinkState::Armed {
-            true => Err(RequestError::NotArmed),
-            false => Ok(()),
+        if is_motion && self.status.state != LinkState::Armed {
+            Err(RequestError::NotArmed)
+        } else {
+            Ok(())
         }
     }
 

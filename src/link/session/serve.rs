@@ -101,9 +101,10 @@ impl Session {
 
     /// Says whether the hand rests, and whether the line is left to it.
     pub(crate) fn tell_rest(&mut self) {
-        let rest = match self.feedback.is_doubted() {
-            true => Rest::Unknown,
-            false => self.moving.rest(&self.sample, self.now()),
+        let rest = if self.feedback.is_doubted() {
+            Rest::Unknown
+        } else {
+            self.moving.rest(&self.sample, self.now())
         };
         if (self.status.line_left, self.status.rest) != (self.leaves_line, rest) {
             self.status.line_left = self.leaves_line;
@@ -360,9 +361,10 @@ impl Session {
 
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
-        match self.feedback.is_doubted() {
-            true => self.feedback.hold_targets(now),
-            false => hold_targets(&self.sample, now),
+        if self.feedback.is_doubted() {
+            self.feedback.hold_targets(now)
+        } else {
+            hold_targets(&self.sample, now)
         }
     }
 

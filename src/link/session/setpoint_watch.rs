@@ -253,9 +253,10 @@ impl SetpointWatch {
             let is_late = |(_, value)| matches!(value, Wrote::Value(_)) && !says_this(value);
             // What was held before may be what was written since.
             let is_newer = || self.writes.iter().any(|write| says_this(write.values[dof]));
-            return match joint.due.is_some_and(is_late) && !is_newer() {
-                true => Verdict::NotTaken,
-                false => Verdict::Ours,
+            return if joint.due.is_some_and(is_late) && !is_newer() {
+                Verdict::NotTaken
+            } else {
+                Verdict::Ours
             };
         }
         let open = self.open(dof);
@@ -329,9 +330,12 @@ fn is_limit(joint: Joint, wrote: Wrote, read: i16) -> bool {
     let Wrote::Value(wrote) = wrote else {
         return false;
     };
-    joint.taken.is_none_or(|(least, most)| match wrote > read {
-        true => most <= read,
-        false => least >= read,
+    joint.taken.is_none_or(|(least, most)| {
+        if wrote > read {
+            most <= read
+        } else {
+            least >= read
+        }
     })
 }
 

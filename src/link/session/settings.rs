@@ -328,9 +328,10 @@ impl Session {
             }
             if self.now() >= over {
                 let why = SaveDoubt::Unanswered;
-                return Ok(match is_acknowledged {
-                    true => Calibrated::Quiet,
-                    false => Calibrated::Unknown { why },
+                return Ok(if is_acknowledged {
+                    Calibrated::Quiet
+                } else {
+                    Calibrated::Unknown { why }
                 });
             }
             self.listen(bus, over).await?;

@@ -170,9 +170,10 @@ fn columns() -> impl Iterator<Item = String> {
 /// A number that no reader takes for a whole one, and then the column for one of whole numbers.
 fn decimal(value: f32) -> String {
     let digits = value.to_string();
-    match digits.contains('.') {
-        true => digits,
-        false => digits + ".0",
+    if digits.contains('.') {
+        digits
+    } else {
+        digits + ".0"
     }
 }
 

@@ -99,9 +99,10 @@ impl<W: Write> SessionCopy<W> {
     pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), Broken> {
         self.writer.push(entry)?;
         self.rows += 1;
-        match self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
-            true => self.put(),
-            false => Ok(()),
+        if self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
+            self.put()
+        } else {
+            Ok(())
         }
     }
 

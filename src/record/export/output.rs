@@ -209,9 +209,10 @@ impl Drop for Unfinished {
             return;
         }
         // One that took its place is not here any more; what cannot be removed stays beside, under a name that tells.
-        let _gone = match self.beside.is_dir() {
-            true => fs::remove_dir_all(&self.beside),
-            false => fs::remove_file(&self.beside),
+        let _gone = if self.beside.is_dir() {
+            fs::remove_dir_all(&self.beside)
+        } else {
+            fs::remove_file(&self.beside)
         };
     }
 }

@@ -106,15 +106,17 @@ impl ParquetTable {
                 .undocumented(fresh)
                 .map(|one| one.to_string())
                 .collect();
-            match words.is_empty() {
-                true => last.push(ParquetCell::Null),
-                false => last.push_text(&words.join(" ")),
+            if words.is_empty() {
+                last.push(ParquetCell::Null)
+            } else {
+                last.push_text(&words.join(" "))
             }
         }
         self.rows += 1;
-        match self.rows.is_multiple_of(GROUP_ROWS) {
-            true => self.put(),
-            false => Ok(()),
+        if self.rows.is_multiple_of(GROUP_ROWS) {
+            self.put()
+        } else {
+            Ok(())
         }
     }
 

@@ -199,9 +199,10 @@ impl Definitions {
                 _ => SkipReason::OtherSchema,
             });
         }
-        match schema.fields == fields(topic.schema().text) {
-            true => Ok(topic),
-            false => Err(SkipReason::OtherFields),
+        if schema.fields == fields(topic.schema().text) {
+            Ok(topic)
+        } else {
+            Err(SkipReason::OtherFields)
         }
     }
 

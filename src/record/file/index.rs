@@ -180,9 +180,10 @@ impl Iterator for FileEnd {
             }
             IndexStage::Chunks { block } => {
                 self.chunks(block, &mut piece);
-                self.stage = match block + 1 < self.index.chunks.len() {
-                    true => IndexStage::Chunks { block: block + 1 },
-                    false => IndexStage::Rest,
+                self.stage = if block + 1 < self.index.chunks.len() {
+                    IndexStage::Chunks { block: block + 1 }
+                } else {
+                    IndexStage::Rest
                 };
             }
             IndexStage::Rest => {

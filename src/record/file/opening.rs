@@ -45,9 +45,10 @@ impl Opening {
 
     /// Whether it is the built-in hand; `None` if nobody knows which hand it is.
     pub const fn is_simulated(&self) -> Option<bool> {
-        match self.hand.is_empty() {
-            true => None,
-            false => Some(self.simulated),
+        if self.hand.is_empty() {
+            None
+        } else {
+            Some(self.simulated)
         }
     }
 

@@ -180,9 +180,10 @@ impl SessionFile {
         let counted = survey.definitions.messages();
         let mut found = survey.found;
         if topics.is_empty() {
-            return Err(match survey.definitions.is_empty() {
-                true => OpenError::Empty,
-                false => OpenError::Foreign,
+            return Err(if survey.definitions.is_empty() {
+                OpenError::Empty
+            } else {
+                OpenError::Foreign
             });
         }
         found.chunks.sort_by_key(|chunk| chunk.first_nanos);

@@ -358,19 +358,22 @@ impl SessionRecording {
 
     fn put(&mut self, now: Duration, is_last: bool) {
         if let Some(mut ending) = self.ending.take() {
-            match is_last {
-                true => ending.put_safely(now),
-                false => ending.put(now),
+            if is_last {
+                ending.put_safely(now)
+            } else {
+                ending.put(now)
             }
-            match ending.is_done() {
-                true => self.earlier_bytes += ending.written(),
-                false => self.ending = Some(ending),
+            if ending.is_done() {
+                self.earlier_bytes += ending.written()
+            } else {
+                self.ending = Some(ending)
             }
         }
         if self.ending.is_none() {
-            match is_last {
-                true => self.tail.put_safely(now),
-                false => self.tail.put(now),
+            if is_last {
+                self.tail.put_safely(now)
+            } else {
+                self.tail.put(now)
             }
         }
     }
@@ -427,9 +430,10 @@ impl SessionRecording {
     fn follow_clock(&mut self, now: Now, drift: i128) {
         let seconds = Duration::from_nanos(u64::try_from(drift.unsigned_abs()).unwrap_or(u64::MAX));
         let seconds = format!("{:.1} s", seconds.as_secs_f64());
-        let what = match drift < 0 {
-            true => format!("the computer's clock was set back by {seconds}"),
-            false => format!("the computer slept or its clock was set forward: {seconds}"),
+        let what = if drift < 0 {
+            format!("the computer's clock was set back by {seconds}")
+        } else {
+            format!("the computer slept or its clock was set forward: {seconds}")
         };
         let next = self.tail.next();
         let (name, own) = (next.name(), self.tail.name());

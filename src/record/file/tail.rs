@@ -236,10 +236,9 @@ impl FileTail {
     }
 
     fn attempt(&mut self, now: Duration, syncs: bool) {
-        let result = self.write().and_then(|()| match syncs {
-            true => self.sync(now),
-            false => Ok(()),
-        });
+        let result = self
+            .write()
+            .and_then(|()| if syncs { self.sync(now) } else { Ok(()) });
         self.retry_at = result.is_err().then(|| now + RETRY_AFTER);
         self.fails_since = match result {
             Ok(()) => None,

@@ -270,10 +270,7 @@ impl Pace {
     fn hit(&mut self, now: Moment) {
         let passed = now.since(self.began);
         if passed >= RATE_OVER {
-            self.before = match passed < 2 * RATE_OVER {
-                true => self.now,
-                false => 0,
-            };
+            self.before = if passed < 2 * RATE_OVER { self.now } else { 0 };
             self.now = 0;
             self.began = Moment::from_micros(now.micros() / 1_000_000 * 1_000_000);
         }

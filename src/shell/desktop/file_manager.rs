@@ -48,9 +48,10 @@ fn begin(command: &mut Command) -> io::Result<()> {
 
 /// Explorer ends with 1 where it did what was asked.
 fn judge(status: ExitStatus) -> io::Result<()> {
-    match status.success() || cfg!(windows) {
-        true => Ok(()),
-        false => Err(io::Error::other(status.to_string())),
+    if status.success() || cfg!(windows) {
+        Ok(())
+    } else {
+        Err(io::Error::other(status.to_string()))
     }
 }
 

@@ -65,12 +65,11 @@ impl Screen {
             rows: 0..height.get() as usize,
         };
         let is_kept = buffer.age() == 1 && self.whole_at.elapsed() < WHOLE_EVERY;
-        let changed = match is_kept {
-            true => self.raster.changed(),
-            false => {
-                self.whole_at = Instant::now();
-                std::slice::from_ref(&all)
-            }
+        let changed = if is_kept {
+            self.raster.changed()
+        } else {
+            self.whole_at = Instant::now();
+            std::slice::from_ref(&all)
         };
         for changed in changed {
             copy(&self.raster, changed, &mut buffer);

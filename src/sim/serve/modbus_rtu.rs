@@ -48,9 +48,10 @@ impl<W: Wire> RtuServer<W> {
     async fn run(&mut self) -> io::Result<()> {
         let mut chunk = [0; CHUNK];
         loop {
-            let silence = match self.is_noisy {
-                true => SILENCE_AFTER_NOISE,
-                false => SILENCE,
+            let silence = if self.is_noisy {
+                SILENCE_AFTER_NOISE
+            } else {
+                SILENCE
             };
             tokio::select! {
                 biased;

@@ -148,9 +148,10 @@ impl BoothHand {
     pub(crate) fn plug(&self, is_in: bool) {
         let mut facts = self.facts();
         facts.disarm(Disarmed::LinkLost);
-        facts.status.state = match is_in {
-            true => LinkState::Monitoring,
-            false => LinkState::Offline,
+        facts.status.state = if is_in {
+            LinkState::Monitoring
+        } else {
+            LinkState::Offline
         };
         facts.person_armed = false;
     }

@@ -476,12 +476,13 @@ async fn moved(
             return Fate::Answered;
         }
         *fate.lock().unwrap() = true;
-        match refused {
-            true => Fate::Fails(RequestError::Refused {
+        if refused {
+            Fate::Fails(RequestError::Refused {
                 address: 1000,
                 reason: "no".into(),
-            }),
-            false => Fate::Unheard,
+            })
+        } else {
+            Fate::Unheard
         }
     });
     let places = change.places.clone();

@@ -64,9 +64,12 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     let palette = pane.look.palette;
     let stats = &pane.state.hand().stats;
     let live = pane.state.hand().link.state.is_live();
-    let measured = |text, value: String| match live {
-        true => (text, value, palette.text),
-        false => (text, format::UNKNOWN.to_owned(), palette.faint),
+    let measured = |text, value: String| {
+        if live {
+            (text, value, palette.text)
+        } else {
+            (text, format::UNKNOWN.to_owned(), palette.faint)
+        }
     };
     let trip = |value| format!("{} ms", format::millis(value));
     let count = |text, value: u64| (text, value.to_string(), palette.text);
@@ -127,9 +130,10 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         figure_ui(ui, pane, caption, |ui| {
             for ((head, width), value) in BUDGET.into_iter().zip(values) {
                 let name = format!("{caption}: {}", look.say(head));
-                let (text, color) = match live {
-                    true => (value.as_str(), look.palette.text),
-                    false => (format::UNKNOWN, look.palette.faint),
+                let (text, color) = if live {
+                    (value.as_str(), look.palette.text)
+                } else {
+                    (format::UNKNOWN, look.palette.faint)
                 };
                 cell_ui(ui, width, |ui| {
                     if !value.is_empty() {

@@ -156,9 +156,10 @@ impl ConnectionForm {
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
             for key in self.kind.1 {
-                match RARE.contains(key) {
-                    true => expert_ui(ui, look, |ui| self.key_ui(ui, pane, key)),
-                    false => self.key_ui(ui, pane, key),
+                if RARE.contains(key) {
+                    expert_ui(ui, look, |ui| self.key_ui(ui, pane, key))
+                } else {
+                    self.key_ui(ui, pane, key)
                 }
             }
             ui.add_space(theme::STEP);

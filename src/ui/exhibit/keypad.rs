@@ -114,12 +114,11 @@ impl Keypad {
         for index in 0..places {
             let center = pos2(left + step * f32::from(index), rect.center().y);
             let painter = ui.painter();
-            match index < count {
-                true => painter.circle_filled(center, 13.0 * unit, palette.text),
-                false => {
-                    let ring = egui::Stroke::new((3.0 * unit).max(1.5), palette.faint);
-                    painter.circle_stroke(center, 12.0 * unit, ring)
-                }
+            if index < count {
+                painter.circle_filled(center, 13.0 * unit, palette.text)
+            } else {
+                let ring = egui::Stroke::new((3.0 * unit).max(1.5), palette.faint);
+                painter.circle_stroke(center, 12.0 * unit, ring)
             };
         }
     }

@@ -131,9 +131,10 @@ impl<'a> LargeButton<'a> {
     /// Draws it; true in the frame in which it is pressed.
     pub(crate) fn ui(self, ui: &Ui, page: PageLook, rect: Rect) -> bool {
         let enabled = self.disabled.is_none() && ui.is_enabled();
-        let sense = match enabled {
-            true => Sense::click(),
-            false => Sense::hover(),
+        let sense = if enabled {
+            Sense::click()
+        } else {
+            Sense::hover()
         };
         let response = ui.interact(rect, Id::unique(("large", self.words)), sense);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, self.words));
@@ -170,9 +171,10 @@ impl<'a> LargeButton<'a> {
     /// Ground, edge and words.
     fn colors(self, look: Look, is_down: bool) -> (Color32, Color32, Color32) {
         let palette = look.palette;
-        let ground = match is_down {
-            true => palette.control_hover,
-            false => palette.control,
+        let ground = if is_down {
+            palette.control_hover
+        } else {
+            palette.control
         };
         if self.disabled.is_some() {
             return (palette.card, palette.edge, palette.faint);

@@ -36,9 +36,10 @@ impl PagePlaces {
     /// On a screen of this size.
     pub(crate) fn of(whole: Rect) -> Self {
         let is_upright = whole.height() > whole.width();
-        let designed = match is_upright {
-            true => vec2(1080.0, 1920.0),
-            false => vec2(1920.0, 1080.0),
+        let designed = if is_upright {
+            vec2(1080.0, 1920.0)
+        } else {
+            vec2(1920.0, 1080.0)
         };
         let unit = (whole.size() / designed).min_elem();
         let gap = 20.0 * unit;
@@ -48,13 +49,12 @@ impl PagePlaces {
         let (head, lock) = before(head, touched, gap);
         let (title, language) = before(head, 2.4 * touched, gap);
         let stop = (if is_upright { 170.0 } else { 132.0 }) * unit;
-        let (hand, rest) = match is_upright {
-            true => above(body, body.height() * 0.44, gap),
-            false => {
-                let (hand, rest) =
-                    body.split_left_right_at_x(body.left() + (body.width() - gap) * 0.42);
-                (hand, rest.with_min_x(rest.left() + gap))
-            }
+        let (hand, rest) = if is_upright {
+            above(body, body.height() * 0.44, gap)
+        } else {
+            let (hand, rest) =
+                body.split_left_right_at_x(body.left() + (body.width() - gap) * 0.42);
+            (hand, rest.with_min_x(rest.left() + gap))
         };
         let (words, rest) = above(rest, 192.0 * unit, gap);
         let (tiles, stop) = above(rest, rest.height() - stop - gap, gap);

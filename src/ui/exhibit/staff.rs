@@ -79,9 +79,10 @@ impl StaffView {
         let (title, rest) = above(inner, 56.0 * unit, 4.0 * unit);
         page.line(ui, title, (look.say(words.title), 38.0), look.palette.text);
         let (note, rest) = above(rest, 44.0 * unit, 0.0);
-        let color = match words.is_bad {
-            true => look.palette.bad,
-            false => look.palette.muted,
+        let color = if words.is_bad {
+            look.palette.bad
+        } else {
+            look.palette.muted
         };
         page.line(ui, note, (&words.note, 28.0), color);
         let last = 84.0 * unit;

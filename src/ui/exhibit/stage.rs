@@ -117,9 +117,10 @@ fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords 
     };
     match exhibit.view.stage {
         ExhibitStage::Halted(why) => {
-            let title = match restarts(state, exhibit) {
-                true => exhibit::HOLD,
-                false => exhibit::MOMENT,
+            let title = if restarts(state, exhibit) {
+                exhibit::HOLD
+            } else {
+                exhibit::MOMENT
             };
             let color = match why {
                 HaltReason::NotArmed => accent,

@@ -82,9 +82,10 @@ impl PieceTile<'_> {
         let (palette, unit) = (page.look.palette, page.unit);
         let name = words_of(&self.piece.name, page.look.language);
         let enabled = self.refusal.is_none() && ui.is_enabled();
-        let sense = match enabled {
-            true => Sense::click(),
-            false => Sense::hover(),
+        let sense = if enabled {
+            Sense::click()
+        } else {
+            Sense::hover()
         };
         let response = ui.interact(rect, Id::unique(("exhibit tile", self.index)), sense);
         response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, self.plays, name));

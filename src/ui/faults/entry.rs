@@ -120,9 +120,10 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
             mark(ui, at, color);
         }
         let title = title(pane, entry.dof, entry.what);
-        let ink = match entry.is_active() || !entry.seen {
-            true => palette.text,
-            false => palette.muted,
+        let ink = if entry.is_active() || !entry.seen {
+            palette.text
+        } else {
+            palette.muted
         };
         Label::new(&title, ink).ui(ui);
         let when = format::age(entry.lasted(pane.state.now));

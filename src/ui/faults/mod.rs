@@ -108,9 +108,10 @@ impl FaultsView {
                 none_ui(ui, pane);
             }
             for entry in &entries {
-                let depth = match self.chosen == Some(entry.dof) {
-                    true => Depth::Chosen,
-                    false => Depth::Whole,
+                let depth = if self.chosen == Some(entry.dof) {
+                    Depth::Chosen
+                } else {
+                    Depth::Whole
                 };
                 if let Some(id) = entry_ui(ui, pane, entry, depth) {
                     self.recordings.open(id);

@@ -56,16 +56,18 @@ fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
     match what {
         FaultEventKind::PersonAct(act) => (act_words(look, act), palette.accent),
         FaultEventKind::Status(dof, status) => {
-            let color = match status.is_protective() {
-                true => palette.bad,
-                false => palette.muted,
+            let color = if status.is_protective() {
+                palette.bad
+            } else {
+                palette.muted
             };
             (of(*dof, words::status(*status, look.language).title), color)
         }
         FaultEventKind::Faults(dof, bits) => {
-            let color = match bits.is_empty() {
-                true => palette.ok,
-                false => palette.bad,
+            let color = if bits.is_empty() {
+                palette.ok
+            } else {
+                palette.bad
             };
             (of(*dof, &fault_words(look, *bits)), color)
         }

@@ -149,9 +149,10 @@ impl RecordingsView {
         // The history may have begun within the time before.
         let from = recording.from.secs();
         let from = recording.history.first_secs().unwrap_or(from).max(from);
-        let (from, to) = match self.near {
-            true => (fault_s - NEAR_S, fault_s + NEAR_S),
-            false => (from, recording.to.secs()),
+        let (from, to) = if self.near {
+            (fault_s - NEAR_S, fault_s + NEAR_S)
+        } else {
+            (from, recording.to.secs())
         };
         self.chart.time.advance((from, to), to - from);
         self.plots_ui(ui, pane.look, recording);

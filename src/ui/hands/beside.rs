@@ -111,9 +111,10 @@ impl HandColumn {
             let chart = Chart {
                 curves: curves.collect(),
                 least: panel.row.least_scale,
-                times: match self.charts.time.is_held() {
-                    true => Times::Clock,
-                    false => Times::From(self.charts.time.span().1, look.say(text::NOW)),
+                times: if self.charts.time.is_held() {
+                    Times::Clock
+                } else {
+                    Times::From(self.charts.time.span().1, look.say(text::NOW))
                 },
                 is_lowest,
                 ..Chart::new(

@@ -38,9 +38,10 @@ impl StripRows {
             let in_row = f32::from(u8::try_from(in_row).unwrap_or(u8::MAX)).max(1.0);
             (room / in_row - theme::GAP).floor()
         };
-        let in_row = match width(count) < WIDTH_LEAST {
-            true => count.div_ceil(2),
-            false => count,
+        let in_row = if width(count) < WIDTH_LEAST {
+            count.div_ceil(2)
+        } else {
+            count
         };
         let width = width(in_row).min(WIDTH_MAX);
         Self { in_row, width }
@@ -49,9 +50,10 @@ impl StripRows {
 
 /// Height of the strips of so many hands, with the room around them.
 pub(crate) fn height(room: f32, count: usize) -> f32 {
-    match StripRows::of(room, count).in_row < count {
-        true => 2.0 * STRIP + 2.0 * theme::GAP,
-        false => STRIP + theme::GAP,
+    if StripRows::of(room, count).in_row < count {
+        2.0 * STRIP + 2.0 * theme::GAP
+    } else {
+        STRIP + theme::GAP
     }
 }
 
@@ -77,9 +79,10 @@ impl HandWords {
             _ => link_words_of(look, hand),
         };
         let is_moved = !matches!(hand.mover(), None | Some(Mover::Stop));
-        let state = match is_moved {
-            true => format!("{} · {}", look.say(state), look.say(window::MOVES)),
-            false => look.say(state).to_owned(),
+        let state = if is_moved {
+            format!("{} · {}", look.say(state), look.say(window::MOVES))
+        } else {
+            look.say(state).to_owned()
         };
         let name = match &hand.endpoint {
             Some(_) => hand.label.name.to_string(),
@@ -160,9 +163,10 @@ fn strip_ui(
     label.paint(ui, number);
     let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
     let is_wide = width < upper.width() * 0.5;
-    let (title, corner) = match is_wide {
-        true => upper.split_left_right_at_x(upper.right() - width),
-        false => (upper, upper),
+    let (title, corner) = if is_wide {
+        upper.split_left_right_at_x(upper.right() - width)
+    } else {
+        (upper, upper)
     };
     Label::new(&words.name, palette.text).paint(ui, title);
     if is_wide {

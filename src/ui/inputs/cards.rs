@@ -76,9 +76,12 @@ impl SourceCards {
                 address_ui(ui, look.say(inputs::STREAM_AT), &mut self.stream);
             });
         });
-        let wanted = place(&self.stream).map(|at| match self.is_tcp {
-            true => StreamPlace::Tcp(at),
-            false => StreamPlace::Udp(at),
+        let wanted = place(&self.stream).map(|at| {
+            if self.is_tcp {
+                StreamPlace::Tcp(at)
+            } else {
+                StreamPlace::Udp(at)
+            }
         });
         let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
         ui.horizontal_wrapped(|ui| {

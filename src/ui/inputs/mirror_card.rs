@@ -29,9 +29,10 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str
     choice.response.on_disabled_hover_text(taken);
     if let Some(mirror) = mirror {
         let is_fresh = mirror.view.is_fresh(state.hand().now);
-        let (answers, rate) = match is_fresh {
-            true => (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz)),
-            false => (inputs::ANSWERS_NOT, "-".to_owned()),
+        let (answers, rate) = if is_fresh {
+            (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz))
+        } else {
+            (inputs::ANSWERS_NOT, "-".to_owned())
         };
         let rows = [
             (look.say(inputs::PHASE), look.say(answers).to_owned()),

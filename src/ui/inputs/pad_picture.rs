@@ -460,9 +460,10 @@ impl Drawing<'_> {
             (false, true) => (palette.control_hover, palette.text),
             (false, false) => (palette.control, ink.text),
         };
-        let edge = match is_moved {
-            true => Stroke::new(theme::STRONG, palette.accent),
-            false => Stroke::new(1.0, palette.faint),
+        let edge = if is_moved {
+            Stroke::new(theme::STRONG, palette.accent)
+        } else {
+            Stroke::new(1.0, palette.faint)
         };
         painter.circle(cap, CAP * self.scale, fill, edge);
         let sign_at = Rect::from_center_size(cap, Vec2::ZERO);
@@ -480,9 +481,10 @@ impl Drawing<'_> {
         ] {
             let fingers = self.shown.fingers;
             let is_on = [FingerChoice::All, FingerChoice::One(finger)].contains(&fingers);
-            let (width, strength) = match is_on && self.shown.state.is_some() {
-                true => (4.0, 1.0),
-                false => (2.0, 0.45),
+            let (width, strength) = if is_on && self.shown.state.is_some() {
+                (4.0, 1.0)
+            } else {
+                (2.0, 0.45)
             };
             let color = palette.dof[finger].gamma_multiply(strength);
             let points = (-6..=6_i8).map(|step| {

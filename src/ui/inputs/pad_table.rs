@@ -19,9 +19,10 @@ pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Opt
     for control in PadControl::ALL {
         let row = ui.horizontal(|ui| {
             ui.set_min_height(theme::CONTROL);
-            let color = match shown.chosen == Some(control) {
-                true => look.palette.accent,
-                false => look.palette.text,
+            let color = if shown.chosen == Some(control) {
+                look.palette.accent
+            } else {
+                look.palette.text
             };
             let left = Layout::left_to_right(Align::Center);
             ui.allocate_ui_with_layout(vec2(NAME, theme::CONTROL), left, |ui| {
@@ -60,8 +61,9 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
     chosen
         .response
         .on_disabled_hover_text(look.say(inputs::SINGLE));
-    match chosen.inner {
-        true => shown.map.with(control, action).ok(),
-        false => None,
+    if chosen.inner {
+        shown.map.with(control, action).ok()
+    } else {
+        None
     }
 }

@@ -53,9 +53,10 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
         line_ui(ui, style.line, |ui| {
             row.angle_ui(ui, pane, style.linked);
             let place = cell(ui, READING);
-            match style.each {
-                true => row.angle_reading_ui(ui, place, pane),
-                false => row.short_reading_ui(ui, place, pane),
+            if style.each {
+                row.angle_reading_ui(ui, place, pane)
+            } else {
+                row.short_reading_ui(ui, place, pane)
             }
         });
         if style.each {
@@ -165,9 +166,10 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let look = pane.look;
     let locked = pane.state.hand().joints[row.dof].locked;
-    let (icon, tip) = match locked {
-        true => (theme::LOCKED, main::UNLOCK_TIP),
-        false => (theme::UNLOCKED, main::LOCK_TIP),
+    let (icon, tip) = if locked {
+        (theme::LOCKED, main::UNLOCK_TIP)
+    } else {
+        (theme::UNLOCKED, main::LOCK_TIP)
     };
     let name = row.named(pane, main::NAME_LOCK);
     let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);

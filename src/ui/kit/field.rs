@@ -41,12 +41,13 @@ impl Field<'_> {
         value: &str,
         read: impl FnOnce(&str) -> Read<T>,
     ) -> Option<T> {
-        let (width, height) = match self.is_number {
-            true => (
+        let (width, height) = if self.is_number {
+            (
                 theme::FIELD,
                 theme::CONTROL.min(ui.spacing().interact_size.y),
-            ),
-            false => (ui.available_width(), theme::CONTROL),
+            )
+        } else {
+            (ui.available_width(), theme::CONTROL)
         };
         let (id, rect) = ui.allocate_space(vec2(width, height));
         let own = std::mem::take(pane.typing);
@@ -70,9 +71,10 @@ impl Field<'_> {
         let mut new = None;
         // The second pass of a frame sees the focus lost again, and no key: what was refused stays refused.
         if is_typed && refused.is_none() && response.lost_focus() {
-            is_typed = match self.is_number {
-                true => key(Key::Enter),
-                false => !key(Key::Escape),
+            is_typed = if self.is_number {
+                key(Key::Enter)
+            } else {
+                !key(Key::Escape)
             };
             let read = is_typed.then(|| read(text.trim()));
             (new, refused) = match read {
@@ -110,13 +112,15 @@ impl Field<'_> {
             (false, true) => palette.accent,
             (false, false) => palette.edge,
         };
-        let (ground, ink) = match enabled {
-            true => (palette.sunken, palette.text),
-            false => (palette.card, palette.faint),
+        let (ground, ink) = if enabled {
+            (palette.sunken, palette.text)
+        } else {
+            (palette.card, palette.faint)
         };
-        let (font, align) = match self.is_number {
-            true => (theme::number(), Align2::RIGHT_CENTER),
-            false => (theme::body(), Align2::LEFT_CENTER),
+        let (font, align) = if self.is_number {
+            (theme::number(), Align2::RIGHT_CENTER)
+        } else {
+            (theme::body(), Align2::LEFT_CENTER)
         };
         let frame = Frame::new()
             .fill(ground)

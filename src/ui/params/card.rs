@@ -57,9 +57,10 @@ fn changes(state: &State, look: Look, card: Card) -> Card {
         let values = values.map(|value| value_text(row.id, value));
         card.row(device::whole_name(look, row.id), values)
     });
-    match book.to_apply().is_empty() {
-        true => card,
-        false => card.note(device::SAVE_STAGED),
+    if book.to_apply().is_empty() {
+        card
+    } else {
+        card.note(device::SAVE_STAGED)
     }
 }
 

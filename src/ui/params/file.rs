@@ -66,9 +66,10 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (P
     let palette = look.palette;
     let words = device::whole_name(look, id);
     let mut ticked = compared.is_ticked(id);
-    let tip = match id.is_place() {
-        true => device::TICK_PLACE_TIP,
-        false => device::TICK_TIP,
+    let tip = if id.is_place() {
+        device::TICK_PLACE_TIP
+    } else {
+        device::TICK_TIP
     };
     let tick = ui.checkbox(&mut ticked, &words);
     let label = look.told(device::TAKE, words);
@@ -82,9 +83,10 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (P
     let label = cell_name(pane, id, device::LIVE);
     cell_ui(ui, (&label, &value_text(id, held), color), "");
     let text = value_text(id, Some(value));
-    let (words, color) = match held == Some(value) {
-        true => (format!("{text}  {}", look.say(device::SAME)), palette.muted),
-        false => (text, palette.warn),
+    let (words, color) = if held == Some(value) {
+        (format!("{text}  {}", look.say(device::SAME)), palette.muted)
+    } else {
+        (text, palette.warn)
     };
     let label = cell_name(pane, id, device::IN_FILE);
     cell_ui(ui, (&label, &words, color), "");

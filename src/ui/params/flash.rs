@@ -38,9 +38,10 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
     let unsaved = hand.params.unsaved();
-    let weight = match hand.params.to_apply().is_empty() && !unsaved.is_empty() {
-        true => Weight::Strong,
-        false => Weight::Normal,
+    let weight = if hand.params.to_apply().is_empty() && !unsaved.is_empty() {
+        Weight::Strong
+    } else {
+        Weight::Normal
     };
     let save = Button::said(look, device::SAVE);
     let save = save.weight(weight).disabled(reason);
@@ -65,9 +66,10 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         lines.push((look.say(doing).to_owned(), palette.accent));
     }
     if let Some((end, _)) = &book.save {
-        let color = match device::is_saved(end) {
-            true => palette.ok,
-            false => palette.bad,
+        let color = if device::is_saved(end) {
+            palette.ok
+        } else {
+            palette.bad
         };
         lines.push((device::save_end(look, end), color));
     }

@@ -26,9 +26,10 @@ pub(crate) struct DeviceView {
 impl DeviceView {
     /// Draws the view: flash beside the table, or below it where the window is narrow.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let flash = match ui.available_width() >= 860.0 {
-            true => kit::bare(Panel::right("flash"), 280.0, theme::GAP_LEFT),
-            false => kit::bare(Panel::bottom("flash"), 172.0, theme::GAP_TOP),
+        let flash = if ui.available_width() >= 860.0 {
+            kit::bare(Panel::right("flash"), 280.0, theme::GAP_LEFT)
+        } else {
+            kit::bare(Panel::bottom("flash"), 172.0, theme::GAP_TOP)
         };
         flash.show(ui, |ui| flash::flash_ui(ui, pane));
         kit::card_ui(ui, pane.look, |ui| {

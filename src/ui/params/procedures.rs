@@ -62,9 +62,10 @@ fn from_to(look: Look, change: &PlaceChange) -> String {
 /// Where the hand is now, and where it will be if that is elsewhere.
 fn now_and_then(card: Card, places: &PlacePair) -> Card {
     let card = card.note((cards::NOW_AT, &places.old));
-    match places.new == places.old {
-        true => card,
-        false => card.note((cards::THEN_AT, &places.new)),
+    if places.new == places.old {
+        card
+    } else {
+        card.note((cards::THEN_AT, &places.new))
     }
 }
 
@@ -223,9 +224,10 @@ fn ways(card: Card, places: &PlacePair) -> Card {
         Choice::new(text, ButtonRole::Plain).does(Action::Connect(place.clone()))
     };
     let card = card.choice(connect(cards::TO_OLD, &places.old));
-    match places.new == places.old {
-        true => card,
-        false => card.choice(connect(cards::TO_NEW, &places.new)),
+    if places.new == places.old {
+        card
+    } else {
+        card.choice(connect(cards::TO_NEW, &places.new))
     }
 }
 

@@ -66,9 +66,10 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let rows = ParamId::all().into_iter();
     let rows: Vec<ParamId> = rows.filter(|id| shown.passes(pane, *id)).collect();
     if rows.is_empty() {
-        let text = match shown.words.trim().is_empty() {
-            true => device::NO_DIFFERENCE,
-            false => device::FIND_NONE,
+        let text = if shown.words.trim().is_empty() {
+            device::NO_DIFFERENCE
+        } else {
+            device::FIND_NONE
         };
         Label::muted(look, text).ui(ui);
         return;
@@ -160,9 +161,10 @@ fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
     row.col(|ui| {
         let saved = book.saved(id);
         let live = book.live(id).map(|(value, _)| value);
-        let color = match saved == live || saved.is_none() || live.is_none() {
-            true => muted,
-            false => pane.look.palette.warn,
+        let color = if saved == live || saved.is_none() || live.is_none() {
+            muted
+        } else {
+            pane.look.palette.warn
         };
         let file = book.known.saved.as_ref().filter(|_| saved.is_some());
         let day = file.and_then(|file| file.at.get(..10)).unwrap_or_default();

@@ -195,9 +195,10 @@ impl<'a> Chart<'a> {
         let marks = ui.input(|input| input.modifiers.shift);
         let plot = self.plot(chosen.is_some()).width(width);
         let plot = plot.allow_drag([!marks, false]);
-        let plot = plot.boxed_zoom_pointer_button(match marks {
-            true => PointerButton::Primary,
-            false => PointerButton::Secondary,
+        let plot = plot.boxed_zoom_pointer_button(if marks {
+            PointerButton::Primary
+        } else {
+            PointerButton::Secondary
         });
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
@@ -342,9 +343,10 @@ impl<'a> Chart<'a> {
 
     fn plot(&self, is_fixed: bool) -> Plot<'_> {
         let palette = self.look.palette;
-        let color = match is_fixed {
-            true => palette.accent,
-            false => palette.muted,
+        let color = if is_fixed {
+            palette.accent
+        } else {
+            palette.muted
         };
         let hints = |hints: AxisHints<'static>, color: Color32| {
             let hints = hints.tick_label_font(theme::number());
@@ -465,9 +467,10 @@ impl ChartView {
         if let Some(at_s) = pointed.filter(|_| scroll != vec2(0.0, 0.0)) {
             let by_s = -f64::from(scroll.x) * shown.transform.dvalue_dpos()[0];
             let factor = f64::from(-scroll.y / theme::PLOT_WHEEL).exp2();
-            match scroll.x == 0.0 {
-                true => self.time.zoom(at_s, factor),
-                false => self.time.pan(by_s),
+            if scroll.x == 0.0 {
+                self.time.zoom(at_s, factor)
+            } else {
+                self.time.pan(by_s)
             }
             ui.request_repaint();
         }

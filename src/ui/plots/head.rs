@@ -108,9 +108,10 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
 fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bool) {
     let look = pane.look;
     let is_paused = view.view.time.is_held();
-    let (text, icon, weight) = match is_paused {
-        true => (panels::PAUSED, theme::PLAY, Weight::Armed),
-        false => (panels::PAUSE, theme::PAUSE, Weight::Normal),
+    let (text, icon, weight) = if is_paused {
+        (panels::PAUSED, theme::PLAY, Weight::Armed)
+    } else {
+        (panels::PAUSE, theme::PAUSE, Weight::Normal)
     };
     let button = Button::said(look, text)
         .named(look.say(panels::PAUSE_NAME))
@@ -191,9 +192,10 @@ fn switch_ui(
     look: Look,
     (sign, words, on): ((&str, Color32), &str, bool),
 ) -> egui::Response {
-    let (line, text) = match on {
-        true => (sign.1, look.palette.text),
-        false => (look.palette.edge, look.palette.faint),
+    let (line, text) = if on {
+        (sign.1, look.palette.text)
+    } else {
+        (look.palette.edge, look.palette.faint)
     };
     let mut job = LayoutJob::default();
     job.append(sign.0, 0.0, TextFormat::simple(theme::small(), line));

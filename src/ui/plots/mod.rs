@@ -188,9 +188,10 @@ impl PlotView {
             moments: marks::moments(pane, span),
             cursors: self.cursors.0,
             least: panel.row.least_scale,
-            times: match self.view.time.is_held() {
-                true => Times::Clock,
-                false => Times::From(span.1, look.say(text::NOW)),
+            times: if self.view.time.is_held() {
+                Times::Clock
+            } else {
+                Times::From(span.1, look.say(text::NOW))
             },
             is_lowest: place.1,
             ..Chart::new(look, panel.title, place.0)
@@ -204,9 +205,10 @@ impl PlotView {
             Some(dof) if dof != line.dof => color.gamma_multiply(BEHIND_PART),
             _ => color,
         };
-        match line.wished {
-            true => Stroke::new(1.0, color.gamma_multiply(WISHED_PART)),
-            false => Stroke::new(theme::LINE, color),
+        if line.wished {
+            Stroke::new(1.0, color.gamma_multiply(WISHED_PART))
+        } else {
+            Stroke::new(theme::LINE, color)
         }
     }
 

@@ -28,9 +28,10 @@ fn round_step(least: f64) -> f64 {
 pub(crate) fn time_step(base_s: f64) -> f64 {
     let least = base_s * TIME_PX / BASE_PX;
     let long = LONG_STEPS.into_iter().find(|step| *step >= least);
-    match least <= 5.0 {
-        true => round_step(least),
-        false => long.unwrap_or(3600.0),
+    if least <= 5.0 {
+        round_step(least)
+    } else {
+        long.unwrap_or(3600.0)
     }
 }
 
@@ -51,9 +52,10 @@ pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32
     // Ends at half a step, so that little of the plot stays empty.
     let half = step / 2.0;
     // A value a hair below zero must not take a quarter of the plot.
-    let low = match low < 0.0 && low > -step * 0.2 {
-        true => -step * 0.2,
-        false => (low / half).floor() * half,
+    let low = if low < 0.0 && low > -step * 0.2 {
+        -step * 0.2
+    } else {
+        (low / half).floor() * half
     };
     (low, (high / half).ceil() * half)
 }

@@ -32,18 +32,16 @@ impl GestureView {
                     .small()
                     .ui(ui);
             });
-            match self.naming {
-                true => self.names_ui(ui, pane),
-                false => {
-                    ui.horizontal_wrapped(|ui| {
-                        let is_named =
-                            |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
-                        let (named, others): (Vec<_>, Vec<_>) = Gesture::all().partition(is_named);
-                        for gesture in named.into_iter().chain(others) {
-                            gesture_ui(ui, pane, gesture);
-                        }
-                    });
-                }
+            if self.naming {
+                self.names_ui(ui, pane)
+            } else {
+                ui.horizontal_wrapped(|ui| {
+                    let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
+                    let (named, others): (Vec<_>, Vec<_>) = Gesture::all().partition(is_named);
+                    for gesture in named.into_iter().chain(others) {
+                        gesture_ui(ui, pane, gesture);
+                    }
+                });
             }
             ui.separator();
             CollapsingHeader::new(look.say(poses::EXPERT))
@@ -54,9 +52,10 @@ impl GestureView {
 
     fn naming_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let (text, weight) = match self.naming {
-            true => (cards::CLOSE, Weight::Strong),
-            false => (panels::GESTURE_NAME_EDIT, Weight::Normal),
+        let (text, weight) = if self.naming {
+            (cards::CLOSE, Weight::Strong)
+        } else {
+            (panels::GESTURE_NAME_EDIT, Weight::Normal)
         };
         let tip = look.tip(panels::GESTURE_NAME_EDIT);
         let mut button = Button::new(look.say(text), tip).weight(weight);

@@ -40,9 +40,10 @@ pub(crate) fn step_ui(
 ) {
     let look = pane.look;
     let place = ui.max_rect();
-    let fill = match step_now(pane, sequence) == Some(at) {
-        true => look.palette.wash(look.palette.accent),
-        false => look.palette.sunken,
+    let fill = if step_now(pane, sequence) == Some(at) {
+        look.palette.wash(look.palette.accent)
+    } else {
+        look.palette.sunken
     };
     ui.painter().rect_filled(place, theme::ROUND_SMALL, fill);
     let number = (at + 1).to_string();

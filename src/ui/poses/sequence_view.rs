@@ -227,13 +227,15 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
         .then(|| look.say(poses::STEPS_EMPTY));
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
-    let go_on = match paused {
-        true => (poses::RESUME, idle, Action::Play(Play::Resume)),
-        false => (poses::PAUSE, idle, Action::Play(Play::Pause)),
+    let go_on = if paused {
+        (poses::RESUME, idle, Action::Play(Play::Resume))
+    } else {
+        (poses::PAUSE, idle, Action::Play(Play::Pause))
     };
-    let dry_run = match dry {
-        true => (poses::DRY_END, None, Action::DryRun(None)),
-        false => (poses::DRY, empty, Action::DryRun(Some(id))),
+    let dry_run = if dry {
+        (poses::DRY_END, None, Action::DryRun(None))
+    } else {
+        (poses::DRY, empty, Action::DryRun(Some(id)))
     };
     let all = [
         dry_run,
@@ -247,9 +249,10 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
         (poses::END, idle, Action::Play(Play::End)),
     ];
     for (ui, (text, disabled, action)) in columns.iter_mut().zip(all) {
-        let weight = match text == poses::START {
-            true => Weight::Strong,
-            false => Weight::Normal,
+        let weight = if text == poses::START {
+            Weight::Strong
+        } else {
+            Weight::Normal
         };
         let button = Button::said(look, text).weight(weight).large();
         button.disabled(disabled).on_click(ui, pane, action);

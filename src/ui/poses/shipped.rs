@@ -49,9 +49,10 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     if let Some(pose) = pictured(&state.poses, entry) {
         panel::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     }
-    let color = match hidden || overridden {
-        true => look.palette.muted,
-        false => look.palette.text,
+    let color = if hidden || overridden {
+        look.palette.muted
+    } else {
+        look.palette.text
     };
     ui.vertical_centered(|ui| Label::new(name, color).ui(ui));
     start_ui(ui, pane, entry);

@@ -74,9 +74,10 @@ pub(crate) fn tile_ui(
     let (upper, lower) = words
         .shrink2(vec2(theme::GAP, 0.0))
         .split_top_bottom_at_fraction(0.5);
-    let about = match pose.tags.is_empty() {
-        true => format!("{} · {} g", pose.speed.get(), pose.force.get()),
-        false => pose.tags.join(" · "),
+    let about = if pose.tags.is_empty() {
+        format!("{} · {} g", pose.speed.get(), pose.force.get())
+    } else {
+        pose.tags.join(" · ")
     };
     let name = Label::new(&pose.name, look.palette.text).center();
     name.paint(&ui, upper);
@@ -99,9 +100,10 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             gestures_ui(ui, pane);
             for_all_ui(ui, pane);
         });
-        let size = match ui.available_height() < TILE.y {
-            true => LOW_TILE,
-            false => TILE,
+        let size = if ui.available_height() < TILE.y {
+            LOW_TILE
+        } else {
+            TILE
         };
         let area = ScrollArea::vertical().auto_shrink(false);
         area.id_salt("strip").show(ui, |ui| {
@@ -183,18 +185,20 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let response = button.ground(ui, look, rect, id);
     let inner = rect.shrink(theme::STEP);
     let is_low = size.y < TILE.y;
-    let (picture, words) = match is_low {
-        true => inner.split_left_right_at_x(inner.left() + inner.height()),
-        false => inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT),
+    let (picture, words) = if is_low {
+        inner.split_left_right_at_x(inner.left() + inner.height())
+    } else {
+        inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT)
     };
     if let Some(pose) = pictured(&state.poses, entry) {
         panel::pose_ui(ui, look, picture, &shares(&pose.angles));
     }
     let color = button.text_color(look);
     let text = Label::new(name, color);
-    match is_low {
-        true => text.paint(ui, words.shrink2(vec2(theme::STEP, 0.0))),
-        false => text.center().paint(ui, words),
+    if is_low {
+        text.paint(ui, words.shrink2(vec2(theme::STEP, 0.0)))
+    } else {
+        text.center().paint(ui, words)
     };
     if !matches!(entry, EntryId::Pose(_)) {
         let corner = Rect::from_min_size(picture.left_top(), vec2(16.0, 16.0));

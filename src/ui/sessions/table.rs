@@ -53,9 +53,10 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem])
     let table = table.header(theme::CONTROL, |mut row| {
         for (title, _) in COLUMNS {
             row.col(|ui| {
-                let text = match title == sessions::REPLAY {
-                    true => "",
-                    false => look.say(title),
+                let text = if title == sessions::REPLAY {
+                    ""
+                } else {
+                    look.say(title)
                 };
                 Label::new(text, look.palette.muted).small().ui(ui);
             });
@@ -136,9 +137,10 @@ fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &SessionItem) {
 fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     let look = pane.look;
     let star = item.about.star;
-    let (icon, tip) = match star {
-        true => (theme::STAR, look.say(sessions::UNSTAR)),
-        false => (theme::NO_STAR, look.tip(sessions::STAR)),
+    let (icon, tip) = if star {
+        (theme::STAR, look.say(sessions::UNSTAR))
+    } else {
+        (theme::NO_STAR, look.tip(sessions::STAR))
     };
     let name = look.pair(look.say(sessions::STAR), &item.title());
     let button = Button::new(look.say(sessions::STAR), tip).named(&name);

@@ -43,13 +43,14 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let touched = Finger::ALL
         .into_iter()
         .any(|finger| hand.sample.tactile[finger].is_some() && hand.tare.zero(finger).is_none());
-    let (words, tip, color) = match touched {
-        true => (
+    let (words, tip, color) = if touched {
+        (
             panels::TOUCH_NO_ZERO,
             panels::TOUCH_NO_ZERO,
             look.palette.warn,
-        ),
-        false => (panels::TOUCH_SCALE, panels::TOUCH, look.palette.muted),
+        )
+    } else {
+        (panels::TOUCH_SCALE, panels::TOUCH, look.palette.muted)
     };
     let label = Label::new(look.say(words), color).small().ui(ui);
     label.on_hover_text(look.tip(tip));

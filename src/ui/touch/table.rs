@@ -38,9 +38,10 @@ pub(crate) const LINES: [TouchRow; 7] = [
         caption: panels::TOUCH_CHECK,
         name: panels::TOUCH_CHECK_NAME,
         value: |block, look| {
-            let word = match block.check_ok() {
-                true => panels::TOUCH_OK,
-                false => panels::TOUCH_DIFFERS,
+            let word = if block.check_ok() {
+                panels::TOUCH_OK
+            } else {
+                panels::TOUCH_DIFFERS
             };
             look.say(word).into()
         },

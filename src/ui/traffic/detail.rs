@@ -48,9 +48,10 @@ fn verdict_ui(ui: &mut Ui, look: Look, frame: &Frame) {
         Label::new(look.say(traffic::ALL_WELL), look.palette.ok).ui(ui);
         return;
     };
-    let color = match wrong.is_damage() {
-        true => look.palette.bad,
-        false => look.palette.warn,
+    let color = if wrong.is_damage() {
+        look.palette.bad
+    } else {
+        look.palette.warn
     };
     ui.horizontal(|ui| {
         kit::warning_ui(ui, color);

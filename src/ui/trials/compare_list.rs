@@ -111,9 +111,10 @@ fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut Sho
     let look = sheet.look;
     let mut on = chosen.shown.contains(&id);
     let count = chosen.shown.len();
-    let reason = match on {
-        true => (count == 1).then_some(tune::SHOWN_LAST),
-        false => (count >= SHOWN_MAX).then_some(tune::SHOWN_ALL),
+    let reason = if on {
+        (count == 1).then_some(tune::SHOWN_LAST)
+    } else {
+        (count >= SHOWN_MAX).then_some(tune::SHOWN_ALL)
     };
     let label = look.fill(tune::SHOW, &[&name(look, id)]);
     let tick = egui::Checkbox::without_text(&mut on);

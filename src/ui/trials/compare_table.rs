@@ -161,9 +161,10 @@ impl<'a> TrialSheet<'a, '_> {
         let rows = self.comparison.rows.iter();
         let mut keyed: Vec<_> = rows.map(|key| (value(key), *key)).collect();
         keyed.sort_by(|((a, words), _), ((b, other), _)| {
-            let words = match sorting.falling {
-                true => other.cmp(words),
-                false => words.cmp(other),
+            let words = if sorting.falling {
+                other.cmp(words)
+            } else {
+                words.cmp(other)
             };
             order(*a, *b, sorting.falling).then(words)
         });
@@ -222,15 +223,17 @@ impl<'a> TrialSheet<'a, '_> {
         let key = Some((session, tried.number));
         let is_chosen = *pressed.strong == key;
         row.set_selected(is_chosen);
-        let kind = match tried.is_probe() {
-            true => look.say(tune::PROBE).to_owned(),
-            false => setting_words(tried.setting),
+        let kind = if tried.is_probe() {
+            look.say(tune::PROBE).to_owned()
+        } else {
+            setting_words(tried.setting)
         };
         let joint = look.say(words::dof(seen.joint.dof));
         let (text, number) = (look.palette.text, tried.number);
-        let short = match self.several() {
-            true => format!("{}: {number}", session.0),
-            false => number.to_string(),
+        let short = if self.several() {
+            format!("{}: {number}", session.0)
+        } else {
+            number.to_string()
         };
         let whole = format!("{short}  {kind}  {joint}");
         row.col(|ui| {

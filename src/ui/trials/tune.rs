@@ -36,9 +36,10 @@ impl TuneView {
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
-            match pane.state.hand().runs_series() {
-                true => tune_live::live_ui(ui, pane, &mut self.live),
-                false => self.rest_ui(ui, pane),
+            if pane.state.hand().runs_series() {
+                tune_live::live_ui(ui, pane, &mut self.live)
+            } else {
+                self.rest_ui(ui, pane)
             }
         });
     }

@@ -306,9 +306,12 @@ impl Pass<'_, '_> {
         let look = self.pane.look;
         let now = self.plan.approach;
         let name = |approach: Approach| approach.until().map(Until::name);
-        let all = approaches(self.form.fast).map(|usual| match name(usual) == name(now) {
-            true => (now, look.say(tune::approach(now))),
-            false => (usual, look.say(tune::approach(usual))),
+        let all = approaches(self.form.fast).map(|usual| {
+            if name(usual) == name(now) {
+                (now, look.say(tune::approach(now)))
+            } else {
+                (usual, look.say(tune::approach(usual)))
+            }
         });
         ui.horizontal(|ui| {
             self.caption_ui(ui, tune::APPROACH, 64.0);

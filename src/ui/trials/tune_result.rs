@@ -98,9 +98,12 @@ impl ResultView {
 fn best_words(pane: &Pane<'_>, score: &Score) -> String {
     let over = score.overshoot_g.map_or_else(
         || "-".to_owned(),
-        |spread| match spread.max - spread.min < 1.0 {
-            true => format!("{:.0}", spread.max),
-            false => format!("{:.0}..{:.0}", spread.min, spread.max),
+        |spread| {
+            if spread.max - spread.min < 1.0 {
+                format!("{:.0}", spread.max)
+            } else {
+                format!("{:.0}..{:.0}", spread.min, spread.max)
+            }
         },
     );
     let setting = setting_words(score.setting);

@@ -57,9 +57,10 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let armed = pane.state.hand().is_armed();
     let refusal = pane.state.hand().arm_refusal();
-    let (text, name, weight) = match armed {
-        true => (main::DISARM, main::DISARM_NAME, Weight::Armed),
-        false => (main::ARM, main::ARM_NAME, Weight::Strong),
+    let (text, name, weight) = if armed {
+        (main::DISARM, main::DISARM_NAME, Weight::Armed)
+    } else {
+        (main::ARM, main::ARM_NAME, Weight::Strong)
     };
     let (text, name, refusal) = match refusal {
         // Only the key arms: a press here would be refused.
@@ -87,9 +88,10 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// The way back from a recording, where arming is otherwise.
 fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     let look = pane.look;
-    let text = match needs_eyes {
-        true => sessions::BACK_EYES,
-        false => sessions::BACK,
+    let text = if needs_eyes {
+        sessions::BACK_EYES
+    } else {
+        sessions::BACK
     };
     let button = Button::new(look.say(text), look.tip(sessions::BACK));
     let button = button.weight(Weight::Strong).large();
@@ -122,9 +124,10 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::new(look.say(text), &tip).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
         let on = pane.state.hand().recording.is_none();
-        let action = match simulated {
-            true => SessionAction::RecordSimulated(on),
-            false => SessionAction::Record(on),
+        let action = if simulated {
+            SessionAction::RecordSimulated(on)
+        } else {
+            SessionAction::Record(on)
         };
         pane.actions.push(Action::Session(action));
     }

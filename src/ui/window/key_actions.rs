@@ -70,9 +70,10 @@ pub(super) fn held_key_action(ui: &Ui, state: &State, wishes: &[Wish]) -> Option
     if !state.settings.hold_to_run || state.timeline.is_some() {
         return None;
     }
-    let key = match is_covered(state) {
-        true => HoldKey::LetGo,
-        false => keys::hold_key(ui, wishes),
+    let key = if is_covered(state) {
+        HoldKey::LetGo
+    } else {
+        keys::hold_key(ui, wishes)
     };
     let is_held = key != HoldKey::LetGo;
     if is_held {

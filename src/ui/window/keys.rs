@@ -167,17 +167,18 @@ pub(crate) static ROWS: [KeyRow; 41] = [
 ];
 
 /// The keys with which egui itself makes everything larger and smaller.
-pub(crate) const ZOOM: [(&str, Text); 3] = match cfg!(target_os = "macos") {
-    true => [
+pub(crate) const ZOOM: [(&str, Text); 3] = if cfg!(target_os = "macos") {
+    [
         ("Cmd++", window::KEY_ZOOM_IN),
         ("Cmd+-", window::KEY_ZOOM_OUT),
         ("Cmd+0", window::KEY_ZOOM_RESET),
-    ],
-    false => [
+    ]
+} else {
+    [
         ("Ctrl++", window::KEY_ZOOM_IN),
         ("Ctrl+-", window::KEY_ZOOM_OUT),
         ("Ctrl+0", window::KEY_ZOOM_RESET),
-    ],
+    ]
 };
 
 impl KeyRow {

@@ -117,9 +117,10 @@ impl Window {
         }
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
-        let mut wishes = match state.hands.iter().any(HandState::runs_series) {
-            true => keys::take_any(ui),
-            false => keys::take(ui, escape),
+        let mut wishes = if state.hands.iter().any(HandState::runs_series) {
+            keys::take_any(ui)
+        } else {
+            keys::take(ui, escape)
         };
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);

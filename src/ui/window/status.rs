@@ -121,14 +121,16 @@ fn alarm(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.state.hand();
     let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
     let hand = hands.find(|hand| matches!(hand.link.hold, Hold::Alarm { .. }))?;
-    let title = match hand.link.feedback_in_doubt {
-        true => main::DOUBT_TITLE,
-        false => main::ALARM_TITLE,
+    let title = if hand.link.feedback_in_doubt {
+        main::DOUBT_TITLE
+    } else {
+        main::ALARM_TITLE
     };
     let alarm = Warning::new(pane, title, pane.look.palette.bad);
-    Some(match pane.state.hands.is_several() {
-        true => alarm.of(pane, &hand.label.name),
-        false => alarm,
+    Some(if pane.state.hands.is_several() {
+        alarm.of(pane, &hand.label.name)
+    } else {
+        alarm
     })
 }
 
@@ -344,9 +346,10 @@ impl StatusLine {
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
-        let hint = match pane.state.hand().rests() {
-            true => panels::NOTE_HINT,
-            false => panels::NOTE_HINT_MOVING,
+        let hint = if pane.state.hand().rests() {
+            panels::NOTE_HINT
+        } else {
+            panels::NOTE_HINT_MOVING
         };
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
@@ -411,9 +414,10 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
-            let words = match pane.state.hand().link.state.is_live() {
-                true => window::AT_REST,
-                false => window::NO_HAND,
+            let words = if pane.state.hand().link.state.is_live() {
+                window::AT_REST
+            } else {
+                window::NO_HAND
             };
             Label::muted(look, words).ui(ui);
             return;
@@ -427,9 +431,10 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
 fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
-    match worst.color == palette.accent {
-        true => drop(kit::lamp_ui(ui, Some(worst.color))),
-        false => drop(kit::warning_ui(ui, worst.color)),
+    if worst.color == palette.accent {
+        drop(kit::lamp_ui(ui, Some(worst.color)))
+    } else {
+        drop(kit::warning_ui(ui, worst.color))
     }
     kit::right_ui(ui, |ui| {
         if let Some(help) = &worst.help {

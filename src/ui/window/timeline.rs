@@ -55,9 +55,10 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let icon = |text: Text, icon| Button::said(look, text).icon(icon);
     let back = icon(sessions::STEP_BACK, theme::TO_LEFT);
     back.on_click(ui, pane, Action::Session(SessionAction::Step(false)));
-    let run = match line.runs {
-        true => icon(sessions::PAUSE, theme::PAUSE),
-        false => icon(sessions::RUN, theme::PLAY),
+    let run = if line.runs {
+        icon(sessions::PAUSE, theme::PAUSE)
+    } else {
+        icon(sessions::RUN, theme::PLAY)
     };
     run.on_click(ui, pane, Action::Session(SessionAction::Run(!line.runs)));
     let on = icon(sessions::STEP_ON, theme::TO_RIGHT);
@@ -76,9 +77,10 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     }
     let at = clock(line.at.since(line.first));
     let whole = clock(line.last.since(line.first));
-    let color = match line.waits {
-        true => look.palette.faint,
-        false => look.palette.text,
+    let color = if line.waits {
+        look.palette.faint
+    } else {
+        look.palette.text
     };
     let words = format!("{at} / {whole}");
     Label::new(&words, color).number().ui(ui);

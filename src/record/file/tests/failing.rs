@@ -128,9 +128,10 @@ impl DiskFile for FailingFile {
     fn place(&self, _: &Path) -> FilePlace {
         let state = self.0.0.lock().unwrap();
         let mut all = state.files.iter();
-        match all.any(|(_, content)| Arc::ptr_eq(content, &self.1)) {
-            true => FilePlace::There,
-            false => FilePlace::Removed,
+        if all.any(|(_, content)| Arc::ptr_eq(content, &self.1)) {
+            FilePlace::There
+        } else {
+            FilePlace::Removed
         }
     }
 
@@ -150,9 +151,10 @@ impl DiskFile for FailingFile {
             }
             (full, _) => {
                 self.put(place, &bytes[..part]);
-                Err(match full {
-                    true => ErrorKind::StorageFull.into(),
-                    false => io::Error::other("Input/output error"),
+                Err(if full {
+                    ErrorKind::StorageFull.into()
+                } else {
+                    io::Error::other("Input/output error")
                 })
             }
         }

@@ -55,14 +55,14 @@ impl Rewrite {
     }
 
     fn writer(&self) -> Writer<Cursor<Vec<u8>>> {
-        let options = match self.index {
-            true => self.options.clone(),
-            false => self
-                .options
+        let options = if self.index {
+            self.options.clone()
+        } else {
+            self.options
                 .clone()
                 .emit_summary_records(false)
                 .emit_summary_offsets(false)
-                .emit_message_indexes(false),
+                .emit_message_indexes(false)
         };
         let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
         for metadata in &self.metadata {

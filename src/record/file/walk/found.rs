@@ -68,9 +68,10 @@ pub struct Found {
 
 impl Found {
     pub(super) fn chunk(&mut self, chunk: ChunkPlace) {
-        match self.chunks.len() < CHUNKS_MAX {
-            true => self.chunks.push(chunk),
-            false => self.skipped += HEAD + chunk.place.len,
+        if self.chunks.len() < CHUNKS_MAX {
+            self.chunks.push(chunk)
+        } else {
+            self.skipped += HEAD + chunk.place.len
         }
     }
 

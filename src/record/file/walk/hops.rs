@@ -148,10 +148,7 @@ pub(super) fn next_place<F: Read + Seek>(
         let bytes = buffer.get_mut(..there).unwrap_or_default();
         read_at(file, at, bytes)?;
         let is_end = at + there as u64 >= len;
-        let places = match is_end {
-            true => there,
-            false => there - LOOKED_AT,
-        };
+        let places = if is_end { there } else { there - LOOKED_AT };
         let codes = bytes.iter().enumerate().take(places);
         // Most bytes are seen to be no beginning by themselves: a file may have gigabytes of zeros.
         for (nth, _) in codes.filter(|(_, code)| matches!(**code, op::CHUNK | op::MESSAGE)) {

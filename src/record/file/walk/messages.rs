@@ -94,9 +94,6 @@ fn message(record: &[u8]) -> Option<ChunkMessage<'_>> {
         channel: u16::from_le_bytes(*channel),
         sequence: u32::from_le_bytes(*sequence),
         times: (u64::from_le_bytes(*log), u64::from_le_bytes(*publish)),
-        data: match data.len() <= MESSAGE_MAX {
-            true => data,
-            false => &[],
-        },
+        data: if data.len() <= MESSAGE_MAX { data } else { &[] },
     })
 }

@@ -28,9 +28,10 @@ pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Resul
                 let (first, last) = times.get_or_insert((time, time));
                 (*first, *last) = ((*first).min(time), (*last).max(time));
             });
-            let unknown = match is_whole {
-                true => (0, 0),
-                false => (before.unwrap_or(1), after.or(before).unwrap_or(1)),
+            let unknown = if is_whole {
+                (0, 0)
+            } else {
+                (before.unwrap_or(1), after.or(before).unwrap_or(1))
             };
             (chunk.first_nanos, chunk.last_nanos) = times.unwrap_or(unknown);
         }
