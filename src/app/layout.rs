@@ -26,7 +26,6 @@ pub enum WindowRoom {
 }
 
 impl WindowRoom {
-    /// All of them.
     pub const ALL: [Self; 4] = [Self::Joints, Self::Side, Self::Faults, Self::Strip];
 }
 
@@ -95,7 +94,6 @@ impl Default for WindowSize {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
-    /// Size of the window.
     pub window: WindowSize,
     /// See [`WindowRoom::Joints`].
     pub joints: RoomLayout,

@@ -34,7 +34,6 @@ pub enum Level {
 pub enum RequestKind {
     /// A stored pose.
     Gesture(Gesture),
-    /// To clear errors.
     ClearErrors,
 }
 
@@ -49,7 +48,6 @@ pub enum NoticeKind {
     Reconnected,
     /// The USB adapter keeps replies back.
     LatencyTimer {
-        /// Its port.
         port: String,
         /// For how long, where the system tells; else it was seen in round trips.
         ms: Option<u16>,
@@ -65,7 +63,6 @@ pub enum NoticeKind {
     StopNotSent,
     /// A fingertip that is touched was to be tared: nothing was changed.
     TareUnderLoad {
-        /// The fingertip.
         finger: Finger,
         /// What presses it, in newtons.
         newtons: f32,
@@ -84,7 +81,6 @@ pub enum NoticeKind {
     Fault {
         /// The joint.
         dof: Dof,
-        /// What.
         what: FaultKind,
     },
     /// Something was asked and did not work.
@@ -109,12 +105,7 @@ pub enum NoticeKind {
     /// A pose cannot be kept while an angle is unknown or old.
     PoseUnknown,
     /// A file of poses was added.
-    PosesImported {
-        /// Poses in it.
-        poses: usize,
-        /// Sequences in it.
-        sequences: usize,
-    },
+    PosesImported { poses: usize, sequences: usize },
     /// A file that was chosen was not taken, not even in part.
     FileRefused {
         /// The file.
@@ -155,7 +146,6 @@ pub enum NoticeKind {
     SessionRefused {
         /// The file.
         path: PathBuf,
-        /// Why.
         why: OpenError,
     },
     /// Something happened to the file that a hand is recorded into.
@@ -175,7 +165,6 @@ pub enum NoticeKind {
         /// Not before this time, `2026-11-22 09:30`, UTC.
         due: String,
     },
-    /// Sessions were deleted.
     SessionsDeleted {
         /// How many.
         sessions: usize,
@@ -184,7 +173,6 @@ pub enum NoticeKind {
     SessionOpened {
         /// Where it lies.
         path: PathBuf,
-        /// Trials in it.
         trials: usize,
     },
     /// No process could be started that stops the hand if this program is killed.
@@ -198,15 +186,9 @@ pub enum NoticeKind {
         reason: String,
     },
     /// A file was written.
-    Saved {
-        /// Where.
-        path: PathBuf,
-        /// Entries in it.
-        entries: usize,
-    },
+    Saved { path: PathBuf, entries: usize },
     /// A file could not be written.
     NotSaved {
-        /// Where.
         path: PathBuf,
         /// The system's words.
         message: String,
@@ -229,7 +211,6 @@ pub enum NoticeKind {
     NoFileChosen,
     /// The hand at this address answers otherwise than the one of last time: it may be another.
     HandDiffers {
-        /// In what.
         differences: Vec<FactDifference>,
         /// Day of last time.
         last_seen: String,

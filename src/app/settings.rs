@@ -43,7 +43,6 @@ pub enum Language {
     /// English.
     #[default]
     En,
-    /// 中文.
     Zh,
 }
 

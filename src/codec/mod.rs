@@ -1,4 +1,5 @@
 //! Bytes on a wire to register operations and back, for both sides of the conversation. No IO, no clock.
+#![warn(missing_docs)]
 
 pub mod can;
 pub mod mbap;

@@ -39,7 +39,6 @@ impl std::fmt::Debug for Pin {
 /// What became of a PIN that was typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PinAnswer {
-    /// It was right.
     Right,
     /// It was wrong; so many tries are left.
     Wrong {

@@ -69,10 +69,7 @@ pub enum ExhibitStage {
         until: Moment,
     },
     /// A visitor's time is over; the next one may play then.
-    NextVisitor {
-        /// When.
-        at: Moment,
-    },
+    NextVisitor { at: Moment },
     /// The hand rests open because it grew warm, about until then.
     Cooling {
         /// About when.
@@ -157,7 +154,6 @@ pub enum ExhibitEvent {
     Rest,
     /// Somebody pressed STOP.
     Stop,
-    /// The link was lost.
     LinkLost,
 }
 
@@ -191,10 +187,11 @@ enum Playback {
     None,
     /// This, once the hand is armed.
     Waits(PlayPlan),
-    /// It plays.
     Plays,
     /// It was played, then.
-    Done { at: Moment },
+    Done {
+        at: Moment,
+    },
 }
 
 /// A running exhibition.

@@ -2,6 +2,7 @@
 //!
 //! Everything that reaches a hand is a [`HandCommand`], a [`Setting`] or a [`Trigger`]; everything that comes back
 //! passes [`sample::HandSample`]. Both are built from the one table in [`register`].
+#![warn(missing_docs)]
 
 pub mod column;
 pub mod command;

@@ -64,9 +64,7 @@ impl MarkKind {
 /// One moment worth a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
-    /// When.
     pub at: Moment,
-    /// What.
     pub kind: MarkKind,
 }
 

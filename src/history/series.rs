@@ -33,7 +33,6 @@ const FIRST_CHANNELS: usize = FIRST_TIP + Finger::ALL.len();
 /// One line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Series {
-    /// Of a joint.
     Joint(Quantity, Dof),
     /// Of a fingertip.
     Tip(Touch, Finger),

@@ -28,7 +28,6 @@ pub struct StreamLine {
 /// Why a line was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum LineFault {
-    /// It is too long.
     #[error("longer than {LINE_MAX} bytes")]
     TooLong,
     /// A number is NaN or infinite.

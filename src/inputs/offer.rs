@@ -29,7 +29,6 @@ pub struct Offer {
 pub struct OfferLimits {
     /// Force thresholds.
     pub force: PerDof<Option<Force>>,
-    /// Speeds.
     pub speed: PerDof<Option<Speed>>,
 }
 

@@ -5,6 +5,7 @@
 //! setpoints, requests, reads ([`poll`]). Settings, SAVE and reset are requests that end in a verdict
 //! ([`session`]). What went over the wire can be looked at afterwards
 //! ([`tap`], [`traffic`]).
+#![warn(missing_docs)]
 mod bus;
 pub mod clock;
 pub mod config;

@@ -22,10 +22,8 @@ pub struct Backups {
     hand: String,
 }
 
-/// One backup.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Backup {
-    /// Its path.
     pub path: PathBuf,
     /// What is in it, with when, where and why it was made; or why it cannot be read.
     pub file: Result<ParamsFile, FileError>,

@@ -57,13 +57,11 @@ impl RowVerdict {
 pub struct RowOutcome {
     /// The row.
     pub id: ParamId,
-    /// The wanted value.
     pub wanted: Value,
     /// The value before, if it was known.
     pub before: Option<Value>,
     /// The value now, if it could be read back.
     pub holds: Option<Value>,
-    /// The verdict.
     pub verdict: RowVerdict,
 }
 

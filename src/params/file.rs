@@ -19,7 +19,6 @@ pub const FILE_LEN_MAX: u64 = 64 * 1024;
 /// The tables with a line for each joint.
 const GROUPS: [&str; 2] = [DEFAULT_SPEED, DEFAULT_FORCE];
 
-/// A file of parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ParamsFile {
     /// Where the values were read, as an endpoint; empty if nowhere.

@@ -7,7 +7,6 @@ use crate::transport::Endpoint;
 /// Where the hand is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WhichPlace {
-    /// Where it was.
     Old,
     /// Where it will be, if the change acts at once.
     New,
@@ -61,7 +60,6 @@ impl Moved {
 /// Both places of a hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlacePair {
-    /// Where it was.
     pub old: Endpoint,
     /// Where it will be; as old where this wire finds it by something else.
     pub new: Endpoint,

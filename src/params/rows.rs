@@ -29,9 +29,7 @@ pub enum ParamId {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// A number.
     Number(i32),
-    /// An address.
     Address(Ipv4Addr),
 }
 

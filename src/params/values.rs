@@ -29,7 +29,6 @@ pub struct ParamDifference {
     pub id: ParamId,
     /// Here.
     pub ours: Option<Value>,
-    /// There.
     pub theirs: Value,
 }
 

@@ -51,11 +51,9 @@ pub enum SequenceEdit {
 /// One change of the library.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LibraryEdit {
-    /// Of a pose.
     Pose(PoseId, PoseEdit),
     /// A new sequence without steps, by this name or the next free one.
     NewSequence(String),
-    /// Of a sequence.
     Sequence(SequenceId, SequenceEdit),
     /// A copy of a shipped pose, or of a shipped sequence with the poses that it needs.
     Copy(EntryId),

@@ -31,11 +31,8 @@ pub struct ReactionId(pub u64);
 /// An entry of the library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EntryId {
-    /// A pose.
     Pose(PoseId),
-    /// A sequence.
     Sequence(SequenceId),
-    /// A reaction.
     Reaction(ReactionId),
 }
 
@@ -191,7 +188,6 @@ impl LibraryPose {
 /// One pose on a timeline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SequenceStep {
-    /// The pose.
     pub pose: PoseId,
     /// Speed on the way there; the pose's own is for recalling it alone.
     pub speed: Speed,
@@ -246,7 +242,6 @@ pub struct Reaction {
 /// All poses and sequences, in the person's order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PoseLibrary {
-    /// The poses.
     pub poses: Vec<LibraryPose>,
     /// The sequences. Their steps name poses of this library only.
     pub sequences: Vec<Sequence>,

@@ -10,7 +10,6 @@ use std::time::Duration;
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cue {
-    /// The pose.
     pub pose: PoseId,
     /// Where each joint goes; `None` = left alone.
     pub targets: Targets,
@@ -75,7 +74,6 @@ impl Cue {
 /// All that is needed to play an entry of the library: one that is edited meanwhile does not change what runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlayPlan {
-    /// Which.
     pub entry: EntryId,
     /// The poses.
     pub cues: Vec<Cue>,
@@ -131,7 +129,6 @@ pub enum PlayEnd {
     Disarmed,
     /// A drive reported a fault.
     Fault,
-    /// The link was lost.
     LinkLost,
     /// A person moved the hand in another way.
     TakenOver,
@@ -141,15 +138,9 @@ pub enum PlayEnd {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlayPhase {
     /// On the way to a pose.
-    Moving {
-        /// Since when.
-        since: Moment,
-    },
+    Moving { since: Moment },
     /// At a pose.
-    Dwelling {
-        /// Since when.
-        since: Moment,
-    },
+    Dwelling { since: Moment },
     /// A person paused it, or the one step that was asked for is done.
     Paused,
     /// Over.

@@ -11,7 +11,6 @@ const FULL_STROKE_S: f64 = 0.6;
 /// A dry run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
-    /// Of which sequence.
     pub sequence: SequenceId,
     /// When it began.
     pub since: Moment,

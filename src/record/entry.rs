@@ -33,7 +33,6 @@ impl Entry {
 /// Where the link stood, told when that changed, and with its figures once a second.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkReport {
-    /// When.
     pub at: Moment,
     /// Where it stood.
     pub state: LinkState,
@@ -48,9 +47,7 @@ pub struct LinkReport {
 /// Something that happened beside the link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
-    /// When.
     pub at: Moment,
-    /// What.
     pub kind: EventKind,
     /// In words; what they are depends on the kind.
     pub words: String,

@@ -17,20 +17,17 @@ pub enum Record {
     },
     /// The link went from one state to another.
     State {
-        /// When.
         at: Moment,
         /// The new one.
         state: LinkState,
     },
     /// A write left for the hand.
     Sent {
-        /// When.
         at: Moment,
         /// Its number on this connection, for its fate.
         number: u64,
         /// Why it was written.
         cause: WriteCause,
-        /// What was written.
         write: WrittenMemory,
     },
     /// What became of a write.
@@ -44,7 +41,6 @@ pub enum Record {
     },
     /// A person asked to arm and may not yet.
     ArmRefused {
-        /// When.
         at: Moment,
         /// Why.
         reason: ArmRefusal,

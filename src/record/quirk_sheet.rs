@@ -77,7 +77,6 @@ impl QuirkSheet {
 /// What two sheets may disagree about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fact {
-    /// HAND_ID.
     HandId,
     /// REDU_RATIO.
     BaudCode,
@@ -92,10 +91,8 @@ pub enum Fact {
 /// One thing that a hand answered otherwise before.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FactDifference {
-    /// What.
     pub fact: Fact,
     /// Then.
     pub before: String,
-    /// Now.
     pub now: String,
 }

@@ -78,13 +78,11 @@ pub enum Hold {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Disarmed {
-    /// Stop.
     Stop,
     /// The person disarmed it.
     Person,
     /// A drive reports a fault.
     Fault,
-    /// The link was lost.
     LinkLost,
     /// Feedback grew old.
     Stale,
@@ -173,11 +171,8 @@ pub enum ArmRefusal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SetpointRegister {
-    /// ANGLE_SET.
     AngleSet,
-    /// FORCE_SET.
     ForceSet,
-    /// SPEED_SET.
     SpeedSet,
 }
 

@@ -27,9 +27,7 @@ pub enum PieceKind {
 /// Bytes that passed at once, or a change of the wire itself, which has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Piece {
-    /// When.
     pub at: Moment,
-    /// What.
     pub kind: PieceKind,
     /// The bytes; at most what one call moved.
     pub bytes: Vec<u8>,

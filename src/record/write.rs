@@ -65,7 +65,6 @@ pub enum WriteCause {
 }
 
 impl WriteCause {
-    /// All.
     pub const ALL: [Self; 5] = [
         Self::Hold,
         Self::Arming,
@@ -147,10 +146,7 @@ pub enum Verdict {
     /// The hand did not say no, and holds something else: dropped, or taken as another value.
     Differs,
     /// What the hand holds is not known.
-    Unverified {
-        /// Why.
-        why: Doubt,
-    },
+    Unverified { why: Doubt },
     /// Nothing was written.
     NotSent(NotSent),
 }
@@ -164,7 +160,6 @@ pub enum Doubt {
     /// A late reply to an earlier read could have been mistaken for the answer.
     #[error("a late answer could have been mistaken for the value read back")]
     Ambiguous,
-    /// The link was lost.
     #[error("the link was lost")]
     LinkLost,
 }
@@ -183,10 +178,7 @@ pub enum Saved {
     /// power-up shows what is in flash.
     ReadBack,
     /// Whether anything was written to flash is not known.
-    Unknown {
-        /// Why.
-        why: SaveDoubt,
-    },
+    Unknown { why: SaveDoubt },
     /// The hand, or the rule against unsafe writes, said no.
     Refused {
         /// The protocol's word for it.
@@ -235,7 +227,6 @@ pub enum Reset {
     },
     /// No acknowledgement came: it may have acted, and the hand may be elsewhere now.
     Unanswered,
-    /// It was not sent.
     NotSent(NotSent),
 }
 
@@ -253,9 +244,7 @@ pub enum Calibrated {
     },
     /// Whether the sensors were calibrated is not known.
     Unknown {
-        /// Why.
         why: SaveDoubt,
     },
-    /// It was not sent.
     NotSent(NotSent),
 }

@@ -84,7 +84,6 @@ impl InspireState {
 /// What was told so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DdsTold {
-    /// States.
     pub states: u64,
     /// States that were not told, as a part of them was never read or is old.
     pub incomplete: u64,

@@ -93,7 +93,6 @@ pub struct SaveFrame {
 /// One write that reached the hand, taken or not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JournalEntry {
-    /// When.
     pub at: Moment,
     /// First byte's address.
     pub address: u16,

@@ -29,7 +29,6 @@ pub enum NoSwitch {
         name: &'static str,
         /// What was given.
         value: String,
-        /// What it has.
         known: String,
     },
 }
@@ -51,7 +50,6 @@ macro_rules! switches {
             }
         )+
 
-        /// All switches.
         pub const SWITCHES: &[Switch] = &[
             $(Switch { name: $spelled, about: $about, values: &[$first, $($value),+] },)+
         ];

@@ -54,16 +54,10 @@ pub enum FileCause {
     },
     /// Two entries with one name.
     #[error("the name \"{name}\" is used twice")]
-    Twice {
-        /// The name.
-        name: String,
-    },
+    Twice { name: String },
     /// A name that the file does not have.
     #[error("there is no \"{name}\" in this file")]
-    Absent {
-        /// The name.
-        name: String,
-    },
+    Absent { name: String },
     /// More than there may be.
     #[error("{got} are too many: at most {limit}")]
     TooMany {

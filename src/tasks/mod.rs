@@ -1,5 +1,6 @@
 //! What takes several steps at a hand, each task written once as an async function. The window and the command line call the
 //! same. A task tells its steps as they begin and gives its result at the end; it asks a person nothing itself and draws nothing.
+#![warn(missing_docs)]
 
 pub mod apply;
 pub mod calibrate;

@@ -75,9 +75,7 @@ pub struct DdsMessage {
 /// A topic and the type of its messages, as DDS names them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DdsTopic {
-    /// Its name.
     pub name: String,
-    /// Its type.
     pub type_name: String,
 }
 

@@ -92,7 +92,6 @@ impl PtyLink {
         &self.slave_path
     }
 
-    /// Where the link is.
     pub fn link_path(&self) -> &Path {
         &self.link_path
     }

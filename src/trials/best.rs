@@ -45,7 +45,6 @@ impl std::fmt::Display for Criterion {
 /// Middle, lowest and highest of a metric over repeats and joints.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MetricSpread {
-    /// The median.
     pub median: f64,
     /// The lowest.
     pub min: f64,
@@ -67,10 +66,8 @@ impl MetricSpread {
 /// What the trials of one setting come to. Each spread is known only if every joint of every trial told it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
-    /// The setting.
     #[serde(flatten)]
     pub setting: TrialSetting,
-    /// Trials of it.
     pub trials: usize,
     /// Trials of it that ended early.
     pub aborted: usize,

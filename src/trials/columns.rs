@@ -31,7 +31,6 @@ pub enum Metric {
     Rate,
 }
 
-/// One column.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialColumn {
     /// What it shows.

@@ -35,7 +35,6 @@ pub enum Abort {
     Fault {
         /// The first such joint.
         dof: Dof,
-        /// Its faults.
         faults: Faults,
     },
     /// A joint is as warm as the limit.
@@ -45,7 +44,6 @@ pub enum Abort {
         dof: Dof,
         /// Its temperature.
         celsius: u8,
-        /// The limit.
         limit: u8,
     },
     /// The force of a joint reached the ceiling.
@@ -55,7 +53,6 @@ pub enum Abort {
         dof: Dof,
         /// Force above its reading at rest.
         grams: i32,
-        /// The ceiling.
         ceiling: i16,
     },
     /// A joint did not reach its target in time.
@@ -74,14 +71,10 @@ pub enum Abort {
     },
     /// Readings of all joints that the limits depend on are missing or old.
     #[error("the {what} readings cannot be watched: they are not known yet, or old")]
-    NotRead {
-        /// Which.
-        what: &'static str,
-    },
+    NotRead { what: &'static str },
     /// A reading that the limits depend on makes no sense.
     #[error("the {what} of {} cannot be watched: it makes no sense", dof.name())]
     Blind {
-        /// Which.
         what: &'static str,
         /// The joint.
         dof: Dof,
@@ -158,7 +151,6 @@ pub struct Feedback<'a> {
     pub sample: &'a HandSample,
     /// Force of each joint at rest, g, once it is known.
     pub rest_g: &'a PerDof<Option<f64>>,
-    /// Now.
     pub now: Moment,
 }
 

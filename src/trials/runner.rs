@@ -52,7 +52,6 @@ pub enum Stage {
     Preparing,
     /// It is still, and its limits are being confirmed.
     Quiet,
-    /// It closes.
     Closing,
     /// It holds.
     Dwelling,
@@ -163,7 +162,6 @@ impl Runner {
         }
     }
 
-    /// Takes a sample.
     pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
         if self.ending.is_some() {
             return;

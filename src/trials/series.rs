@@ -132,7 +132,6 @@ impl TrialSeries {
         Some(self.fail(why))
     }
 
-    /// Takes a sample.
     pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
         if let SeriesPhase::Running(runner, _) = &mut self.phase {
             runner.take(sample, fresh);

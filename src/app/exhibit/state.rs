@@ -67,7 +67,6 @@ pub enum ExhibitAction {
     EnterFile,
     /// What visitors do; arming and disarming passes with the staff panel open only.
     Wish(ExhibitWish),
-    /// Ask for the PIN.
     AskPin,
     /// This was typed.
     Pin(String),

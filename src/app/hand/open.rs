@@ -6,7 +6,6 @@ use crate::link::{Lease, LinkHandle, Owner, Records, RequestError};
 use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 
-/// An open link.
 #[derive(Debug)]
 pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,

@@ -24,7 +24,6 @@ pub enum Play {
 /// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.
 #[derive(Debug)]
 pub struct SequenceRun {
-    /// Which.
     pub entry: EntryId,
     /// Where it stands.
     pub view: PlayView,

@@ -17,7 +17,6 @@ impl SlotId {
 /// Which hand, and what it is called: the person's name for it, else where it is.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct HandLabel {
-    /// Its slot.
     pub slot: SlotId,
     /// Empty for a slot without a hand.
     pub name: Arc<str>,

@@ -88,7 +88,6 @@ pub struct HandState {
     pub traffic: Traffic,
     /// Where the task under the card wants the link.
     pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
-    /// The open link.
     pub(crate) open: Option<OpenLink>,
     /// The hand is being left: it was told to hold.
     pub(crate) leaving: Option<Leaving>,

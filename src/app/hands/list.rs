@@ -111,7 +111,6 @@ impl HandList {
         self.shown = self.more.len();
     }
 
-    /// Shows this one.
     pub fn show(&mut self, slot: SlotId) {
         let at = self.iter().position(|hand| hand.label.slot == slot);
         self.shown = at.unwrap_or(self.shown);

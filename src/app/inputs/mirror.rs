@@ -7,7 +7,6 @@ use crate::link::{LinkHandle, LinkStopper};
 /// Another hand of this window that is watched. Closed with its link.
 #[derive(Debug)]
 pub struct HandMirror {
-    /// Its slot.
     pub leader: SlotId,
     /// Which share of its bends would be followed.
     pub scale: MirrorScale,

@@ -65,11 +65,8 @@ pub enum InputKind {
     Stream,
     /// The gamepad.
     Pad,
-    /// The gateway.
     Gateway,
-    /// Viewers.
     Viewers,
-    /// DDS.
     Dds,
 }
 
@@ -108,7 +105,6 @@ pub struct HandInputs {
     pub pad_view: Option<PadView>,
     /// Where the gateway is, and who uses it.
     pub gateway_at: Option<SocketAddr>,
-    /// Its clients.
     pub clients: Vec<GatewayClient>,
     /// Where viewers are served, and how many there are.
     pub foxglove_at: Option<(SocketAddr, usize)>,
@@ -120,7 +116,6 @@ pub struct HandInputs {
     pub follow: Option<FollowRun>,
 }
 
-/// DDS, joined.
 #[derive(Debug)]
 pub(crate) struct JoinedDds {
     pub(crate) shared: SharedOnDds,
@@ -133,7 +128,6 @@ pub(crate) struct JoinedDds {
 pub struct DdsState {
     /// The address of its interface.
     pub at: Ipv4Addr,
-    /// What was told.
     pub told: DdsTold,
     /// What came in.
     pub view: DdsView,

@@ -30,6 +30,5 @@ pub enum ParamAction {
     Tick(ParamId),
     /// Stage the rows that are ticked. Writes nothing.
     StageTicked,
-    /// Close the file.
     CloseFile,
 }

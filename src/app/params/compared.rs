@@ -8,7 +8,6 @@ use std::collections::BTreeSet;
 /// A file that is compared with the hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Its name.
     pub name: String,
     /// What it holds.
     pub file: ParamsFile,

@@ -30,7 +30,6 @@ const LOOKED_AWAY: Duration = Duration::from_millis(500);
 /// What is being done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Doing {
-    /// Nothing.
     #[default]
     Nothing,
     /// Rows are read.

@@ -35,7 +35,6 @@ pub enum ProcedureStage<S, E> {
     Asking,
     /// It is under way, since then.
     Doing(S, Moment),
-    /// It is over.
     Over(E),
 }
 
@@ -90,11 +89,9 @@ pub enum Procedure {
 /// A change of what the hand is found by.
 #[derive(Debug)]
 pub struct PlaceProcedure {
-    /// What is changed.
     pub change: PlaceChange,
     /// Where it stands.
     pub stage: ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>,
-    /// The backup.
     pub backup: Option<PathBuf>,
     /// What a SAVE would make last besides: it writes all that the hand holds.
     pub dangers: Vec<Danger>,

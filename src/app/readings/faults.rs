@@ -44,7 +44,6 @@ pub enum NothingToClear {
 pub struct FaultEntry {
     /// The joint.
     pub dof: Dof,
-    /// What.
     pub what: FaultKind,
     /// When it came for the first time.
     pub first: Moment,

@@ -12,7 +12,6 @@ use std::path::{Path, PathBuf};
 /// Bytes of such a file: some thousand notes.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
-/// A note.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SessionNote {
     /// Microseconds of the recording's own clock.
@@ -92,7 +91,6 @@ impl SessionAbout {
 }
 
 impl SessionNote {
-    /// When.
     pub const fn at(&self) -> Moment {
         Moment::from_micros(self.at_micros)
     }

@@ -16,7 +16,6 @@ use std::path::PathBuf;
 pub struct BesideSession {
     /// Its name, or that of its file.
     pub title: String,
-    /// The first moment.
     pub first: Moment,
     /// What happened.
     pub marks: Vec<FileMark>,

@@ -12,7 +12,6 @@ use std::time::Duration;
 /// Columns of the strip of force.
 pub const STRIP: usize = 96;
 
-/// One session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionItem {
     /// The file.

@@ -50,7 +50,6 @@ enum SeekTarget {
     At(Moment),
     /// The reading of the angles after this moment.
     After(Moment),
-    /// The one before it.
     Before(Moment),
 }
 

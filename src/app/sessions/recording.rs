@@ -33,7 +33,6 @@ pub struct HandRecording {
     input: RecorderInput,
     /// The hand, in the spelling of endpoints.
     pub hand: String,
-    /// When it began.
     pub began: Moment,
     /// What the hand keeps, as it was recorded last.
     params: Params,

@@ -17,9 +17,7 @@ pub struct Timeline {
     pub began: String,
     /// The hand's endpoint.
     pub hand: String,
-    /// The first moment.
     pub first: Moment,
-    /// The last moment.
     pub last: Moment,
     /// The moment that is shown.
     pub at: Moment,

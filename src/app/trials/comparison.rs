@@ -30,9 +30,7 @@ pub struct RowKey {
 /// What stands in a row.
 #[derive(Debug, Clone, Copy)]
 pub struct ComparedRow<'a> {
-    /// The session.
     pub session: &'a TrialSession,
-    /// The trial.
     pub trial: &'a TrialSummary,
     /// What was measured.
     pub joint: &'a JointMetrics,
@@ -75,10 +73,8 @@ impl SessionDifference {
     ];
 }
 
-/// One line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedLine {
-    /// Whose.
     pub key: RowKey,
     /// When it met the object, s.
     pub contact_s: Option<f64>,

@@ -19,7 +19,6 @@ pub struct SeriesRun {
     pub epoch: ArmEpoch,
     /// Where its trials go.
     pub session: SessionId,
-    /// The plan.
     pub plan: TrialPlan,
     /// When the trial of now began, or the wait for it.
     pub since: Moment,

@@ -15,7 +15,6 @@ pub const ROWS_MAX: usize = 600_000;
 /// Sessions in the list. The oldest that lies in files, or else the oldest, makes room.
 pub const SESSIONS_MAX: usize = 24;
 
-/// Which session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SessionId(pub u64);
 
@@ -83,7 +82,6 @@ impl SessionTrial {
 /// One series, whole or so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialSession {
-    /// Which.
     pub id: SessionId,
     /// The hand, the day, the plan, note and tags, and why it ended early.
     pub head: SessionHead,
@@ -143,7 +141,6 @@ pub struct TrialsState {
 }
 
 impl TrialsState {
-    /// One session.
     pub fn session(&self, id: SessionId) -> Option<&TrialSession> {
         self.sessions.iter().find(|session| session.id == id)
     }

@@ -15,7 +15,6 @@ const CHECKSUMS_PER_MILLE: u64 = 1;
 /// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
 
-/// One finding.
 #[derive(Serialize)]
 pub(crate) struct Finding {
     /// True for a problem, false for a note.

@@ -48,7 +48,6 @@ pub(crate) enum ParamsCommand {
 /// The hand, the form of the output, and the folder of this program's records.
 #[derive(Debug, Args)]
 pub(crate) struct Common {
-    /// The hand
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Endpoint,
     /// Print one JSON object

@@ -139,7 +139,6 @@ pub(crate) struct RecoverArgs {
     json: bool,
 }
 
-/// Exports.
 pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let form = args.form.form();
     args.check(form)?;
@@ -238,7 +237,6 @@ struct Work<'a> {
     progress: Progress,
 }
 
-/// What was done.
 struct Done {
     sessions: Vec<Exported>,
     set: Option<LeRobotSet>,

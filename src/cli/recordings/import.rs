@@ -48,7 +48,6 @@ impl ImportArgs {
     }
 }
 
-/// Imports.
 pub(crate) fn run(out: &mut Out, args: &ImportArgs) -> anyhow::Result<()> {
     args.check()?;
     args.files

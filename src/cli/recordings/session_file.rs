@@ -53,7 +53,6 @@ impl StretchArgs {
     }
 }
 
-/// Opens a file.
 pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
     opened(SessionFile::open(path), path)
 }

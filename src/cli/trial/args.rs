@@ -14,7 +14,6 @@ const COOLER_C: u8 = 10;
 
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    /// The hand
     #[arg(long, value_name = "URL")]
     pub(crate) hand: Endpoint,
     /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach

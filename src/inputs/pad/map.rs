@@ -9,7 +9,6 @@ pub const POSE_CHARS_MAX: usize = 64;
 /// What a control does.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PadAction {
-    /// Nothing.
     Nothing,
     /// Held: the hand follows the gamepad. Let go: it stops.
     DeadMan,

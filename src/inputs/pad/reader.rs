@@ -50,7 +50,6 @@ pub trait PadDevice: Send {
     fn read(&mut self) -> io::Result<Vec<DeviceSays>>;
 }
 
-/// What a device says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceSays {
     /// A control moved.

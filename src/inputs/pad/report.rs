@@ -53,16 +53,13 @@ pub type PadClock = Arc<dyn Fn() -> Moment + Send + Sync>;
 pub struct PadReport {
     /// When it came in, by the program's clock.
     pub at: Moment,
-    /// What.
     pub news: PadNews,
 }
 
 /// What happened at the gamepads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PadNews {
-    /// One is there.
     Found {
-        /// Which.
         pad: PadId,
         /// What it says of itself.
         facts: PadFacts,
@@ -71,14 +68,12 @@ pub enum PadNews {
     },
     /// A control moved.
     Moved {
-        /// On which.
         pad: PadId,
         /// What it did.
         event: KernelEvent,
     },
     /// The kernel dropped events of one: nothing that was held before counts.
     Lost {
-        /// Of which.
         pad: PadId,
         /// Where its controls are.
         now: Vec<KernelEvent>,
@@ -100,7 +95,6 @@ pub enum PadTrouble {
     /// The folder of the devices cannot be listed.
     #[error("no gamepad can be looked for: {} cannot be listed: {why}", folder.display())]
     NoFolder {
-        /// Which.
         folder: PathBuf,
         /// What the system says.
         why: String,

@@ -25,7 +25,6 @@ pub(crate) enum Values {
     Double(Vec<f64>),
     /// Yes or no.
     Bool(Vec<bool>),
-    /// Text.
     Text(Vec<ByteArray>),
     /// Lists of one text each.
     Texts(Vec<ByteArray>),
@@ -45,7 +44,6 @@ pub(crate) enum ParquetCell {
     Null,
 }
 
-/// One column.
 #[derive(Debug, Clone)]
 pub(crate) struct ParquetColumn {
     pub(crate) name: String,

@@ -26,7 +26,6 @@ const FORCE_WIDTH: usize = 6;
 pub(crate) struct DatasetFrame {
     /// In its episode, from 0.
     pub(crate) number: u64,
-    /// The moment of it.
     pub(crate) at: Moment,
     /// Since the episode's first, s.
     pub(crate) time_s: f32,

@@ -168,7 +168,6 @@ fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
         .collect()
 }
 
-/// One episode.
 struct Episode {
     frames: u64,
     /// The place of its task among all.

@@ -14,14 +14,10 @@ use std::path::{Path, PathBuf};
 pub enum ExportError {
     /// Something has that name.
     #[error("{} is already there and is not overwritten", .path.display())]
-    Exists {
-        /// What.
-        path: PathBuf,
-    },
+    Exists { path: PathBuf },
     /// The system does not let it be written.
     #[error("cannot write {}: {message}", .path.display())]
     Unwritable {
-        /// What.
         path: PathBuf,
         /// What the system says.
         message: String,
@@ -51,7 +47,6 @@ pub enum ExportError {
     ReaderGone,
 }
 
-/// What was exported.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Exported {
     /// Rows of a table, or messages.

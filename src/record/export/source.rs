@@ -19,9 +19,7 @@ pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
 /// A stretch of a session that is exported.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    /// The session.
     pub file: &'a SessionFile,
-    /// What of it.
     pub stretch: Stretch,
     /// Told how far it is.
     pub watch: &'a Watch<'a>,

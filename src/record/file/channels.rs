@@ -40,7 +40,6 @@ pub struct SkippedTopic {
     pub encoding: String,
     /// How many they are.
     pub messages: u64,
-    /// Why.
     pub why: SkipReason,
 }
 

@@ -17,7 +17,6 @@ pub(crate) const ARM_REFUSED: &str = "arm_refused";
 /// One message, ready to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// Its topic.
     pub topic: Topic,
     /// When it was received, nanoseconds since 1970.
     pub log_nanos: u64,
@@ -81,7 +80,6 @@ impl EntryEncoder {
         }
     }
 
-    /// An event.
     pub(crate) fn event(&self, at: Moment, kind: &str, words: &str) -> Message {
         let event = EventMessage {
             at: self.time(at),

@@ -64,7 +64,6 @@ pub struct StateMessage {
     pub angle_set: Vec<i16>,
     /// FORCE_SET, g.
     pub force_set: Vec<i16>,
-    /// SPEED_SET.
     pub speed_set: Vec<i16>,
     /// POS_ACT.
     pub position: Vec<i16>,
@@ -110,7 +109,6 @@ pub struct TouchMessage {
 /// A write that left for the hand.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CommandMessage {
-    /// When.
     pub sent: Time,
     /// Its number on this connection.
     pub number: u64,
@@ -140,7 +138,6 @@ pub struct CommandFate {
 /// Where the link stood.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LinkMessage {
-    /// When.
     pub at: Time,
     /// offline, identifying, monitoring, armed, holding or fault.
     pub state: String,
@@ -157,18 +154,15 @@ pub struct LinkMessage {
 /// What else happened.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct EventMessage {
-    /// When.
     pub at: Time,
     /// What, in one word.
     pub kind: String,
-    /// In words.
     pub words: String,
 }
 
 /// Bytes that went over the wire.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct WireMessage {
-    /// When.
     pub at: Time,
     /// 0 the wire was opened, 1 bytes to the hand, 2 bytes from the hand, 3 the wire broke, 4 it was closed.
     pub kind: u8,

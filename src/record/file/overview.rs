@@ -21,9 +21,7 @@ pub const SECONDS_MAX: usize = 2 * 86_400;
 pub struct OverviewRow {
     /// The second, counted as moments are.
     pub second: u32,
-    /// Least.
     pub least: [f32; LINES],
-    /// Greatest.
     pub greatest: [f32; LINES],
 }
 
@@ -99,11 +97,8 @@ impl Counts {
 /// Something that happened, for lists and time lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileMark {
-    /// When.
     pub at: Moment,
-    /// What.
     pub kind: EventKind,
-    /// In words.
     pub words: String,
 }
 
@@ -114,7 +109,6 @@ pub struct Overview {
     pub rows: Vec<OverviewRow>,
     /// In the order of time, at most [`MARKS_MAX`].
     pub marks: Vec<FileMark>,
-    /// Of all.
     pub counts: Counts,
     faults: PerDof<u8>,
     protects: PerDof<bool>,

@@ -48,7 +48,6 @@ pub enum OpenError {
     /// A folder, a device, a pipe.
     #[error("it is no file, but a folder or a device")]
     NotAFile,
-    /// Not MCAP.
     #[error("it is not an MCAP file: its first bytes are others")]
     NotMcap,
     /// MCAP of another program.
@@ -56,10 +55,7 @@ pub enum OpenError {
     Foreign,
     /// Recordings of several hands were put together.
     #[error("it holds recordings of several hands, whose values cannot be told apart: {hands}")]
-    SeveralHands {
-        /// Which.
-        hands: String,
-    },
+    SeveralHands { hands: String },
     /// Nothing that could be read.
     #[error("nothing in it can be read: it holds no whole piece of a recording")]
     Empty,

@@ -35,14 +35,12 @@ const REPLACED_MAX: u32 = 20;
 pub enum RecorderNotice {
     /// Its file or a folder above has another name now. It is written on.
     Moved {
-        /// Where it was.
         from: PathBuf,
         /// Where it is; `None` if the system does not tell.
         to: Option<PathBuf>,
     },
     /// Its file was removed, with so many entries. What comes now goes into a new one.
     Removed {
-        /// Where it was.
         path: PathBuf,
         /// Entries that are gone.
         entries: u64,

@@ -22,7 +22,6 @@ const NAMES_MAX: u32 = 100;
 /// How many entries some bytes hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Content {
-    /// Entries.
     pub(crate) entries: u64,
     /// Entries of which they say that they are missing.
     pub(crate) told: u64,

@@ -3,7 +3,6 @@
 
 use crate::hand::Finger;
 
-/// One topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Topic {
     /// The twelve joints of the model.

@@ -74,10 +74,7 @@ pub enum CsvFault {
     NothingKnown,
     /// One column twice.
     #[error("the column {name} is there twice")]
-    Twice {
-        /// Which.
-        name: String,
-    },
+    Twice { name: String },
     /// Other cells than the first line has.
     #[error("it has {cells} cells, and the first line has {columns}")]
     Ragged {
@@ -96,7 +93,6 @@ pub enum CsvFault {
     },
 }
 
-/// What was imported.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Imported {
     /// Lines after the first.

@@ -13,7 +13,6 @@ pub enum LineFault {
     /// Too many bytes.
     #[error("it is longer than {} KiB", LINE_MAX / 1024)]
     TooLong,
-    /// Too many cells.
     #[error("it has more than {CELLS_MAX} cells")]
     TooManyCells,
     /// Not UTF-8.

@@ -14,7 +14,6 @@ pub const BACKLOG_MAX: usize = 1024;
 /// One viewer as a person sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Viewer {
-    /// Where it is.
     pub address: SocketAddr,
     /// Topics that it subscribed to.
     pub topics: usize,

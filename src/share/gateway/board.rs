@@ -30,7 +30,6 @@ pub struct ClientId(u64);
 pub struct GatewayClient {
     /// By which it is named.
     pub id: ClientId,
-    /// Where it is.
     pub address: SocketAddr,
     /// When it connected, by the link's clock.
     pub since: Moment,
@@ -62,9 +61,7 @@ pub enum ClientLease {
 /// Something that changed about who may move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MoverEvent {
-    /// Which client.
     pub client: SocketAddr,
-    /// What.
     pub change: MoverChange,
 }
 

@@ -25,7 +25,6 @@ pub enum Writers {
 /// Why a client takes the right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Claim {
-    /// It wrote.
     Wrote,
     /// A person chose it.
     Chosen,

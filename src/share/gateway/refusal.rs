@@ -28,7 +28,6 @@ pub enum WriteRefusal {
     Address {
         /// First byte.
         address: u16,
-        /// Words.
         words: usize,
     },
     /// Outside the manual's range.

@@ -9,7 +9,6 @@ use std::path::PathBuf;
 /// What draws the window.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Drawing {
-    /// OpenGL.
     #[default]
     OpenGl,
     /// This program itself, on the processor, as a person asked for it.
@@ -22,7 +21,6 @@ pub enum Drawing {
 pub struct DesktopStart {
     /// The hands named on the command line.
     pub endpoints: Vec<Endpoint>,
-    /// What draws.
     pub drawing: Drawing,
     /// What was kept from last time, and what is to be said about it.
     pub loaded: Loaded,

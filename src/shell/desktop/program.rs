@@ -43,7 +43,6 @@ pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
 pub(crate) struct Services {
     /// The thread of all links.
     pub(crate) runtime: tokio::runtime::Handle,
-    /// The one clock.
     pub(crate) clock: Clock,
     /// How the window is told that the program is to end.
     pub(crate) ending: Arc<Ending>,

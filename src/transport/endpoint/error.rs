@@ -59,14 +59,10 @@ pub enum EndpointError {
     },
     /// A key that is given twice: which of both is meant, nobody knows.
     #[error("'{key}' stands there twice; write it once")]
-    Twice {
-        /// The key.
-        key: String,
-    },
+    Twice { key: String },
     /// A value that does not fit its key.
     #[error("{key}={value} is not possible: {key} is {want}")]
     Value {
-        /// The key.
         key: String,
         /// What was given.
         value: String,

@@ -95,7 +95,6 @@ pub struct JointMetrics {
     pub rate_hz: Option<f64>,
     /// Longest time between two of them, s.
     pub longest_gap_s: Option<f64>,
-    /// The slips.
     #[serde(default, rename = "slip", skip_serializing_if = "Vec::is_empty")]
     pub slips: Vec<SlipEvent>,
 }

@@ -115,7 +115,6 @@ pub enum TableError {
     Cell {
         /// From 1.
         line: usize,
-        /// The column.
         column: String,
         /// What stands there.
         text: String,

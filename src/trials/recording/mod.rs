@@ -18,7 +18,6 @@ pub struct SampleRow {
     pub force: Option<PerDof<i16>>,
     /// CURRENT, mA.
     pub current: Option<PerDof<i16>>,
-    /// STATUS.
     pub status: Option<PerDof<u8>>,
     /// ERROR.
     pub faults: Option<PerDof<u8>>,
@@ -46,7 +45,6 @@ pub struct TipSample {
 pub struct TrialMark {
     /// When it was given to the link, or seen.
     pub at: Moment,
-    /// What.
     pub what: TrialEvent,
 }
 
@@ -132,7 +130,6 @@ impl TrialRecording {
         }
     }
 
-    /// All rows.
     pub fn rows(&self) -> &[SampleRow] {
         &self.rows
     }

@@ -15,7 +15,6 @@ const POINTS_MAX: usize = 1280;
 /// Strokes that a page has.
 pub(crate) const STROKES: usize = 6;
 
-/// One line.
 #[derive(Debug)]
 struct ReportLine {
     stroke: usize,

@@ -49,7 +49,6 @@ pub struct SessionHead {
     /// Why it ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aborted: Option<EarlyEnd>,
-    /// What was planned.
     pub plan: TrialPlan,
     /// What was found about the hand.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -98,7 +98,6 @@ impl PageLook {
     }
 }
 
-/// A large button.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeButton<'a> {
     /// What it says.

@@ -14,7 +14,6 @@ pub(crate) const NAME: f32 = 52.0;
 pub(crate) struct PagePlaces {
     /// Points of a unit: a screen of 1920 by 1080, or of 1080 by 1920, has as many units.
     pub(crate) unit: f32,
-    /// All of it.
     pub(crate) whole: Rect,
     /// The logo and the title.
     pub(crate) title: Rect,
@@ -26,9 +25,7 @@ pub(crate) struct PagePlaces {
     pub(crate) hand: Rect,
     /// What goes on, in words.
     pub(crate) words: Rect,
-    /// All tiles.
     pub(crate) tiles: Rect,
-    /// STOP.
     pub(crate) stop: Rect,
 }
 

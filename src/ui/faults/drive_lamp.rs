@@ -20,7 +20,6 @@ pub(crate) struct DriveWords {
     pub(crate) code: Option<u8>,
     /// Title, cause and advice, if anything is known.
     pub(crate) words: Option<Words>,
-    /// How fresh it is.
     pub(crate) freshness: Freshness,
 }
 

@@ -14,7 +14,6 @@ use egui::Color32;
 pub(crate) struct EventLine {
     /// When, in seconds since the start of the program.
     pub(crate) at_s: f64,
-    /// What.
     pub(crate) text: String,
     /// Of its mark.
     pub(crate) color: Color32,

@@ -86,7 +86,6 @@ fn title(pane: &Pane<'_>, recording: &Recording) -> String {
 }
 
 impl RecordingsView {
-    /// Opens one.
     pub(crate) fn open(&mut self, id: RecordingId) {
         self.open = Some(id);
         self.near = false;

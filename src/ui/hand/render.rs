@@ -31,7 +31,6 @@ pub(crate) struct Model<'a> {
     pub(crate) camera: &'a Camera,
     /// How it is lit.
     pub(crate) light: &'a Light,
-    /// What there is.
     pub(crate) parts: &'a [Part<'a>],
     /// Width of a soft edge in points.
     pub(crate) feather: f32,

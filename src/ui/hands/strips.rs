@@ -65,7 +65,6 @@ pub(crate) struct HandWords {
     pub(crate) name: String,
     /// How its link stands and whether something moves it, or that it does not stop.
     pub(crate) state: String,
-    /// The colour of that.
     pub(crate) color: Color32,
     /// Left or right, as a letter and in words.
     pub(crate) side: [Text; 2],

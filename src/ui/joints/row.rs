@@ -14,7 +14,6 @@ pub(crate) struct JointRow {
     pub(crate) dof: Dof,
     /// What it is called.
     pub(crate) name: &'static str,
-    /// Its colour.
     pub(crate) color: Color32,
 }
 

@@ -62,7 +62,6 @@ impl<'a> Label<'a> {
         self
     }
 
-    /// Small.
     pub(crate) fn small(self) -> Self {
         self.font(theme::small())
     }
@@ -167,7 +166,6 @@ pub(crate) enum Weight {
     Armed,
     /// What cannot simply be taken back.
     Danger,
-    /// Stop.
     Stop,
 }
 

@@ -14,7 +14,6 @@ use egui::Id;
 pub(crate) struct Pane<'a> {
     /// What is shown.
     pub(crate) state: &'a State,
-    /// How it looks.
     pub(crate) look: Look,
     /// What the person asked for.
     pub(crate) actions: &'a mut Vec<Action>,
@@ -27,7 +26,6 @@ pub(crate) struct Pane<'a> {
 /// What a person opens from another part of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ViewRequest {
-    /// A view.
     View(View),
     /// What is and was wrong.
     Faults,

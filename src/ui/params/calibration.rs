@@ -9,7 +9,6 @@ use crate::ui::kit::{ButtonRole, Card, Look, format};
 use crate::ui::params::choices::{asking, close};
 use crate::ui::text::{Text, cards, errors, words};
 
-/// The card.
 pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card {
     let card = Card::new(look, cards::CALIBRATE_TITLE);
     match &run.stage {

@@ -35,7 +35,6 @@ const GROUPS: [ParamGroup; 3] = [
     (ParamId::is_place, device::GROUP_PLACE, device::ABOUT_PLACE),
 ];
 
-/// Which rows are shown.
 #[derive(Debug, Default)]
 pub(crate) struct ShownRows {
     /// Only those in which something differs.

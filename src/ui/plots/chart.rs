@@ -123,7 +123,6 @@ pub(crate) struct ChartView {
 
 /// A chart of one quantity.
 pub(crate) struct Chart<'a> {
-    /// How it looks.
     pub(crate) look: Look,
     /// What it shows, with its unit. Different for each of the charts that share a view.
     pub(crate) title: Text,

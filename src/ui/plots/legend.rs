@@ -7,9 +7,7 @@ use egui_plot::LineStyle;
 
 /// What a colour and a kind of stroke stand for.
 pub(crate) struct LegendKey {
-    /// In words.
     pub(crate) words: String,
-    /// The colour.
     pub(crate) color: Color32,
     /// The kind of stroke.
     pub(crate) style: LineStyle,

@@ -13,7 +13,6 @@ pub(crate) struct ReplayedStretch<'a> {
     pub(crate) title: &'a str,
     /// The hand, in the spelling of endpoints.
     pub(crate) hand: &'a str,
-    /// From and to.
     pub(crate) stretch: Option<(Moment, Moment)>,
 }
 

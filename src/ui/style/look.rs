@@ -17,7 +17,6 @@ use std::fmt::Display;
 pub(crate) struct Look {
     /// Colours.
     pub(crate) palette: &'static Palette,
-    /// Language.
     pub(crate) language: Language,
     /// The hand that is drawn.
     pub(crate) side: Side,

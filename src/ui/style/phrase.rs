@@ -8,7 +8,6 @@ use std::fmt::Display;
 pub(crate) struct Text {
     /// English.
     pub(crate) en: &'static str,
-    /// 中文.
     pub(crate) zh: &'static str,
     /// The tooltip in both, empty without one.
     tip: [&'static str; 2],

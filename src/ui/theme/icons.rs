@@ -45,7 +45,6 @@ pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 /// Takes the last one back.
 pub(crate) const BACKSPACE: Icon = icons::ICON_BACKSPACE.codepoint;
 
-/// All of them.
 #[cfg(test)]
 pub(crate) const ALL: [Icon; 19] = [
     TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, DARK,

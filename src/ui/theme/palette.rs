@@ -22,7 +22,6 @@ pub(crate) struct Palette {
     pub(crate) edge: Color32,
     /// Lines of a plot's grid.
     pub(crate) grid: Color32,
-    /// Text.
     pub(crate) text: Color32,
     /// Labels beside values.
     pub(crate) muted: Color32,

@@ -9,12 +9,10 @@ pub(crate) const GAP_LEFT: Margin = Margin {
     left: 8,
     ..Margin::ZERO
 };
-/// At its right.
 pub(crate) const GAP_RIGHT: Margin = Margin {
     right: 8,
     ..Margin::ZERO
 };
-/// At its top.
 pub(crate) const GAP_TOP: Margin = Margin {
     top: 8,
     ..Margin::ZERO
@@ -56,7 +54,6 @@ pub(crate) const LAMP_AT: f32 = 6.0;
 pub(crate) const TEXT_LINE: f32 = 16.0;
 /// A line of a list.
 pub(crate) const LIST_LINE: f32 = 17.0;
-/// A row of figures.
 pub(crate) const FIGURE_ROW: f32 = 18.0;
 
 /// The first line of an entry.

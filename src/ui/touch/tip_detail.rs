@@ -26,7 +26,6 @@ const COMPASS_END_RATIO: f32 = 1.5;
 /// Which fingertip, and what friction is reckoned with.
 #[derive(Debug)]
 pub(crate) struct TipDetail {
-    /// The fingertip.
     pub(crate) finger: Finger,
     friction_percent: i16,
     holds: PerFinger<GripState>,

@@ -16,7 +16,6 @@ use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::TableView;
 use egui::{Color32, Panel, ScrollArea, Ui};
 
-/// Characters of a note.
 const NOTE_CHARS: usize = 300;
 
 /// What the view needs between frames.

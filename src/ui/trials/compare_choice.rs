@@ -10,7 +10,6 @@ pub(crate) type TrialKey = (SessionId, usize);
 pub(crate) struct ShownSessions {
     /// Over each other, the oldest first.
     pub(crate) shown: Vec<SessionId>,
-    /// One of them.
     pub(crate) focus: Option<SessionId>,
     newest: Option<SessionId>,
 }

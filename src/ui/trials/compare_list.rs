@@ -24,7 +24,6 @@ pub(crate) struct SessionSheet<'a> {
     pub(crate) trials: &'a TrialsState,
 }
 
-/// A session's name.
 pub(crate) fn name(look: Look, id: SessionId) -> String {
     look.fill(tune::SESSION, &[&id.0])
 }

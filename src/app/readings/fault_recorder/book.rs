@@ -34,7 +34,6 @@ struct OpenRecording {
     faults: Vec<FaultAt>,
 }
 
-/// The recorder.
 #[derive(Debug, Clone, Default)]
 pub struct FaultRecorder {
     events: VecDeque<FaultEvent>,

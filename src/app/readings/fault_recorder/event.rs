@@ -77,8 +77,6 @@ pub enum FaultEventKind {
 /// What happened, and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultEvent {
-    /// When.
     pub at: Moment,
-    /// What.
     pub what: FaultEventKind,
 }

@@ -13,18 +13,15 @@ pub struct RecordingId(pub u64);
 /// A fault that came while it was recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultAt {
-    /// When.
     pub at: Moment,
     /// Of which joint.
     pub dof: Dof,
-    /// What.
     pub what: FaultKind,
 }
 
 /// What one drive says. `None` = not read yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DriveState {
-    /// STATUS.
     pub status: Option<Status>,
     /// ERROR.
     pub faults: Option<Faults>,

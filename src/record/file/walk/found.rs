@@ -30,7 +30,6 @@ pub struct Place {
 pub struct ChunkPlace {
     /// Whether it is a chunk, or records outside of chunks.
     pub kind: ChunkKind,
-    /// Where.
     pub place: Place,
     /// Of its first message.
     pub first_nanos: u64,
@@ -52,9 +51,7 @@ pub enum ChunkKind {
 pub struct Found {
     /// In the order of the file.
     pub chunks: Vec<ChunkPlace>,
-    /// Attachments.
     pub attachments: Vec<Place>,
-    /// Metadata.
     pub metadata: Vec<Place>,
     /// True if the file was ended as it should be.
     pub closed: bool,

@@ -12,7 +12,6 @@ const MESSAGE_MAX: usize = 1024 * 1024;
 pub(crate) enum ChunkRecord<'a> {
     /// The content of a schema's or a channel's record, behind its operation code.
     Definition(u8, &'a [u8]),
-    /// A message.
     Message(ChunkMessage<'a>),
 }
 

@@ -24,7 +24,6 @@ const MESSAGE_HEAD: u64 = 2 + 4 + 8 + 8;
 pub(crate) struct Survey {
     /// Chunks, and messages outside of them; those that are whole.
     pub(crate) found: Found,
-    /// What is defined.
     pub(crate) definitions: Definitions,
     /// Chunks that cannot be read.
     pub(crate) damaged: u64,

@@ -13,7 +13,6 @@ pub(crate) enum Held {
     Ball,
     /// A hard block.
     Block,
-    /// A cup.
     Cup,
 }
 
