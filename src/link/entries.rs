@@ -2,7 +2,7 @@
 //! A file and live viewers take the same.
 
 use crate::hand::Moment;
-use crate::link::{Clock, LinkObserver};
+use crate::link::{Clock, LinkObserver, LinkStatus};
 use crate::record::{Entry, LinkReport};
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -27,7 +27,8 @@ pub struct LinkEntries {
     lost_records: u64,
     missed: u64,
     figures_at: Option<Moment>,
-    status: String,
+    /// As it was told last.
+    status: Option<LinkStatus>,
 }
 
 impl LinkEntries {
@@ -45,7 +46,7 @@ impl LinkEntries {
             lost_records: 0,
             missed: 0,
             figures_at: None,
-            status: String::new(),
+            status: None,
         }
     }
 
@@ -96,12 +97,16 @@ impl LinkEntries {
     /// The status when it changed, the figures once a second.
     fn report(&mut self) -> Option<LinkReport> {
         let now = self.clock.now();
-        let status = self.observed.status.borrow().clone();
-        let mut text = json(&status);
-        if text == self.status {
-            text.clear()
-        } else {
-            self.status.clone_from(&text)
+        // A link that is closed tells nothing new, and its last status may not have been seen.
+        let may_be_new =
+            self.observed.status.has_changed().unwrap_or(true) || self.status.is_none();
+        let mut text = String::new();
+        if may_be_new {
+            let status = self.observed.status.borrow_and_update().clone();
+            if self.status.as_ref() != Some(&status) {
+                text = json(&status);
+                self.status = Some(status);
+            }
         }
         let is_due = self
             .figures_at
@@ -114,6 +119,7 @@ impl LinkEntries {
             self.figures_at = Some(now);
             figures = json(&*self.observed.stats.borrow());
         }
+        let status = self.status.as_ref()?;
         let trouble = status.trouble.as_ref().map(ToString::to_string);
         Some(LinkReport {
             at: now,
