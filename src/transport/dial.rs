@@ -3,7 +3,7 @@
 #[cfg(target_os = "linux")]
 use crate::transport::can;
 use crate::transport::endpoint::{DEFAULT_ID, Endpoint, SerialLine};
-use crate::transport::serial::PortFound;
+use crate::transport::found::PortFound;
 use crate::transport::wire::{BoxedWire, Dial, TransportError};
 use crate::transport::{serial, tcp};
 use futures::future::BoxFuture;

@@ -36,7 +36,7 @@ impl State {
     /// A dry run began at the pose of the hand that was shown before.
     fn hand_is_shown(&mut self) {
         self.poses.preview = None;
-        self.hands.shown_mut().know(&self.settings);
+        self.hands.shown_mut().apply_settings(&self.settings);
     }
 
     fn remove_hand(&mut self, slot: SlotId, env: &Env) {

@@ -386,7 +386,7 @@ impl SessionPlayer {
             SessionAction::Loop(stretch) => self.set_loop(*stretch),
             SessionAction::Step(forward) => {
                 let at = self.at();
-                self.wanted = Some(if forward {
+                self.wanted = Some(if *forward {
                     SeekTarget::After(at)
                 } else {
                     SeekTarget::Before(at)

@@ -221,7 +221,7 @@ impl Comparison {
         let drawn = |(is_strong, key, line): &(bool, RowKey, &JointLines)| ComparedLine {
             key: *key,
             contact_s: line.contact_s,
-            points: if is_strong {
+            points: if *is_strong {
                 line.points(quantity).to_vec()
             } else {
                 decimated(line.points(quantity), most)

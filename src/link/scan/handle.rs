@@ -59,7 +59,7 @@ pub struct ScanConfig {
 pub struct ScanHandle {
     events: mpsc::Receiver<ScanEvent>,
     board: Arc<Mutex<Board>>,
-    task: AbortOnDropHandle<()>,
+    _task: AbortOnDropHandle<()>,
 }
 
 /// Begins a scan. It reads HAND_ID and nothing else, and writes nothing.
@@ -78,7 +78,7 @@ pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     ScanHandle {
         events,
         board,
-        task,
+        _task: task,
     }
 }
 

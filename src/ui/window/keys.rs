@@ -231,11 +231,11 @@ impl Wish {
             Self::Pause => panels::PAUSE_NAME,
             Self::Language => window::KEY_LANGUAGE,
             Self::Theme => window::KEY_THEME,
-            Self::ViewRequest(ViewRequest::View(view)) => view.title(),
-            Self::ViewRequest(ViewRequest::Note) => window::KEY_NOTE,
-            Self::ViewRequest(ViewRequest::Keys) => window::KEY_LIST,
-            Self::ViewRequest(ViewRequest::Drive(dof)) => words::dof(dof),
-            Self::ViewRequest(ViewRequest::Faults) => View::Faults.title(),
+            Self::Opens(ViewRequest::View(view)) => view.title(),
+            Self::Opens(ViewRequest::Note) => window::KEY_NOTE,
+            Self::Opens(ViewRequest::Keys) => window::KEY_LIST,
+            Self::Opens(ViewRequest::Drive(dof)) => words::dof(dof),
+            Self::Opens(ViewRequest::Faults) => View::Faults.title(),
         }
     }
 
@@ -251,7 +251,7 @@ impl Wish {
             | Self::Entry(_) => window::KEY_MOTION,
             Self::Hand(_) => window::KEY_HANDS,
             Self::Joint(_) | Self::LinkFingers | Self::AngleUnit => window::KEY_JOINTS,
-            Self::Tare | Self::UndoTare | Self::Pause | Self::ViewRequest(ViewRequest::Note) => {
+            Self::Tare | Self::UndoTare | Self::Pause | Self::Opens(ViewRequest::Note) => {
                 window::KEY_MEASURING
             }
             Self::Opens(_) | Self::Language | Self::Theme => window::KEY_WINDOW,

@@ -3,7 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
-use crate::app::layout::{Layout, RoomLayout, WindowRoom};
+use crate::app::layout::{Layout, WindowRoom};
 use crate::ui::kit::{Button, Pane, Weight};
 use crate::ui::text::{Text, exhibit, main, window};
 use crate::ui::theme;

@@ -432,7 +432,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     let look = pane.look;
     let palette = look.palette;
     if worst.color == palette.accent {
-        drop(kit::lamp_ui(ui, Some(worst.color)))
+        kit::lamp_ui(ui, Some(worst.color));
     } else {
         drop(kit::warning_ui(ui, worst.color))
     }
