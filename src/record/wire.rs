@@ -11,6 +11,24 @@ pub enum Direction {
     FromHand,
 }
 
+impl Direction {
+    /// Stable lower-case name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ToHand => "to_hand",
+            Self::FromHand => "from_hand",
+        }
+    }
+
+    /// Two signs that point to or from the hand.
+    pub const fn arrow(self) -> &'static str {
+        match self {
+            Self::ToHand => "->",
+            Self::FromHand => "<-",
+        }
+    }
+}
+
 /// What happened on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PieceKind {

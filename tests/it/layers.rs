@@ -218,7 +218,10 @@ fn spread(sources: &Sources) -> BTreeSet<(String, String)> {
                 .chars()
                 .take_while(|c| is_word(*c))
                 .collect();
-            if name.is_empty() || head.contains(" for ") {
+            let is_own = ["struct", "enum"]
+                .iter()
+                .any(|kind| code.contains(&format!("{kind} {name}")));
+            if name.is_empty() || is_own || head.contains(" for ") {
                 continue;
             }
             let is_it = |imported: &&String| imported.rsplit("::").next() == Some(&name);

@@ -3,7 +3,6 @@
 
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind};
 use crate::link::traffic::values;
-use crate::record::Direction;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -28,24 +27,6 @@ impl Kind {
             Self::Adapter => "adapter",
             Self::AdapterReply => "adapter_reply",
             Self::Noise => "noise",
-        }
-    }
-}
-
-impl Direction {
-    /// Stable lower-case name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ToHand => "to_hand",
-            Self::FromHand => "from_hand",
-        }
-    }
-
-    /// Two signs that point to or from the hand.
-    pub const fn arrow(self) -> &'static str {
-        match self {
-            Self::ToHand => "->",
-            Self::FromHand => "<-",
         }
     }
 }

@@ -390,8 +390,8 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
             2,
             "invalid value 'soon' in column time_s",
         ),
-        ("time_s,event\n,\n", 2, "'' cannot stand"),
-        ("time_s,event\n-1,\n", 2, "'-1' cannot stand"),
+        ("time_s,event\n,\n", 2, "invalid value ''"),
+        ("time_s,event\n-1,\n", 2, "invalid value '-1'"),
         ("time_s,event\n1e300,\n", 2, "'1e300'"),
         ("time_s,angle_index\nNaN,1\n", 2, "'NaN'"),
         (
@@ -422,12 +422,12 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
         ("time_s,temperature_index_C\n1,-3\n", 2, "'-3'"),
         ("time_s,normal_index_N\n1,inf\n", 2, "'inf'"),
         ("time_s,channel_1_index\n1,-1\n", 2, "'-1'"),
-        ("time_s,event\n1,\"a\n", 2, "quotation mark"),
-        ("time_s,event\n1,a\"b\n", 2, "quotation mark"),
-        ("time_s,event\n1,\"a\"b\n", 2, "quotation mark"),
+        ("time_s,event\n1,\"a\n", 2, "unmatched quote"),
+        ("time_s,event\n1,a\"b\n", 2, "unmatched quote"),
+        ("time_s,event\n1,\"a\"b\n", 2, "unmatched quote"),
         (&long, 2, "longer than 1024 KiB"),
         (&wide, 1, "more than 4096 cells"),
-        (&quotes, 2, "quotation mark"),
+        (&quotes, 2, "unmatched quote"),
     ] {
         let error = trial.import(text).unwrap_err();
         let begin = &text[..text.len().min(60)];

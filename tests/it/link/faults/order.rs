@@ -144,8 +144,8 @@ impl Story<'_> {
             if let Some(job) = others.clone().find(|other| other.address < JOBS_END) {
                 panic!("seed {}: {job:?} before {wish:?}", self.seed);
             }
-            // Over TCP the setpoints that the hand holds are looked at before a round.
-            let looks = usize::from(self.protocol == Protocol::Tcp);
+            // Over TCP the setpoints that the hand holds are looked at before a round: the one that is under way, and the wish's own.
+            let looks = if self.protocol == Protocol::Tcp { 2 } else { 0 };
             let other = others.nth(OTHERS_BEFORE_WISH + looks);
             assert!(
                 other.is_none(),
