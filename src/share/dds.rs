@@ -9,7 +9,7 @@ use crate::record::file::topic::Topic;
 use crate::record::file::{Opening, cdr};
 use crate::record::{Entry, Record};
 use crate::share::fleet::{FleetCard, FleetTeller};
-use crate::transport::dds::{DdsError, DdsNode, DdsPlace, DdsTopic, DdsWriter};
+use crate::transport::dds::{DdsError, DdsNode, DdsTopic, DdsWriter};
 use serde::Serialize;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::watch;
@@ -136,12 +136,11 @@ pub struct SharedOnDds {
 }
 
 impl SharedOnDds {
-    /// Joins there, and tells of this hand from now on. Must be called within a tokio runtime.
+    /// Tells of this hand there from now on. Must be called within a tokio runtime.
     ///
     /// # Errors
-    /// [`DdsError`]: it cannot be joined there.
-    pub fn open(place: &DdsPlace, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
-        let node = DdsNode::open(place)?;
+    /// [`DdsError`], if the library does not make the writers.
+    pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
         Ok(Self {
             publisher: DdsPublisher::open(&node, link, card.side)?,
             teller: FleetTeller::open(&node, link, card)?,

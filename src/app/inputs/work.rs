@@ -21,7 +21,7 @@ use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
 use crate::tasks::follow::FollowEnd;
-use crate::transport::dds::DdsPlace;
+use crate::transport::dds::{DdsNode, DdsPlace};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -169,12 +169,12 @@ impl HandState {
             wake: Arc::clone(&env.wake),
         };
         let card = self.fleet_card(settings);
-        let joined = SharedOnDds::open(&place, &open.link, card).and_then(|shared| {
-            let messages = shared.node.reader(&ctrl::topic(self.side), ctrl::KEPT)?;
+        let joined = DdsNode::open(&place).and_then(|node| {
+            let messages = node.reader(&ctrl::topic(self.side), ctrl::KEPT)?;
             Ok(JoinedDds {
-                others: OtherFollowers::open(&shared.node, self.side, env.clock)?,
+                others: OtherFollowers::open(&node, self.side, env.clock)?,
                 source: DdsSource::open(config, messages),
-                shared,
+                shared: SharedOnDds::open(node, &open.link, card)?,
             })
         });
         match joined {

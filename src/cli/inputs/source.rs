@@ -20,6 +20,7 @@ use crate::share::dds::SharedOnDds;
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::store::toml_file;
 use crate::transport::Endpoint;
+use crate::transport::dds::DdsNode;
 use anyhow::{Context as _, bail};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -126,8 +127,8 @@ impl FollowSource {
         } else {
             "read this hand and send to it"
         };
-        if let Some(out) = args.dds.open(link, card.clone(), can)? {
-            return Self::on_dds((out, card), clock, allowed).await;
+        if let Some(node) = args.dds.join(can)? {
+            return Self::on_dds(node, card, (link, clock), allowed).await;
         }
         let stops = link.clone();
         let stop = Arc::new(move || stops.stop());
@@ -163,28 +164,28 @@ impl FollowSource {
         Ok(Self::Stream(place, source))
     }
 
-    /// Two hands of one side would both obey one sender: the second is not let.
+    /// Two hands of one side would both obey one sender: the second is not let. A sender begins at the first state that it hears, so
+    /// none is told before that is known.
     async fn on_dds(
-        (out, card): (SharedOnDds, FleetCard),
-        clock: Clock,
+        node: DdsNode,
+        card: FleetCard,
+        (link, clock): (&LinkHandle, Clock),
         allowed: Allowed,
     ) -> anyhow::Result<Self> {
-        let others = OtherFollowers::open(&out.node, card.side, clock)?;
-        let messages = out.node.reader(&ctrl::topic(card.side), ctrl::KEPT)?;
+        let others = OtherFollowers::open(&node, card.side, clock)?;
+        if allowed.moves
+            && let Some(other) = others.was_there().await
+        {
+            bail!(followed(&other));
+        }
+        let messages = node.reader(&ctrl::topic(card.side), ctrl::KEPT)?;
         let config = DdsSourceConfig {
             allowed: allowed.limits,
             clock,
             wake: Arc::new(|| ()),
         };
-        if allowed.moves {
-            if let Some(other) = others.was_there().await {
-                bail!(followed(&other));
-            }
-            out.say(FleetCard {
-                follows: true,
-                ..card
-            });
-        }
+        let follows = allowed.moves;
+        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card })?;
         Ok(Self::Dds(DdsSource::open(config, messages), out, others))
     }
 

@@ -3,11 +3,10 @@
 use crate::cli::out::say;
 use crate::cli::parse::number;
 use crate::hand::kinematics::Side;
-use crate::link::LinkHandle;
 use crate::share::dds::SharedOnDds;
 use crate::share::fleet::{self, FleetCard};
 use crate::transport::Endpoint;
-use crate::transport::dds::{DOMAIN_MAX, DdsPlace};
+use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
 
 /// Nobody outside of this computer, unless a person says so.
 pub(crate) const LOOPBACK: &str = "127.0.0.1";
@@ -49,13 +48,8 @@ impl DdsArgs {
         }
     }
 
-    /// Tells this hand from now on, if the person wants it; others can do that.
-    pub(crate) fn open(
-        &self,
-        link: &LinkHandle,
-        card: FleetCard,
-        can: &str,
-    ) -> anyhow::Result<Option<SharedOnDds>> {
+    /// Joins, if the person wants it; tells nothing yet. Others there can do that.
+    pub(crate) fn join(&self, can: &str) -> anyhow::Result<Option<DdsNode>> {
         let Some(interface) = &self.dds else {
             return Ok(None);
         };
@@ -63,14 +57,14 @@ impl DdsArgs {
             interface: interface.clone(),
             domain: self.domain.unwrap_or_default(),
         };
-        let shared = SharedOnDds::open(&place, link, card)?;
-        let address = shared.node.address();
+        let node = DdsNode::open(&place)?;
+        let address = node.address();
         if !address.is_loopback() {
             say(&format!(
                 "warning: anyone in the network of {address} can {can}; --dds alone keeps to this computer"
             ));
         }
-        Ok(Some(shared))
+        Ok(Some(node))
     }
 }
 

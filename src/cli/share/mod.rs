@@ -14,6 +14,7 @@ use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
 use crate::record::file::Opening;
 use crate::record::{Disarmed, LinkState};
+use crate::share::dds::SharedOnDds;
 use crate::share::fleet::FleetCard;
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
@@ -105,7 +106,9 @@ async fn serve(
         first_may_move: args.writers,
         ..args.dds.card(&args.hand)
     };
-    let dds = args.dds.open(link, card, "read this hand")?;
+    let node = args.dds.join("read this hand")?;
+    let dds = node.map(|node| SharedOnDds::open(node, link, card));
+    let dds = dds.transpose()?;
     if let Some(dds) = &dds {
         out.line(&dds::ready(dds))?;
     }

@@ -31,7 +31,7 @@ pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
         to,
     } = copied.map_err(|error| error.of(&output))?;
     output.sync(to)?;
-    fs::write(folder.join("metadata.yaml"), counted.yaml(&name)).map_err(error)?;
+    fs::write(folder.join("metadata.yaml"), metadata(&counted, &name)).map_err(error)?;
     output.finish()?;
     Ok(Exported {
         rows: counted.all(),
@@ -39,35 +39,31 @@ pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
     })
 }
 
-impl Counted {
-    fn all(&self) -> u64 {
-        self.messages.values().sum()
-    }
-
-    fn yaml(&self, name: &str) -> String {
-        let (first, last) = self.times.unwrap_or_default();
-        let (length, messages) = (last - first, self.all());
-        // A name in single quotes is a text whatever it holds.
-        let name = name.replace('\'', "''");
-        let mut topics = String::new();
-        let counts = Topic::all().map(|topic| (topic, self.messages.get(&topic.channel())));
-        for (topic, count) in counts.filter_map(|(topic, count)| Some((topic, count?))) {
-            // Writing to a string cannot fail.
-            let _done = write!(
-                topics,
-                "    - topic_metadata:
+/// What rosbag2 wants to know of the file of this name.
+fn metadata(counted: &Counted, name: &str) -> String {
+    let (first, last) = counted.times.unwrap_or_default();
+    let (length, messages) = (last - first, counted.all());
+    // A name in single quotes is a text whatever it holds.
+    let name = name.replace('\'', "''");
+    let mut topics = String::new();
+    let counts = Topic::all().map(|topic| (topic, counted.messages.get(&topic.channel())));
+    for (topic, count) in counts.filter_map(|(topic, count)| Some((topic, count?))) {
+        // Writing to a string cannot fail.
+        let _done = write!(
+            topics,
+            "    - topic_metadata:
         name: {}
         type: {}
         serialization_format: cdr
         offered_qos_profiles: ''
       message_count: {count}
 ",
-                topic.name(),
-                topic.schema().name
-            );
-        }
-        format!(
-            "rosbag2_bagfile_information:
+            topic.name(),
+            topic.schema().name
+        );
+    }
+    format!(
+        "rosbag2_bagfile_information:
   version: {VERSION}
   storage_identifier: mcap
   duration:
@@ -88,6 +84,5 @@ impl Counted {
         nanoseconds: {length}
       message_count: {messages}
 "
-        )
-    }
+    )
 }

@@ -205,6 +205,13 @@ pub(crate) struct Counted {
     pub(crate) times: Option<(u64, u64)>,
 }
 
+impl Counted {
+    /// Messages of all channels.
+    pub(crate) fn all(&self) -> u64 {
+        self.messages.values().sum()
+    }
+}
+
 impl FileEnd {
     /// How much there is in the file.
     pub(crate) fn counted(&self) -> Counted {

@@ -58,6 +58,8 @@ impl Actors {
 
 struct Schedule {
     actors: Actors,
+    /// How often another program will write targets yet, and their bytes.
+    streamed: (u8, Vec<u8>),
     rng: fastrand::Rng,
     clock: Clock,
     hand: SharedHand,
@@ -210,6 +212,7 @@ impl Schedule {
         witness.echoes = protocol == Protocol::Slcan && dial.quirks.adapter.echoes;
         Self {
             actors,
+            streamed: (0, Vec::new()),
             rng,
             clock,
             hand,
@@ -300,20 +303,22 @@ impl Schedule {
     /// What the hand does by itself, and what another program does to it.
     fn others_act(&mut self) {
         if self.actors.freezes && self.rng.u8(..8) == 0 {
-            let frozen = self.rng.bool();
+            let frozen = self.rng.u8(..4) != 0;
             self.witness.seen.freezes += u64::from(frozen);
             self.hand
                 .with(|hand, now| hand.freeze_feedback(frozen, now));
         }
         if self.actors.foreign && self.rng.u8(..6) == 0 {
+            // It says the same for a while, as a program that streams does.
             let targets: [i16; 6] = std::array::from_fn(|_| self.rng.i16(0..=1000));
-            let bytes: Vec<u8> = targets
-                .iter()
-                .flat_map(|value| value.to_le_bytes())
-                .collect();
+            let bytes = targets.iter().flat_map(|value| value.to_le_bytes());
+            self.streamed = (self.rng.u8(1..16), bytes.collect());
+        }
+        if let (left @ 1.., bytes) = &mut self.streamed {
+            *left -= 1;
             self.witness.foreign_write(self.clock.now());
             self.hand
-                .with(|hand, now| hand.write(1486, &bytes, now).map(drop))
+                .with(|hand, now| hand.write(1486, bytes, now).map(drop))
                 .unwrap();
         }
     }
