@@ -2,9 +2,7 @@
 
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
-use crate::app::hand::held_key::HoldKey;
-use crate::app::hand::joint::Preset;
-use crate::app::hand::sequence::Play;
+use crate::app::hand::HoldKey;
 use crate::app::hands::action::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
@@ -22,6 +20,8 @@ use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Spee
 use crate::history::Mark;
 use crate::link::PollPriority;
 use crate::params::rows::{ParamId, Value};
+use crate::poses::Play;
+use crate::poses::Preset;
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, SequenceId};
 use crate::transport::Endpoint;

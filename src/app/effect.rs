@@ -1,13 +1,13 @@
 //! What each action does to a hand or to the window, in one list without a rest; when it passes follows from that.
 
 use crate::app::action::Action;
-use crate::app::hand::Play;
-use crate::app::hand::held_key::HoldKey;
+use crate::app::hand::HoldKey;
 use crate::app::hands::action::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::params::action::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::trials::action::TrialAction;
+use crate::poses::Play;
 
 /// What an action does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,13 +105,7 @@ impl Action {
             | Self::Gesture(_)
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
-            | Self::Input(
-                InputAction::GrantStream
-                | InputAction::GrantDds
-                | InputAction::GrantPad
-                | InputAction::GrantMirror
-                | InputAction::GrantClient(_),
-            )
+            | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
             | Self::Trial(TrialAction::Start) => Effect::Moves,
             Self::HoldToRun(false)
             | Self::Force(..)

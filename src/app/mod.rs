@@ -2,6 +2,7 @@
 
 pub mod action;
 pub mod connect;
+pub(crate) mod ctx;
 pub mod effect;
 pub mod env;
 pub mod exhibit;
@@ -17,9 +18,10 @@ pub mod poses;
 pub mod procedures;
 pub mod program;
 pub mod readings;
-pub(crate) mod running;
+pub(crate) mod replay;
 pub mod scan;
 pub mod sessions;
 pub mod settings;
+pub mod slot;
 pub mod state;
 pub mod trials;

@@ -1,7 +1,7 @@
 //! What a person should read, as typed causes. The words, in every language, are the views'.
 
-use crate::app::hand::slot::HandLabel;
 use crate::app::readings::faults::FaultKind;
+use crate::app::slot::HandLabel;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
 use crate::record::file::{OpenError, RecorderNotice};
@@ -286,13 +286,13 @@ pub struct Notice {
 }
 
 impl Notice {
-    fn new(id: u64, at: Moment, what: NoticeKind) -> Self {
+    fn new(id: u64, at: Moment, what: NoticeKind, hand: Option<&HandLabel>) -> Self {
         Self {
             id,
             at,
             level: what.level(),
             what,
-            hand: None,
+            hand: hand.cloned(),
             count: 1,
         }
     }
@@ -315,26 +315,51 @@ pub struct Notices {
     log: VecDeque<Notice>,
     pushed: u64,
     log_dropped: u64,
-    about: Option<HandLabel>,
+}
+
+/// Where it is told what happened at one hand: of several, with its name.
+pub(crate) struct HandNotices<'a> {
+    notices: &'a mut Notices,
+    hand: Option<HandLabel>,
+}
+
+impl HandNotices<'_> {
+    /// Adds one, as [`Notices::push`] does.
+    pub(crate) fn push(&mut self, at: Moment, what: NoticeKind) {
+        self.notices.add(at, what, self.hand.as_ref());
+    }
+
+    /// Takes away those of this hand that are no longer so. The log keeps them.
+    pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
+        let slot = self.hand.as_ref().map(|hand| hand.slot);
+        let is_other = |hand: &HandLabel| slot.is_some_and(|slot| slot != hand.slot);
+        self.notices
+            .kept
+            .retain(|notice| !over(&notice.what) || notice.hand.as_ref().is_some_and(is_other));
+    }
 }
 
 impl Notices {
-    /// What comes from now on is about this hand of several; `None` = about the only one, or about none.
-    pub(crate) fn about(&mut self, hand: Option<&HandLabel>) {
-        if self.about.as_ref() != hand {
-            self.about = hand.cloned();
+    /// For what is about this hand of several; `None` = about the only one.
+    pub(crate) fn about(&mut self, hand: Option<&HandLabel>) -> HandNotices<'_> {
+        HandNotices {
+            hand: hand.cloned(),
+            notices: self,
         }
     }
 
-    /// Adds one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
+    /// Adds one about no hand, or about the only one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
     /// of faults asks for attention until it was seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
+        self.add(at, what, None);
+    }
+
+    fn add(&mut self, at: Moment, what: NoticeKind, about: Option<&HandLabel>) {
         self.pushed += 1;
-        self.note(at, &what);
+        self.note(at, &what, about);
         if matches!(what, NoticeKind::Fault { .. }) {
             return;
         }
-        let about = self.about.as_ref();
         let known = self.kept.iter().position(|own| own.is_same(&what, about));
         let known = known.and_then(|index| self.kept.remove(index));
         if let Some(mut notice) = known {
@@ -344,16 +369,12 @@ impl Notices {
         if self.kept.len() >= NOTICES_MAX {
             self.kept.pop_front();
         }
-        let hand = self.about.clone();
-        self.kept.push_back(Notice {
-            hand,
-            ..Notice::new(self.pushed, at, what)
-        });
+        let notice = Notice::new(self.pushed, at, what, about);
+        self.kept.push_back(notice);
     }
 
     /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
-    fn note(&mut self, at: Moment, what: &NoticeKind) {
-        let about = self.about.as_ref();
+    fn note(&mut self, at: Moment, what: &NoticeKind, about: Option<&HandLabel>) {
         let newest = self.log.back_mut();
         if let Some(newest) = newest.filter(|last| last.is_same(what, about)) {
             return newest.again(at, what.clone());
@@ -362,10 +383,8 @@ impl Notices {
             self.log.pop_front();
             self.log_dropped += 1;
         }
-        self.log.push_back(Notice {
-            hand: self.about.clone(),
-            ..Notice::new(self.pushed, at, what.clone())
-        });
+        let notice = Notice::new(self.pushed, at, what.clone(), about);
+        self.log.push_back(notice);
     }
 
     /// True if there is nothing to read.
@@ -376,14 +395,6 @@ impl Notices {
     /// It was read. The log keeps it.
     pub fn dismiss(&mut self, id: u64) {
         self.kept.retain(|notice| notice.id != id);
-    }
-
-    /// Takes away those that are no longer so: of several hands, those about the one that it is about now. The log keeps them.
-    pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
-        let slot = self.about.as_ref().map(|hand| hand.slot);
-        let is_other = |hand: &HandLabel| slot.is_some_and(|slot| slot != hand.slot);
-        self.kept
-            .retain(|notice| !over(&notice.what) || notice.hand.as_ref().is_some_and(is_other));
     }
 
     /// Newest first.
@@ -461,7 +472,7 @@ mod tests {
             notices.dismiss(id);
         }
         notices.push(Moment::from_micros(9), NoticeKind::HoldAlarm);
-        notices.withdraw(|_| true);
+        notices.about(None).withdraw(|_| true);
         assert_eq!(notices.iter().count(), 0);
         let log: Vec<_> = notices
             .log()

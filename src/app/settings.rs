@@ -1,6 +1,6 @@
 //! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
 
-use crate::app::files::day_folder;
+use crate::app::env::day_folder;
 use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
 use crate::hand::kinematics::Side;

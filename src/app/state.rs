@@ -1,8 +1,8 @@
-//! Everything the window shows, as plain values. Changed only by [`crate::app::program::App`]; draws nothing, opens nothing.
+//! Everything the window shows, as plain values. Changed only by the program; draws nothing, opens nothing.
 
 use crate::app::exhibit::ExhibitState;
 use crate::app::fleet::FleetState;
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::app::hands::list::HandList;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
@@ -57,12 +57,12 @@ pub struct State {
 
 impl State {
     /// The hand that is shown.
-    pub fn hand(&self) -> &HandState {
+    pub fn hand(&self) -> &Hand {
         self.hands.shown()
     }
 
     /// The same, to be changed.
-    pub fn hand_mut(&mut self) -> &mut HandState {
+    pub fn hand_mut(&mut self) -> &mut Hand {
         self.hands.shown_mut()
     }
 }

@@ -8,6 +8,9 @@ pub mod preview;
 pub mod reaction;
 pub mod starter;
 pub mod way;
+pub mod wish;
+
+pub use crate::poses::wish::{Play, Preset};
 
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ pub mod raster;
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
+use crate::app::hands::{Hand, Mover};
 use crate::app::program::App;
 use crate::app::state::State;
 use crate::hand::Moment;
@@ -92,8 +93,11 @@ impl DesktopApp {
 
     /// How soon news of the hands are to be drawn.
     pub fn frame_within(&self) -> Duration {
-        let mut hands = self.app.state().hands.iter();
-        match hands.any(|hand| hand.link.rest == Rest::Moving || hand.mover().is_some()) {
+        let state = self.app.state();
+        let moves = |hand: &Hand| {
+            hand.connection.status.rest == Rest::Moving || Mover::of(hand, state.now).is_some()
+        };
+        match state.hands.iter().any(moves) {
             true => FRAME_WITHIN,
             false if self.is_software => FRAME_AT_REST_IN_SOFTWARE_WITHIN,
             false => FRAME_AT_REST_WITHIN,

@@ -20,11 +20,6 @@ const FLOORS: [&[&str]; 11] = [
     &["main"],
 ];
 
-/// The module whose folders still import one another: all of a hand is one type there, until it is made of parts.
-const TANGLED: &str = "app:";
-/// The types whose methods still stand in several folders.
-const SPREAD: [&str; 2] = ["HandState", "State"];
-
 /// Sources by their path below `src`, without comments, texts and tests.
 type Sources = BTreeMap<String, String>;
 
@@ -42,15 +37,13 @@ fn no_files_import_one_another() {
 
 #[test]
 fn no_folders_of_a_module_import_one_another() {
-    let mut found = folder_circles(&sources());
-    found.retain(|circle| !circle.starts_with(TANGLED));
+    let found = folder_circles(&sources());
     assert!(found.is_empty(), "{found:#?}");
 }
 
 #[test]
 fn the_methods_of_a_type_stand_in_one_folder() {
-    let mut found = spread(&sources());
-    found.retain(|(name, _)| !SPREAD.contains(&name.as_str()));
+    let found = spread(&sources());
     assert!(found.is_empty(), "{found:#?}");
 }
 

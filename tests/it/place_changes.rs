@@ -117,7 +117,7 @@ impl Program {
 
     async fn is_live_within(&mut self, length: Duration) -> bool {
         let over = Instant::now() + length;
-        while self.app.state().hand().link.state != LinkState::Monitoring {
+        while self.app.state().hand().connection.status.state != LinkState::Monitoring {
             if Instant::now() >= over {
                 return false;
             }
@@ -135,7 +135,7 @@ impl Program {
 type Stage = ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>;
 
 fn stage(state: &State) -> Option<(Stage, PlacePair)> {
-    match state.hand().procedure.as_ref()? {
+    match state.hand().procedures.card.as_ref()? {
         Procedure::Place(card) => Some((card.stage.clone(), card.change.places.clone())),
         _ => None,
     }
@@ -168,7 +168,7 @@ async fn run(program: &mut Program, person: Person, case: &str) -> Option<PlaceR
         assert!(Instant::now() < over, "{case}: it comes to an end");
         program.tick().await;
         let state = program.app.state();
-        let is_live = state.hand().link.state.is_live();
+        let is_live = state.hand().connection.status.state.is_live();
         let (stage, _) = stage(state).unwrap_or_else(|| panic!("{case}: no card"));
         match stage {
             ProcedureStage::Doing(PlaceStep::Keeping(_), _) => {
@@ -312,7 +312,7 @@ async fn check(
     }
     if let Some(place) = end.place().filter(|_| !lost_power) {
         assert!(is_at(place), "{case}");
-        let window = program.app.state().hand().endpoint.as_ref();
+        let window = program.app.state().hand().connection.endpoint.as_ref();
         assert_eq!(
             window,
             Some(places.endpoint(place)),
@@ -381,7 +381,10 @@ async fn check(
         }
     }
     assert!(is_found, "{case}: nobody can reach it");
-    assert!(program.app.state().hand().procedure.is_none(), "{case}");
+    assert!(
+        program.app.state().hand().procedures.card.is_none(),
+        "{case}"
+    );
 }
 
 async fn all(seeds: std::ops::Range<u64>) -> std::collections::BTreeMap<String, u32> {

@@ -1,8 +1,8 @@
 //! The report of the day, kept in a file and on a page beside it, off the window's thread. A restart counts on.
 
-use crate::app::files::day_folder;
+use crate::app::env::day_folder;
 use crate::app::files::open::put_aside;
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file, page};
 use crate::exhibit::run::ExhibitEvent;
@@ -74,20 +74,20 @@ impl KeptReport {
     }
 
     /// Looks at the hand at this time since 1970; reads and writes what is due.
-    pub(crate) fn tick(&mut self, hand: &HandState, since_1970: Duration) {
+    pub(crate) fn tick(&mut self, hand: &Hand, since_1970: Duration, now: Moment) {
         self.take_ended();
         let day = calendar::day(since_1970);
         let is_over = self.today.day != day;
         if !is_over {
-            self.see(hand, since_1970);
+            self.see(hand, since_1970, now);
         }
         if self.is_busy() {
             return;
         }
-        let is_due = |at| is_over || hand.now.since(at) >= WRITE_EVERY;
+        let is_due = |at| is_over || now.since(at) >= WRITE_EVERY;
         if self.today != self.kept {
             if self.begun.is_none_or(is_due) {
-                self.write(hand.now);
+                self.write(now);
             }
         } else if is_over {
             self.begin_day(day);
@@ -108,14 +108,14 @@ impl KeptReport {
         self.reading.is_some() || self.writing.is_some()
     }
 
-    fn see(&mut self, hand: &HandState, since_1970: Duration) {
-        if let Some(endpoint) = &hand.endpoint
-            && hand.link.state.is_live()
+    fn see(&mut self, hand: &Hand, since_1970: Duration, now: Moment) {
+        if let Some(endpoint) = &hand.connection.endpoint
+            && hand.connection.status.state.is_live()
         {
             self.today.hands.insert(endpoint.to_string());
         }
         if let Ok(hour) = u8::try_from(since_1970.as_secs() / 3600 % 24) {
-            self.today.warm(&hand.sample, hour, hand.now);
+            self.today.warm(&hand.readings.sample, hour, now);
         }
     }
 

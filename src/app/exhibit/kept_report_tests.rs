@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
+use crate::app::env::day_folder::of_day;
 use crate::app::exhibit::KeptReport;
-use crate::app::files::day_folder::of_day;
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file};
 use crate::exhibit::run::ExhibitEvent;
@@ -18,18 +18,16 @@ const NINE: u64 = 1_795_219_200 + 2 * 86_400 + 9 * 3600;
 /// A report at a hand, and the time they live in.
 struct Booth {
     report: KeptReport,
-    hand: HandState,
+    hand: Hand,
     /// Seconds after nine o'clock.
     second: u64,
 }
 
 impl Booth {
     async fn open(documents: Option<&Path>) -> Self {
-        let mut hand = HandState {
-            endpoint: Some("tcp:10.0.0.9".parse().unwrap()),
-            ..HandState::default()
-        };
-        hand.link.state = LinkState::Monitoring;
+        let mut hand = Hand::default();
+        hand.connection.endpoint = Some("tcp:10.0.0.9".parse().unwrap());
+        hand.connection.status.state = LinkState::Monitoring;
         let report = KeptReport::new(documents.map(Path::to_owned), Handle::current());
         let mut booth = Self {
             report,
@@ -40,15 +38,18 @@ impl Booth {
         booth
     }
 
+    fn now(&self) -> Moment {
+        Moment::from_micros(self.second * 1_000_000)
+    }
+
     fn tick(&mut self) {
         let since_1970 = Duration::from_secs(NINE + self.second);
-        self.report.tick(&self.hand, since_1970);
+        self.report.tick(&self.hand, since_1970, self.now());
     }
 
     /// The program looks so many seconds after nine, until nothing is read or written any more.
     async fn at(&mut self, second: u64) {
         self.second = second;
-        self.hand.now = Moment::from_micros(second * 1_000_000);
         self.tick();
         while self.report.is_busy() {
             tokio::task::yield_now().await;
@@ -61,8 +62,8 @@ impl Booth {
     }
 
     fn heat(&mut self, celsius: u8) {
-        let at = self.hand.now;
-        self.hand.sample = HandSample {
+        let at = self.now();
+        self.hand.readings.sample = HandSample {
             temperature: Some(Timed {
                 value: PerDof::splat(TemperatureReading::new(celsius)),
                 asked: at,
@@ -73,7 +74,7 @@ impl Booth {
     }
 
     async fn leave(&mut self) {
-        while !self.report.flush(self.hand.now) {
+        while !self.report.flush(self.now()) {
             tokio::task::yield_now().await;
         }
     }

@@ -1,9 +1,10 @@
 //! The exhibition that is shown in place of the window: what it shows, what a person may do in it.
 
+pub mod exhibit_file;
 pub mod kept_report;
 mod page;
 pub mod state;
-pub(crate) mod work;
+pub(crate) mod wrong_pins_file;
 
 #[cfg(test)]
 mod kept_report_tests;

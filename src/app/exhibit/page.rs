@@ -1,11 +1,11 @@
 //! What a person does on the page of an exhibition, and what it tells.
 
 use crate::app::env::Env;
+use crate::app::env::running::Running;
 use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, StaffPanel};
-use crate::app::files::wrong_pins_file;
-use crate::app::hand::HandState;
-use crate::app::running::Running;
+use crate::app::exhibit::wrong_pins_file;
+use crate::app::hands::Hand;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::run::{ExhibitStage, ExhibitView, ExhibitWish};
@@ -25,16 +25,15 @@ impl ExhibitState {
     /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
     pub(crate) fn begin(
         start: Exhibition,
-        hand: &HandState,
+        hand: &Hand,
         language: Language,
         env: &Env,
     ) -> Option<Self> {
-        let open = hand.open.as_ref()?;
-        let link = open.link.clone();
+        let link = hand.connection.link()?.clone();
         let task_start = exhibit::ExhibitStart {
             plan: start.plan.clone(),
-            locked: hand.joints.map(|joint| joint.locked),
-            seen: hand.sample,
+            locked: hand.controls.locked(),
+            seen: hand.readings.sample,
             clock: env.clock,
             drawn: Arc::default(),
         };
@@ -78,8 +77,8 @@ impl ExhibitState {
 
     /// Takes in what went on, and closes what staff left open. True if a visitor has gone and the next one finds the page as the
     /// first did.
-    pub(crate) fn tick(&mut self, hand: &mut HandState, now: Moment) -> bool {
-        self.report.tick(hand, calendar::since_1970());
+    pub(crate) fn tick(&mut self, hand: &mut Hand, now: Moment) -> bool {
+        self.report.tick(hand, calendar::since_1970(), now);
         self.keep_wrong_pins(now);
         let before = self.view.stage;
         let (steps, _end) = self.task.news();
@@ -87,8 +86,7 @@ impl ExhibitState {
             match step {
                 ExhibitStep::View(view) => self.view = view,
                 ExhibitStep::Sent(setpoints) => {
-                    hand.commanded = true;
-                    hand.show(&setpoints);
+                    hand.sent(&setpoints);
                 }
                 ExhibitStep::Event(event) => self.report.count(&event),
             }

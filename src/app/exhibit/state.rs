@@ -1,7 +1,7 @@
 //! What an exhibition shows, as plain values, and what a person may do in it.
 
+use crate::app::env::running::Running;
 use crate::app::exhibit::kept_report::KeptReport;
-use crate::app::running::Running;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;

@@ -1,7 +1,7 @@
 //! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
 
 use crate::app::env::Env;
-use crate::app::files::day_folder;
+use crate::app::env::day_folder;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
 use crate::history::Table;

@@ -1,21 +1,15 @@
-//! One hand: everything about it in one value, and what a person asks of it.
+//! The parts of one hand. Each owns its state and knows nothing of the others; the list of hands has them composed.
 
+pub mod activity;
 pub mod connection;
-pub mod held_key;
-mod hold_to_run;
-pub mod joint;
-pub mod motion;
-pub mod mover;
-pub mod news;
-pub(crate) mod open;
-pub mod play;
-pub mod recording;
-mod requests;
+pub mod controls;
+mod held_key;
+pub mod open;
 pub mod sequence;
-pub mod slot;
-pub mod state;
-pub(crate) mod taring;
+pub(crate) mod status_news;
 
-pub use crate::app::hand::joint::Preset;
-pub use crate::app::hand::sequence::Play;
-pub use crate::app::hand::state::{Freshness, HandState};
+pub use crate::app::hand::activity::Activity;
+pub use crate::app::hand::connection::Connection;
+pub use crate::app::hand::controls::{Controls, JointControl};
+pub use crate::app::hand::held_key::HoldKey;
+pub use crate::app::hand::sequence::SequenceRun;

@@ -1,25 +1,11 @@
 //! A sequence that runs, or ran last, and what a person does with one.
 
-use crate::app::running::Running;
-use crate::poses::library::{EntryId, SequenceId};
+use crate::app::env::running::Running;
+use crate::hand::Setpoints;
+use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::tasks::play::{PlayCommand, PlayStep};
 use tokio::sync::mpsc;
-
-/// What a person does with a sequence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
-pub enum Play {
-    /// Run a sequence or a reaction from its start. Needs arming.
-    Start(EntryId),
-    /// Take one step, then wait. Needs arming.
-    Step(SequenceId),
-    /// Hold where the hand is, until resumed.
-    Pause,
-    /// Go on where it was paused.
-    Resume,
-    /// End it and hold where the hand is.
-    End,
-}
 
 /// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.
 #[derive(Debug)]
@@ -56,5 +42,28 @@ impl SequenceRun {
             self.commands = None;
             self.view.phase = PlayPhase::Ended(PlayEnd::TakenOver);
         }
+    }
+
+    /// Takes in what its task did; gives what was sent. Nothing of one that does not move the hand any more.
+    pub(crate) fn news(&mut self) -> Vec<Setpoints> {
+        let Some(task) = &mut self.task else {
+            return Vec::new();
+        };
+        let (steps, end) = task.news();
+        let moves = self.commands.is_some();
+        let mut sent = Vec::new();
+        for (_, step) in steps.into_iter().filter(|_| moves) {
+            match step {
+                PlayStep::View(view) => self.view = view,
+                PlayStep::Sent(setpoints) => sent.push(setpoints),
+            }
+        }
+        if let Some(end) = end {
+            self.task = None;
+            if self.is_running() {
+                self.view.phase = PlayPhase::Ended(end);
+            }
+        }
+        sent
     }
 }

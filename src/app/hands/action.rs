@@ -1,6 +1,6 @@
 //! What a person does with the list of hands.
 
-use crate::app::hand::slot::SlotId;
+use crate::app::slot::SlotId;
 
 /// What a person does with the list of hands. None of it moves a hand.
 #[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]

@@ -1,7 +1,7 @@
 //! The hands of the program, and which of them is shown.
 
-use crate::app::hand::HandState;
-use crate::app::hand::slot::SlotId;
+use crate::app::hands::Hand;
+use crate::app::slot::SlotId;
 
 /// Hands in one window: as many keys as there are for them, and as many strips as fit a header.
 pub const HANDS_MAX: usize = 8;
@@ -9,8 +9,8 @@ pub const HANDS_MAX: usize = 8;
 /// The hands of the program, and which of them is shown. There is always one, connected or not.
 #[derive(Debug, Default)]
 pub struct HandList {
-    first: HandState,
-    more: Vec<HandState>,
+    first: Hand,
+    more: Vec<Hand>,
     shown: usize,
     /// The slot that was given last.
     given: SlotId,
@@ -20,13 +20,13 @@ pub struct HandList {
 
 impl HandList {
     /// The hand that is shown.
-    pub fn shown(&self) -> &HandState {
+    pub fn shown(&self) -> &Hand {
         let more = self.shown.checked_sub(1);
         more.and_then(|at| self.more.get(at)).unwrap_or(&self.first)
     }
 
     /// The same, to be changed.
-    pub fn shown_mut(&mut self) -> &mut HandState {
+    pub fn shown_mut(&mut self) -> &mut Hand {
         let more = self.shown.checked_sub(1);
         match more.and_then(|at| self.more.get_mut(at)) {
             Some(hand) => hand,
@@ -35,12 +35,12 @@ impl HandList {
     }
 
     /// All hands.
-    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut HandState> {
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Hand> {
         std::iter::once(&mut self.first).chain(&mut self.more)
     }
 
     /// All hands.
-    pub fn iter(&self) -> impl Iterator<Item = &HandState> {
+    pub fn iter(&self) -> impl Iterator<Item = &Hand> {
         std::iter::once(&self.first).chain(&self.more)
     }
 
@@ -60,7 +60,7 @@ impl HandList {
     }
 
     /// The hand of this slot.
-    pub(crate) fn get_mut(&mut self, slot: SlotId) -> Option<&mut HandState> {
+    pub(crate) fn get_mut(&mut self, slot: SlotId) -> Option<&mut Hand> {
         self.iter_mut().find(|hand| hand.label.slot == slot)
     }
 
@@ -78,11 +78,11 @@ impl HandList {
     /// The shown hand, and where poses go to all, the others of which this is so.
     pub(crate) fn with_shown(
         &mut self,
-        goes_along: impl Fn(&HandState) -> bool,
-    ) -> impl Iterator<Item = &mut HandState> {
+        goes_along: impl Fn(&Hand) -> bool,
+    ) -> impl Iterator<Item = &mut Hand> {
         let (shown, to_all) = (self.shown().label.slot, self.poses_for_all());
         let is_meant =
-            move |hand: &&mut HandState| hand.label.slot == shown || to_all && goes_along(hand);
+            move |hand: &&mut Hand| hand.label.slot == shown || to_all && goes_along(hand);
         self.iter_mut().filter(is_meant)
     }
 
@@ -102,10 +102,7 @@ impl HandList {
             return;
         }
         self.given = self.given.next();
-        let mut hand = HandState {
-            now: self.first.now,
-            ..HandState::default()
-        };
+        let mut hand = Hand::default();
         hand.label.slot = self.given;
         self.more.push(hand);
         self.shown = self.more.len();

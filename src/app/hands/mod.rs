@@ -1,6 +1,12 @@
-//! Several hands in one window: the list of them, and what a person does with it.
+//! The hands of the program: each composed of its parts, and the list of them.
 
 pub mod action;
-mod leading;
+pub mod hand;
 pub mod list;
-pub(crate) mod work;
+pub mod mover;
+
+#[cfg(test)]
+mod news_tests;
+
+pub use crate::app::hands::hand::Hand;
+pub use crate::app::hands::mover::{Mover, rests};

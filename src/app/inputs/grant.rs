@@ -1,117 +1,76 @@
-//! Who is let move the hand from outside the window, and who is not any more.
+//! Which source may be let move the hand now, and the task that follows it.
 
 use crate::app::env::Env;
-use crate::app::hand::HandState;
-use crate::app::inputs::{FollowOutcome, FollowRun};
-use crate::app::running::Running;
-use crate::app::settings::Settings;
-use crate::hand::{Angle, Dof, PerDof};
+use crate::app::env::running::Running;
+use crate::app::inputs::{FollowOutcome, FollowRun, HandInputs, InputSource};
+use crate::hand::Moment;
 use crate::inputs::Offer;
 use crate::inputs::follow::HOLDS_AFTER;
-use crate::link::{LeaseRefusal, LinkStopper, Owner};
-use crate::record::{ArmRefusal, Disarmed};
+use crate::link::{LeaseRefusal, LinkHandle, LinkStopper, Owner};
+use crate::record::Disarmed;
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use tokio::sync::{mpsc, watch};
 
-/// A source that may move the hand.
-struct Granted {
-    owner: Owner,
+/// A source that is there and fresh.
+pub(crate) struct Offered {
+    pub(crate) owner: Owner,
     offers: mpsc::Receiver<Offer>,
     /// The hand that leads, if one does.
     leader: Option<LinkStopper>,
 }
 
-impl Granted {
-    const fn source(owner: Owner, offers: mpsc::Receiver<Offer>) -> Self {
-        Self {
+impl HandInputs {
+    /// What this source offers; `None` while nobody is there or what it says is old.
+    pub(crate) fn offered(&self, source: InputSource, now: Moment) -> Option<Offered> {
+        let is_fresh = |last: Moment| now.since(last) < HOLDS_AFTER;
+        let (owner, offers) = match source {
+            InputSource::Stream => {
+                let (sender, last) = self.stream_view.intake.sender?;
+                let source = self.stream.as_ref().filter(|_| is_fresh(last))?;
+                (Owner::Stream(sender), source.follow())
+            }
+            InputSource::Dds => {
+                let joined = self.dds.as_ref()?;
+                let (_, last) = joined.source.view().sender?;
+                // Two hands must not obey one sender.
+                let is_free = is_fresh(last) && joined.others.now().is_none();
+                (Owner::Dds, is_free.then(|| joined.source.follow())?)
+            }
+            InputSource::Pad => {
+                let source = self.pad.as_ref()?;
+                source.view().name?;
+                (Owner::Gamepad, source.follow())
+            }
+            InputSource::Mirror => {
+                let mirror = self.mirror.as_ref()?;
+                let is_fresh = mirror.source.view().is_fresh(now);
+                (Owner::Mirror, is_fresh.then(|| mirror.source.follow())?)
+            }
+        };
+        let leader = self.mirror.as_ref().filter(|_| owner == Owner::Mirror);
+        Some(Offered {
             owner,
             offers,
-            leader: None,
-        }
+            leader: leader.map(|mirror| mirror.stopper.clone()),
+        })
     }
 }
 
-impl HandState {
-    /// Nobody is given the right to move a hand that is being left, under a card, or in a series.
-    pub(super) fn may_grant(&self) -> bool {
-        self.leaving.is_none() && self.procedure.is_none() && !self.runs_series()
-    }
-
-    pub(super) fn grant_stream(&mut self, settings: &Settings, env: &Env) {
-        let Some(source) = &self.inputs.stream else {
-            return;
-        };
-        let Some((sender, last)) = self.inputs.stream_view.intake.sender else {
-            return;
-        };
-        if self.now.since(last) < HOLDS_AFTER {
-            let granted = Granted::source(Owner::Stream(sender), source.follow());
-            self.follow_source(granted, settings, env);
-        }
-    }
-
-    pub(super) fn grant_pad(&mut self, settings: &Settings, env: &Env) {
-        let Some(source) = &self.inputs.pad else {
-            return;
-        };
-        if source.view().name.is_some() {
-            let granted = Granted::source(Owner::Gamepad, source.follow());
-            self.follow_source(granted, settings, env);
-        }
-    }
-
-    pub(super) fn grant_dds(&mut self, settings: &Settings, env: &Env) {
-        let Some(joined) = &self.inputs.dds else {
-            return;
-        };
-        let last = joined.source.view().sender.map(|(_, last)| last);
-        let last = last.filter(|_| joined.others.now().is_none());
-        if last.is_some_and(|last| self.now.since(last) < HOLDS_AFTER) {
-            let granted = Granted::source(Owner::Dds, joined.source.follow());
-            self.follow_source(granted, settings, env);
-        }
-    }
-
-    /// Lets the hand that is watched lead this one, which it must not follow itself.
-    pub(in crate::app) fn grant_mirror(&mut self, settings: &Settings, env: &Env) {
-        let Some(mirror) = &self.inputs.mirror else {
-            return;
-        };
-        if mirror.source.view().is_fresh(self.now) {
-            let granted = Granted {
-                owner: Owner::Mirror,
-                offers: mirror.source.follow(),
-                leader: Some(mirror.stopper.clone()),
-            };
-            self.follow_source(granted, settings, env);
-        }
-    }
-
-    /// Lets this source move the hand; what moved it before does not any more.
-    fn follow_source(&mut self, granted: Granted, settings: &Settings, env: &Env) {
-        let refusal = self.arm_refusal();
-        if !self.may_grant() || refusal.is_some_and(|refusal| refusal != ArmRefusal::LetGo) {
-            return;
-        }
-        if let Some(run) = &mut self.sequence {
-            run.leave();
-        }
-        let Some(open) = &self.open else { return };
-        let Granted {
+impl FollowRun {
+    /// Follows what is offered, under the lease of `start`. The terms of now are told by the run.
+    pub(crate) fn begin(
+        offered: Offered,
+        link: LinkHandle,
+        start: impl FnOnce(watch::Receiver<FollowTerms>) -> FollowStart,
+        (terms, env): (FollowTerms, &Env),
+    ) -> Self {
+        let (terms, watched) = watch::channel(terms);
+        let start = start(watched);
+        let Offered {
             owner,
             offers,
             leader,
-        } = granted;
-        let lease = open.link.grant(owner);
-        let (terms, watched) = watch::channel(self.follow_terms(settings));
-        let start = FollowStart {
-            lease,
-            terms: watched,
-            arm: self.arm_request(),
-            seen: self.sample,
-            clock: env.clock,
-        };
-        let link = open.link.clone();
+        } = offered;
         let task = Running::start(env, |views| async move {
             let end = follow(&link, start, offers, |view| views.tell(view)).await;
             let leader = leader.filter(|_| stops_leader(end));
@@ -120,48 +79,12 @@ impl HandState {
                 leader_stopped: leader.is_some_and(|leader| leader.stop_if_moved()),
             }
         });
-        self.inputs.follow = Some(FollowRun {
+        Self {
             owner,
             view: None,
             terms,
             task,
-        });
-    }
-
-    /// Ends whoever moves the hand from outside, for this reason; the hand is stopped.
-    pub(in crate::app) fn end_outside(&self, why: Disarmed) {
-        let Some(open) = &self.open else { return };
-        if let Some(holder) = open.link.status().holder
-            && holder.owner.is_outside()
-        {
-            // One that ended meanwhile has stopped already.
-            let _done = open.link.give_back(holder.lease, why);
         }
-    }
-
-    pub(super) fn follow_terms(&self, settings: &Settings) -> FollowTerms {
-        FollowTerms {
-            limits: settings.follow,
-            locked: self.joints.map(|joint| joint.locked),
-            hold: self.hold_to_run(),
-        }
-    }
-
-    /// The sliders stand where the source sent the joints.
-    pub(super) fn show_sent(&mut self, sent: PerDof<Option<Angle>>) {
-        for dof in Dof::ALL {
-            if let Some(to) = sent[dof] {
-                self.joints[dof].target = Some(to);
-                self.steered[dof] = true;
-                self.commanded = true;
-            }
-        }
-    }
-
-    /// Who moves the hand from outside this window, if somebody may.
-    pub fn outside_owner(&self) -> Option<Owner> {
-        let holder = self.link.holder.filter(|_| self.link.state.is_live())?;
-        holder.owner.is_outside().then_some(holder.owner)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Another hand of this window that is watched, so that this one can follow it.
 
-use crate::app::hand::slot::SlotId;
+use crate::app::slot::SlotId;
 use crate::inputs::mirror::{MirrorScale, MirrorSource, MirrorView};
 use crate::link::{LinkHandle, LinkStopper};
 

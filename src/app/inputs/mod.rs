@@ -5,9 +5,9 @@ mod grant;
 pub(crate) mod mirror;
 mod work;
 
-use crate::app::hand::slot::SlotId;
+use crate::app::env::running::Running;
 use crate::app::inputs::mirror::HandMirror;
-use crate::app::running::Running;
+use crate::app::slot::SlotId;
 use crate::inputs::dds::source::{DdsSource, DdsView};
 use crate::inputs::follow::FollowLimits;
 use crate::inputs::mirror::MirrorScale;
@@ -40,14 +40,8 @@ pub enum InputAction {
     JoinDds(Option<String>),
     /// Watch the hand of this slot, of which this share would be followed, or none any more. Only reads it.
     Mirror(Option<(SlotId, MirrorScale)>),
-    /// Let whoever sends lines move the hand.
-    GrantStream,
-    /// Let the program that sends over DDS move the hand.
-    GrantDds,
-    /// Let the gamepad move the hand.
-    GrantPad,
-    /// Let the hand that is watched lead this one.
-    GrantMirror,
+    /// Let this source move the hand.
+    Grant(InputSource),
     /// Let a client of the gateway move the hand.
     GrantClient(ClientId),
     /// Whoever moves the hand from outside may no more; it is stopped.
@@ -56,6 +50,18 @@ pub enum InputAction {
     Limit(FollowLimits),
     /// What the gamepad's controls do.
     Map(PadMap),
+}
+
+/// A source that a person may let move the hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputSource {
+    /// Whoever sends lines.
+    Stream,
+    /// The program that sends over DDS.
+    Dds,
+    Pad,
+    /// Another hand of this window.
+    Mirror,
 }
 
 /// What can be opened.
@@ -156,7 +162,7 @@ pub(crate) struct FollowOutcome {
 
 impl HandInputs {
     /// Takes in what came and who is there.
-    fn look(&mut self) {
+    pub(crate) fn look(&mut self) {
         self.stream_at = self.stream.as_ref().map(StreamSource::local);
         let lines = self.stream.as_ref().map(StreamSource::view);
         self.stream_view = lines.unwrap_or_default();
@@ -179,13 +185,13 @@ impl HandInputs {
     }
 
     /// Whether the hand follows what is sent on DDS.
-    fn follows_dds(&self) -> bool {
+    pub(crate) fn follows_dds(&self) -> bool {
         let mut run = self.follow.iter();
         run.any(|run| run.owner == Owner::Dds)
     }
 
     /// Whether another hand obeys the same sender on DDS.
-    fn other_follows_dds(&self) -> bool {
+    pub(crate) fn other_follows_dds(&self) -> bool {
         let mut joined = self.dds.iter();
         joined.any(|joined| joined.others.now().is_some())
     }

@@ -8,5 +8,5 @@ pub mod state;
 pub(crate) mod work;
 
 pub use crate::app::params::action::ParamAction;
-pub use crate::app::params::refusal::ParamRefusal;
+pub use crate::app::params::refusal::{ParamRefusal, rest_refusal};
 pub use crate::app::params::state::ParamsState;

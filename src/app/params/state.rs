@@ -1,11 +1,13 @@
 //! What is known of the rows that a hand keeps: read back, staged, saved, and the outcomes of the last writes. Sends nothing.
 
+use crate::app::env::running::Running;
 use crate::app::notices::NoticeKind;
 use crate::app::params::compared::Compared;
+use crate::app::params::refusal::{ParamRefusal, rest_refusal};
 use crate::app::params::running::{FilesRead, ParamsEnd};
-use crate::app::running::Running;
+use crate::app::readings::Freshness;
 use crate::hand::{Moment, Span};
-use crate::link::RequestError;
+use crate::link::{LinkStatus, RequestError};
 use crate::params::backups::{Backup, Backups, Known};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::{Danger, worse};
@@ -15,6 +17,7 @@ use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
 use crate::store::{BackgroundJob, FileError};
 use crate::tasks::ParamStep;
+use crate::transport::Endpoint;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -120,11 +123,70 @@ pub struct ParamsState {
     pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
     /// The files are being read.
     pub(crate) listing: Option<BackgroundJob<FilesRead>>,
+    /// The hand whose files were looked at last.
+    pub(crate) listed: Option<Endpoint>,
     /// A file that is looked at is being chosen and read.
     pub(crate) opening: Option<BackgroundJob<Result<(PathBuf, ParamsFile), NoticeKind>>>,
 }
 
 impl ParamsState {
+    /// Nothing is known of the rows of the next connection.
+    pub(crate) fn at_next_connection(self) -> Self {
+        Self {
+            listed: self.listed,
+            ..Self::default()
+        }
+    }
+
+    /// Why the rows cannot be read now.
+    pub fn read_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        if link.state.is_live() {
+            self.is_busy().then_some(ParamRefusal::Busy)
+        } else {
+            Some(ParamRefusal::NoHand)
+        }
+    }
+
+    /// Why nothing that is kept may be written now.
+    pub fn write_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        let busy = || self.is_busy().then_some(ParamRefusal::Busy);
+        rest_refusal(link).or_else(busy)
+    }
+
+    /// Why what is staged cannot be applied now.
+    pub fn apply_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        let nothing = self.to_apply().is_empty();
+        self.write_refusal(link)
+            .or_else(|| nothing.then_some(ParamRefusal::NothingStaged))
+    }
+
+    /// Why the last apply cannot be undone now.
+    pub fn undo_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        let nothing = self.undo.is_empty();
+        self.write_refusal(link)
+            .or_else(|| nothing.then_some(ParamRefusal::NothingToUndo))
+    }
+
+    /// Why the hand's parameters cannot be written to its flash now.
+    pub fn save_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        let nowhere = self.files.is_none();
+        self.write_refusal(link)
+            .or_else(|| nowhere.then_some(ParamRefusal::NoFolder))
+    }
+
+    /// How fresh a row's value is, on a link that is live or not.
+    pub fn freshness(&self, id: ParamId, is_live: bool, now: Moment) -> Freshness {
+        let Some((_, at)) = self.live(id) else {
+            return Freshness::Unknown;
+        };
+        let before_loss = self.lost_at.is_some_and(|lost| at <= lost);
+        if is_live && !before_loss && now.since(at) <= OLD_AFTER {
+            Freshness::Live
+        } else {
+            Freshness::Stale
+        }
+    }
+
     /// What was read last, if anything was on this connection, and when.
     pub fn live(&self, id: ParamId) -> Option<(Value, Moment)> {
         self.live.get(&id).copied()

@@ -1,17 +1,17 @@
 //! What a person asks about the rows that a hand keeps, and the tasks that do it. Reads before it writes; asks before what
 //! could hurt.
 
+use crate::app::ctx::Ctx;
 use crate::app::env::Env;
+use crate::app::env::running::{Running, Steps};
 use crate::app::files::open::open;
-use crate::app::hand::HandState;
-use crate::app::notices::Notices;
+use crate::app::hand::Connection;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::app::params::running::{FilesRead, ParamsEnd};
 use crate::app::params::state::{Doing, ParamsState, SaveEnd, WriteQuestion, WriteRequest};
-use crate::app::running::{Running, Steps};
-use crate::hand::{Dof, Moment};
-use crate::link::LinkHandle;
+use crate::hand::{Dof, HandSample, Moment};
+use crate::link::{LinkHandle, LinkStatus};
 use crate::params::backups::{Backups, Known, folder_beside};
 use crate::params::changes;
 use crate::params::danger::Danger;
@@ -23,59 +23,78 @@ use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{ReadRows, rows};
 use crate::tasks::save::{Save, SaveReport, save};
 use crate::tasks::{Consent, ParamStep, TaskError};
+use crate::transport::Endpoint;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Speed and force in force are read all the time; older ones are not copied.
 const COPY_WITHIN: Duration = Duration::from_secs(5);
 
-impl HandState {
+/// The hand that is meant, and what the program stands on.
+#[derive(Clone, Copy)]
+struct At<'a> {
+    connection: &'a Connection,
+    env: &'a Env,
+}
+
+impl ParamsState {
     /// Carries out what a person asked for.
-    pub(crate) fn param_action(&mut self, action: ParamAction, env: &Env) {
+    pub(crate) fn act(
+        &mut self,
+        action: ParamAction,
+        connection: &Connection,
+        sample: &HandSample,
+        ctx: &Ctx<'_>,
+    ) {
+        let link = &connection.status;
+        let at = At {
+            connection,
+            env: ctx.env,
+        };
         match action {
-            ParamAction::Read if self.read_refusal().is_some() => {}
-            ParamAction::Read => self.read_rows(env),
-            ParamAction::Apply if self.apply_refusal().is_some() => {}
-            ParamAction::Apply => self.apply_rows(self.params.to_apply(), Vec::new(), env),
-            ParamAction::Undo if self.undo_refusal().is_some() => {}
+            ParamAction::Read if self.read_refusal(link).is_some() => {}
+            ParamAction::Read => self.read_rows(at),
+            ParamAction::Apply if self.apply_refusal(link).is_some() => {}
+            ParamAction::Apply => self.apply_rows(self.to_apply(), Vec::new(), at),
+            ParamAction::Undo if self.undo_refusal(link).is_some() => {}
             ParamAction::Undo => {
-                let undo = self.params.undo.clone();
+                let undo = self.undo.clone();
                 self.stage_all(&undo);
-                self.apply_rows(undo, Vec::new(), env);
+                self.apply_rows(undo, Vec::new(), at);
             }
-            ParamAction::Save if self.save_refusal().is_some() => {}
-            ParamAction::Save => self.ask_save(env),
-            ParamAction::Agree if self.write_refusal().is_some() => {}
+            ParamAction::Save if self.save_refusal(link).is_some() => {}
+            ParamAction::Save => self.ask_save(at),
+            ParamAction::Agree if self.write_refusal(link).is_some() => {}
             ParamAction::Agree => {
-                let Some(WriteQuestion { what, dangers }) = self.params.question.take() else {
+                let Some(WriteQuestion { what, dangers }) = self.question.take() else {
                     return;
                 };
                 match what {
-                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, env),
-                    WriteRequest::Save if self.params.to_apply().is_empty() => {
-                        self.save(dangers, env);
+                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, at),
+                    WriteRequest::Save if self.to_apply().is_empty() => {
+                        self.save(dangers, at);
                     }
                     WriteRequest::Save => {
-                        self.apply_rows(self.params.to_apply(), dangers.clone(), env);
-                        self.params.save_next = Some(dangers);
+                        self.apply_rows(self.to_apply(), dangers.clone(), at);
+                        self.save_next = Some(dangers);
                     }
                 }
             }
-            ParamAction::Decline => self.params.question = None,
-            ParamAction::CopyLive => self.copy_live(),
-            ParamAction::UnstageAll => self.params.unstage_all(),
-            ParamAction::Open(typed) => self.open_params(typed, env),
+            ParamAction::Decline => self.question = None,
+            ParamAction::CopyLive => self.copy_live(sample, link, ctx.now),
+            ParamAction::UnstageAll => self.unstage_all(),
+            ParamAction::Open(typed) => self.open_file(typed, ctx.env),
             ParamAction::Tick(id) => {
-                if let Some(compared) = &mut self.params.compared {
+                if let Some(compared) = &mut self.compared {
                     compared.tick(id);
                 }
             }
             ParamAction::StageTicked => {
-                if let Some(compared) = self.params.compared.take() {
+                if let Some(compared) = self.compared.take() {
                     self.stage_all(&compared.chosen());
                 }
             }
-            ParamAction::CloseFile => self.params.compared = None,
+            ParamAction::CloseFile => self.compared = None,
             // Carried out by the program, which has the files.
             ParamAction::Dump => {}
         }
@@ -83,143 +102,145 @@ impl HandState {
 
     fn stage_all(&mut self, params: &Params) {
         for (id, value) in params.iter() {
-            self.params.stage(id, Some(value));
+            self.stage(id, Some(value));
         }
     }
 
-    fn copy_live(&mut self) {
-        let (sample, now) = (self.sample, self.now);
+    fn copy_live(&mut self, sample: &HandSample, link: &LinkStatus, now: Moment) {
         let young = |asked: Moment| now.since(asked) <= COPY_WITHIN;
-        let is_live = self.link.state.is_live();
+        let is_live = link.state.is_live();
         let speeds = sample.speed_set.filter(|all| is_live && young(all.asked));
         let forces = sample.force_set.filter(|all| is_live && young(all.asked));
         for dof in Dof::ALL {
             if let Some(speed) = speeds.and_then(|all| all.value[dof]) {
                 let value = Value::Number(i32::from(speed.get()));
-                self.params.stage(ParamId::DefaultSpeed(dof), Some(value));
+                self.stage(ParamId::DefaultSpeed(dof), Some(value));
             }
             if let Some(force) = forces.and_then(|all| all.value[dof]) {
                 let value = Value::Number(i32::from(force.get()));
-                self.params.stage(ParamId::DefaultForce(dof), Some(value));
+                self.stage(ParamId::DefaultForce(dof), Some(value));
             }
         }
     }
 
     /// Reads the rows because somebody looks at them, if it is due.
-    pub(crate) fn look_at_params(&mut self, env: &Env) {
-        let now = self.now;
-        if self.params.look(now) {
-            self.param_action(ParamAction::Read, env);
+    pub(crate) fn look_at(&mut self, connection: &Connection, env: &Env, now: Moment) {
+        if self.look(now) && self.read_refusal(&connection.status).is_none() {
+            self.read_rows(At { connection, env });
         }
     }
 
     /// Starts what reads or writes rows, if there is a link.
-    fn start_params<F>(
+    fn start<F>(
         &mut self,
         doing: Doing,
-        env: &Env,
+        At { connection, env }: At<'_>,
         task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
     ) where
         F: Future<Output = ParamsEnd> + Send + 'static,
     {
-        if let Some(open) = &self.open {
-            let link = open.link.clone();
-            self.params.begin(doing);
-            self.params.task = Some(Running::start(env, |steps| task(link, steps)));
+        if let Some(link) = connection.link().cloned() {
+            self.begin(doing);
+            self.task = Some(Running::start(env, |steps| task(link, steps)));
         }
     }
 
-    fn read_rows(&mut self, env: &Env) {
-        self.start_params(Doing::Reading, env, |link, steps| async move {
+    fn read_rows(&mut self, at: At<'_>) {
+        self.start(Doing::Reading, at, |link, steps| async move {
             let took = |span, bytes: &[u8]| steps.tell(ParamStep::Read(span, bytes.to_vec()));
             ParamsEnd::Read(rows(&link, took).await)
         });
     }
 
-    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, env: &Env) {
+    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, at: At<'_>) {
         let task = Apply {
             wanted,
             consent: Consent::To(agreed),
             backups: None,
             otherwise: Otherwise::Stay,
         };
-        self.start_params(Doing::Applying, env, |link, steps| async move {
+        self.start(Doing::Applying, at, |link, steps| async move {
             let end = apply(&link, &task, |step| steps.tell(step)).await;
             ParamsEnd::Applied(task.wanted, end)
         });
     }
 
     /// Shows what a SAVE would change; where that is nothing, it is done at once.
-    fn ask_save(&mut self, env: &Env) {
-        let params = &mut self.params;
-        if params.unsaved().is_empty() {
-            return self.save(Vec::new(), env);
+    fn ask_save(&mut self, at: At<'_>) {
+        if self.unsaved().is_empty() {
+            return self.save(Vec::new(), at);
         }
-        params.question = Some(WriteQuestion {
+        self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
-            dangers: params.save_dangers(),
+            dangers: self.save_dangers(),
         });
     }
 
-    fn save(&mut self, agreed: Vec<Danger>, env: &Env) {
-        let Some(backups) = self.params.files.clone() else {
+    fn save(&mut self, agreed: Vec<Danger>, at: At<'_>) {
+        let Some(backups) = self.files.clone() else {
             return;
         };
         let task = Save {
             backups,
-            before: self.params.before_changes(&Params::default()),
+            before: self.before_changes(&Params::default()),
             consent: Consent::To(agreed),
         };
-        self.start_params(Doing::BackingUp, env, |link, steps| async move {
+        self.start(Doing::BackingUp, at, |link, steps| async move {
             ParamsEnd::Saved(save(&link, &task, |step| steps.tell(step)).await)
         });
     }
 
-    fn open_params(&mut self, typed: Option<PathBuf>, env: &Env) {
-        if self.params.opening.is_none() {
-            self.params.file_refused = None;
+    fn open_file(&mut self, typed: Option<PathBuf>, env: &Env) {
+        if self.opening.is_none() {
+            self.file_refused = None;
             let read = |path: &Path| Ok((path.to_owned(), file::load(path)?));
-            self.params.opening = Some(open(typed, file::FILE_NAME, env, read));
+            self.opening = Some(open(typed, file::FILE_NAME, env, read));
         }
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
-    pub(crate) fn tick_params(&mut self, env: &Env, notices: &mut Notices) {
-        let now = self.now;
-        self.params.take_task(now);
-        if !self.params.is_busy()
-            && let Some(agreed) = self.params.save_next.take()
-            && self.params.question.is_none()
+    pub(crate) fn tick(&mut self, connection: &Connection, ctx: &mut Ctx<'_>) {
+        let (link, now) = (&connection.status, ctx.now);
+        self.take_task(now);
+        if !self.is_busy()
+            && let Some(agreed) = self.save_next.take()
+            && self.question.is_none()
         {
-            if self.params.is_applied() && self.save_refusal().is_none() {
-                self.save(agreed, env)
+            if self.is_applied() && self.save_refusal(link).is_none() {
+                self.save(
+                    agreed,
+                    At {
+                        connection,
+                        env: ctx.env,
+                    },
+                )
             } else {
-                self.params.save = Some((SaveEnd::NotApplied, now))
+                self.save = Some((SaveEnd::NotApplied, now))
             }
         }
-        if let Some(read) = BackgroundJob::take_from(&mut self.params.listing) {
-            self.params.show_files(read);
+        if let Some(read) = BackgroundJob::take_from(&mut self.listing) {
+            self.show_files(read);
         }
-        match BackgroundJob::take_from(&mut self.params.opening) {
+        match BackgroundJob::take_from(&mut self.opening) {
             None => {}
-            Some(Ok((path, file))) => self.params.show_file(&path, file),
+            Some(Ok((path, file))) => self.show_file(&path, file),
             Some(Err(refused)) => {
-                self.params.file_refused = Some(refused.clone());
-                notices.push(now, refused);
+                self.file_refused = Some(refused.clone());
+                ctx.tell(refused);
             }
         }
-        self.list_files(env);
+        self.list_files(connection.endpoint.as_ref(), ctx.env);
     }
 
-    fn list_files(&mut self, env: &Env) {
-        let Some(hand) = &self.endpoint else {
+    fn list_files(&mut self, hand: Option<&Endpoint>, env: &Env) {
+        let Some(hand) = hand else {
             self.listed = None;
             return;
         };
         let Some(folder) = env.settings_path.as_deref().map(folder_beside) else {
             return;
         };
-        if self.params.files.is_some() || self.params.listing.is_some() {
+        if self.files.is_some() || self.listing.is_some() {
             return;
         }
         let files = Backups::new(&folder, hand);
@@ -234,7 +255,7 @@ impl HandState {
             Ok(FilesRead::of(files))
         });
         let list = async move { list.await.ok() };
-        self.params.listing = Some(BackgroundJob::start_fallible(&env.runtime, &env.wake, list));
+        self.listing = Some(BackgroundJob::start_fallible(&env.runtime, &env.wake, list));
     }
 }
 

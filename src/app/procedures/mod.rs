@@ -2,8 +2,9 @@
 
 pub mod procedure;
 pub(crate) mod reach;
-pub(crate) mod work;
+pub mod work;
 
 pub use crate::app::procedures::procedure::{
-    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
+    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, Procedures,
+    ResetProcedure,
 };

@@ -1,6 +1,7 @@
 //! What a card shows and what a person may decide on it. Plain values; asks nobody.
 
-use crate::app::running::Running;
+use crate::app::env::running::Running;
+use crate::app::procedures::reach::GoRequest;
 use crate::hand::Moment;
 use crate::params::danger::Danger;
 use crate::params::place::{PlacePair, WhichPlace};
@@ -9,7 +10,7 @@ use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
 use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
 use crate::tasks::reset::{ResetReport, ResetStep};
 use std::path::PathBuf;
-use tokio::sync::oneshot;
+use tokio::sync::{mpsc, oneshot};
 
 /// What a person decides on a card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
@@ -120,6 +121,13 @@ pub struct CalibrateProcedure {
     /// Where it stands.
     pub stage: ProcedureStage<CalibrateStep, CalibrateReport>,
     pub(crate) run: Option<Running<CalibrateStep, CalibrateReport>>,
+}
+
+/// The card of a hand, if one is open, and where its task wants the link.
+#[derive(Debug, Default)]
+pub struct Procedures {
+    pub card: Option<Procedure>,
+    pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
 }
 
 impl Procedure {

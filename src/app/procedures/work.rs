@@ -1,17 +1,20 @@
 //! Cards at work: opening one, deciding on it, and what its task tells.
 
-use crate::app::env::Env;
-use crate::app::hand::HandState;
-use crate::app::notices::Notices;
+use crate::app::ctx::Ctx;
+use crate::app::env::running::Running;
+use crate::app::hand::Connection;
+use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::procedure::{
-    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, ResetProcedure,
+    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, Procedures,
+    ResetProcedure,
 };
-use crate::app::procedures::reach::{Asking, decided};
-use crate::app::running::Running;
+use crate::app::procedures::reach::{Asking, GoRequest, decided};
 use crate::app::settings::Settings;
+use crate::hand::HandSample;
+use crate::link::LinkStatus;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
-use crate::params::place::{PlacePair, WhichPlace, new_place, setting};
+use crate::params::place::{PlacePair, new_place, setting};
 use crate::params::rows::{ParamId, Value};
 use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
@@ -21,22 +24,29 @@ use crate::transport::Endpoint;
 use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
 
-impl HandState {
+impl Procedures {
     /// Opens the card of a change. Where the wire could not follow the hand, there is none.
-    pub(crate) fn open_place_change(&mut self, id: ParamId, wanted: Value) {
-        let (Some(before), Some(old)) = (self.held_now(id), self.endpoint.clone()) else {
+    pub(crate) fn open_place_change(
+        &mut self,
+        id: ParamId,
+        wanted: Value,
+        connection: &Connection,
+        params: &ParamsState,
+    ) {
+        let before = held_now(id, &connection.status, params);
+        let (Some(before), Some(old)) = (before, connection.endpoint.clone()) else {
             return;
         };
         let followed = new_place(&old, id, wanted);
         let is_bus = !matches!(old, Endpoint::Tcp { .. });
         let is_possible = followed.is_some() || !is_bus || id == ParamId::IpAddress;
         let is_new = setting(id, wanted).is_some() && before != wanted;
-        if self.procedure.is_some() || !is_possible || !is_new {
+        if self.card.is_some() || !is_possible || !is_new {
             return;
         }
         let is_followed = followed.is_some();
         let new = followed.unwrap_or_else(|| at_address(&old, wanted));
-        self.procedure = Some(Procedure::Place(PlaceProcedure {
+        self.card = Some(Procedure::Place(PlaceProcedure {
             change: PlaceChange {
                 id,
                 before,
@@ -54,9 +64,9 @@ impl HandState {
     }
 
     /// Opens the card of a return to the factory's parameters.
-    pub(crate) fn open_reset(&mut self) {
-        if let Some(hand) = self.endpoint.as_ref().filter(|_| self.procedure.is_none()) {
-            self.procedure = Some(Procedure::Reset(ResetProcedure {
+    pub(crate) fn open_reset(&mut self, connection: &Connection) {
+        if let Some(hand) = connection.endpoint.as_ref().filter(|_| self.card.is_none()) {
+            self.card = Some(Procedure::Reset(ResetProcedure {
                 places: reset::places(hand),
                 stage: ProcedureStage::Asking,
                 run: None,
@@ -65,9 +75,9 @@ impl HandState {
     }
 
     /// Opens the card of a calibration.
-    pub(crate) fn open_calibration(&mut self) {
-        if self.endpoint.is_some() && self.procedure.is_none() {
-            self.procedure = Some(Procedure::Calibrate(CalibrateProcedure {
+    pub(crate) fn open_calibration(&mut self, connection: &Connection) {
+        if connection.endpoint.is_some() && self.card.is_none() {
+            self.card = Some(Procedure::Calibrate(CalibrateProcedure {
                 checks: Checks::default(),
                 before: None,
                 stage: ProcedureStage::Asking,
@@ -77,30 +87,24 @@ impl HandState {
     }
 
     /// The person goes elsewhere: the card closes, and nothing more is done for it.
-    pub(crate) fn close_procedure(&mut self) {
-        (self.procedure, self.requested) = (None, None);
-    }
-
-    /// What the hand holds in a row by which it is found: as read back last, else as it said when the link began.
-    pub fn held_now(&self, id: ParamId) -> Option<Value> {
-        let told = match id {
-            ParamId::HandId => self.link.quirks.hand_id,
-            ParamId::ReduRatio => self.link.quirks.baud_code,
-            _ => None,
-        };
-        let told = told.map(|byte| Value::Number(i32::from(byte)));
-        let read = self.params.live(id).map(|(value, _)| value);
-        read.or(told)
+    pub(crate) fn close(&mut self) {
+        *self = Self::default();
     }
 
     /// Carries out what a person decided on the card.
-    pub(crate) fn procedure_action(&mut self, action: ProcedureAction, env: &Env) {
-        let Some(procedure) = &mut self.procedure else {
+    pub(crate) fn act(
+        &mut self,
+        action: ProcedureAction,
+        connection: &Connection,
+        sample: &HandSample,
+        ctx: &Ctx<'_>,
+    ) {
+        let Some(procedure) = &mut self.card else {
             return;
         };
         match (action, procedure) {
-            (ProcedureAction::Begin, _) => self.begin_procedure(env),
-            (ProcedureAction::Close, own) if own.may_close() => self.close_procedure(),
+            (ProcedureAction::Begin, _) => self.begin(connection, sample, ctx),
+            (ProcedureAction::Close, own) if own.may_close() => self.close(),
             (ProcedureAction::Close, _) => {}
             (action, Procedure::Place(card)) => {
                 let (answer, agrees) = match action {
@@ -117,11 +121,11 @@ impl HandState {
         }
     }
 
-    fn begin_procedure(&mut self, env: &Env) {
-        if self.rest_refusal().is_some() {
+    fn begin(&mut self, connection: &Connection, sample: &HandSample, ctx: &Ctx<'_>) {
+        if rest_refusal(&connection.status).is_some() {
             return;
         }
-        let now = self.now;
+        let (now, env) = (ctx.now, ctx.env);
         let folder = env.settings_path.as_deref().map(folder_beside);
         let backups = |hand: &Endpoint| match &folder {
             Some(folder) => Ok(Backups::new(folder, hand)),
@@ -134,7 +138,7 @@ impl HandState {
             requests,
             wake: Arc::clone(&env.wake),
         };
-        match &mut self.procedure {
+        match &mut self.card {
             Some(Procedure::Place(card)) if card.stage == ProcedureStage::Asking => {
                 let change = card.change.clone();
                 let backups = backups(&change.places.old);
@@ -160,13 +164,13 @@ impl HandState {
                 }));
             }
             Some(Procedure::Calibrate(card)) if card.stage == ProcedureStage::Asking => {
-                let ready = card.checks.is_ready(&self.sample, &self.link, now);
-                let Some(open) = self.open.as_ref().filter(|_| ready) else {
+                let ready = card.checks.is_ready(sample, &connection.status, now);
+                let Some(link) = connection.link().filter(|_| ready) else {
                     return;
                 };
                 card.before = card.checks.mean();
                 card.stage = ProcedureStage::Doing(CalibrateStep::Calibrating, now);
-                let (link, clock) = (open.link.clone(), env.clock);
+                let (link, clock) = (link.clone(), env.clock);
                 card.run = Some(Running::start(env, |steps| async move {
                     calibrate(&link, clock, |step| steps.tell(step)).await
                 }));
@@ -176,36 +180,19 @@ impl HandState {
         self.requested = Some(requested);
     }
 
-    /// Takes in what the task under the card told, and goes where it has to look.
-    pub(crate) fn tick_procedure(
-        &mut self,
-        env: &Env,
-        settings: &mut Settings,
-        notices: &mut Notices,
-    ) {
-        let is_over = self.take_procedure_news(settings);
-        let requested = self.requested.as_mut();
-        if let Some(request) = requested.and_then(|all| all.try_recv().ok()) {
-            if self.endpoint.as_ref() != Some(&request.place) {
-                self.go(Some(request.place), env, notices);
-            }
-            if let Some(open) = &self.open {
-                let _told = request.opened.send(open.link.clone());
-            }
-        }
-        if is_over {
-            if !matches!(self.procedure, Some(Procedure::Calibrate(_))) {
-                self.params.link_lost(self.now);
-            }
-            self.params.files = None;
-            self.go_home(env, notices);
-        }
+    /// Where the task under the card wants the link now.
+    pub(crate) fn wants_link(&mut self) -> Option<GoRequest> {
+        self.requested.as_mut()?.try_recv().ok()
     }
 
-    /// True once the task is over.
-    fn take_procedure_news(&mut self, settings: &mut Settings) -> bool {
-        let params = &mut self.params;
-        match &mut self.procedure {
+    /// Takes in what the task under the card told. True once it is over.
+    pub(crate) fn take_news(
+        &mut self,
+        sample: &HandSample,
+        params: &mut ParamsState,
+        settings: &mut Settings,
+    ) -> bool {
+        match &mut self.card {
             None => false,
             Some(Procedure::Place(card)) => {
                 let is_over = card.stage.take_news(&mut card.run, |step, at| {
@@ -239,26 +226,32 @@ impl HandState {
             }),
             Some(Procedure::Calibrate(card)) => {
                 if card.stage == ProcedureStage::Asking {
-                    card.checks.watch(&self.sample);
+                    card.checks.watch(sample);
                 }
                 card.stage.take_news(&mut card.run, |_, _| true)
             }
         }
     }
 
-    /// To the hand, not to another one that was looked for on the way.
-    fn go_home(&mut self, env: &Env, notices: &mut Notices) {
-        let Some(Procedure::Place(card)) = &self.procedure else {
-            return;
+    /// Where the hand is once a change of its place is over: not where it was looked for on the way.
+    pub(crate) fn home(&self) -> Option<Endpoint> {
+        let Some(Procedure::Place(card)) = &self.card else {
+            return None;
         };
-        let home: Option<WhichPlace> = card.place();
-        let Some(there) = home.map(|place| card.change.places.endpoint(place).clone()) else {
-            return;
-        };
-        if self.endpoint.as_ref() != Some(&there) {
-            self.go(Some(there), env, notices);
-        }
+        Some(card.change.places.endpoint(card.place()?).clone())
     }
+}
+
+/// What the hand holds in a row by which it is found: as read back last, else as it said when the link began.
+pub fn held_now(id: ParamId, link: &LinkStatus, params: &ParamsState) -> Option<Value> {
+    let told = match id {
+        ParamId::HandId => link.quirks.hand_id,
+        ParamId::ReduRatio => link.quirks.baud_code,
+        _ => None,
+    };
+    let told = told.map(|byte| Value::Number(i32::from(byte)));
+    let read = params.live(id).map(|(value, _)| value);
+    read.or(told)
 }
 
 /// The hand at another address on the network; as it is where its wire is none.

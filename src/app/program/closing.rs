@@ -1,7 +1,9 @@
 //! The window closes: a hand that may move is stopped first, and what would be lost is asked about.
 
-use crate::app::hand::HandState;
+use crate::app::env::Env;
+use crate::app::hands::Hand;
 use crate::app::hands::list::HandList;
+use crate::app::program::hands;
 use crate::app::state::{LeaveQuestion, State};
 use crate::hand::Moment;
 
@@ -15,29 +17,28 @@ pub(super) struct Closing {
 
 impl Closing {
     /// Stops each hand that is armed, or that this program set in motion.
-    pub(super) fn begin(state: &mut State, now: Moment) -> Self {
-        let State { hands, notices, .. } = state;
+    pub(super) fn begin(state: &mut State, env: &Env, now: Moment) -> Self {
+        state.now = now;
         let mut held = false;
-        let is_several = hands.is_several();
-        for hand in hands.iter_mut().filter(|hand| hand.may_move()) {
-            hand.now = now;
-            notices.about(is_several.then_some(&hand.label));
-            hand.stop(notices);
-            held = true;
-        }
+        hands::each_hand(state, env, |hand, ctx| {
+            if hand.connection.may_move() {
+                hand.stop(ctx);
+                held = true;
+            }
+        });
         Self { since: now, held }
     }
 
     /// True once each hand that was told to hold rests, or is gone.
     pub(super) fn is_at_rest(&self, hands: &HandList) -> bool {
-        !self.held || hands.iter().all(|hand| hand.is_held(self.since))
+        !self.held || hands.iter().all(|hand| hand.connection.is_held(self.since))
     }
 }
 
 /// What would be lost if the window closed now, if something would.
 pub(super) fn question(hands: &HandList) -> Option<LeaveQuestion> {
-    let series = hands.iter().any(HandState::runs_series);
-    let staged = |hand: &HandState| hand.params.all_staged().iter().count();
+    let series = hands.iter().any(|hand| hand.series.is_some());
+    let staged = |hand: &Hand| hand.params.all_staged().iter().count();
     let edits = hands.iter().map(staged).sum();
     (series || edits > 0).then_some(LeaveQuestion { series, edits })
 }

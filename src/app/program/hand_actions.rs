@@ -1,107 +1,84 @@
 //! What a person does with the hand that is shown.
 
 use crate::app::env::Env;
-use crate::app::hand::HandState;
-use crate::app::notices::Notices;
-use crate::app::settings::Settings;
+use crate::app::program::hand_tick::record_event;
+use crate::app::program::hands;
+use crate::app::program::taring;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
-use crate::hand::{Dof, Finger, Gesture, Moment};
+use crate::hand::{Dof, Finger, Moment};
 use crate::history::{Mark, MarkKind};
 use crate::record::EventKind;
 use crate::transport::Endpoint;
 
-impl State {
-    /// Leaves the shown hand for another, or for none.
-    pub(super) fn connect(&mut self, to: Option<Endpoint>, env: &Env) {
-        let slot = self.hand().label.slot;
-        if let Some(endpoint) = &to {
-            if self.is_open_elsewhere(endpoint, Some(slot)) {
-                return;
-            }
-            // A scan may still ask further ids on the port that is wanted.
-            self.scan.cancel();
-            self.settings.remember(endpoint);
+/// Leaves the shown hand for another, or for none.
+pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
+    let slot = state.hand().label.slot;
+    if let Some(endpoint) = &to {
+        if hands::is_open_elsewhere(state, endpoint, Some(slot)) {
+            return;
         }
-        let Self {
-            hands,
-            notices,
-            settings,
-            ..
-        } = self;
-        notices.about(hands.is_several().then(|| &hands.shown().label));
-        let hand = hands.shown_mut();
+        // A scan may still ask further ids on the port that is wanted.
+        state.scan.cancel();
+        state.settings.remember(endpoint);
+    }
+    hands::with_shown(state, env, |hand, settings, ctx| {
         hand.is_removed = false;
-        hand.close_procedure();
-        hand.leave(to, env, notices);
+        hand.procedures.close();
+        hand.leave(to, ctx);
         hand.apply_settings(settings);
-    }
+    });
+}
 
-    /// The hand that is shown, with what is told of it.
-    pub(super) fn shown(&mut self) -> (&mut HandState, &mut Notices, &mut Settings) {
-        let Self {
-            hands,
-            notices,
-            settings,
-            ..
-        } = self;
-        notices.about(hands.is_several().then(|| &hands.shown().label));
-        (hands.shown_mut(), notices, settings)
-    }
+pub(super) fn set_hold_to_run(state: &mut State, on: bool) {
+    state.settings.hold_to_run = on;
+    state.hands.iter_mut().for_each(|hand| hand.need_key(on));
+}
 
-    pub(super) fn set_hold_to_run(&mut self, on: bool) {
-        self.settings.hold_to_run = on;
-        self.hands.iter_mut().for_each(|hand| hand.tick_hold(on));
-    }
+pub(super) fn tare(state: &mut State, finger: Option<Finger>, env: &Env) {
+    hands::with_shown(state, env, |hand, settings, ctx| {
+        taring::tare(hand, finger, ctx);
+        taring::keep(hand, settings, ctx.now);
+    });
+}
 
-    pub(super) fn gesture(&mut self, gesture: Gesture, env: &Env) {
-        let (hand, notices, settings) = self.shown();
-        hand.gesture(gesture, settings.gesture_route, env, notices);
-    }
+pub(super) fn undo_tare(state: &mut State, env: &Env) {
+    hands::with_shown(state, env, |hand, settings, ctx| {
+        hand.readings.tare.undo();
+        taring::keep(hand, settings, ctx.now);
+    });
+}
 
-    pub(super) fn tare(&mut self, finger: Option<Finger>) {
-        let (hand, notices, settings) = self.shown();
-        hand.tare(finger, notices);
-        hand.keep_tare(settings);
+/// Puts a note into the history; no words are no note.
+pub(super) fn note(state: &mut State, at: Moment, words: &str) {
+    if let Some(note) = MarkKind::note(words) {
+        let hand = state.hand_mut();
+        record_event(hand, at, EventKind::Note, words.trim().to_owned());
+        hand.measured.history.mark(at, note);
     }
+}
 
-    pub(super) fn undo_tare(&mut self) {
-        let (hand, _, settings) = self.shown();
-        hand.tare.undo();
-        hand.keep_tare(settings);
+pub(super) fn remove_mark(state: &mut State, mark: &Mark) {
+    let hand = state.hand_mut();
+    if let MarkKind::Note(words) = &mark.kind {
+        record_event(hand, mark.at, EventKind::NoteRemoved, words.to_string());
     }
+    hand.measured.history.remove_mark(mark);
+}
 
-    /// Puts a note into the history; no words are no note.
-    pub(super) fn note(&mut self, at: Moment, words: &str) {
-        if let Some(note) = MarkKind::note(words) {
-            let hand = self.hand_mut();
-            hand.record_event(at, EventKind::Note, words.trim().to_owned());
-            hand.history.mark(at, note);
-        }
+/// Which side the hand that is shown is of.
+pub(super) fn set_side(state: &mut State, side: Side) {
+    let State {
+        hands, settings, ..
+    } = state;
+    if let Some(endpoint) = &hands.shown().connection.endpoint {
+        settings.set_side_of(endpoint, side);
     }
-
-    pub(super) fn remove_mark(&mut self, mark: &Mark) {
-        let hand = self.hand_mut();
-        if let MarkKind::Note(words) = &mark.kind {
-            hand.record_event(mark.at, EventKind::NoteRemoved, words.to_string());
-        }
-        hand.history.remove_mark(mark);
+    // Others of which nobody said a side have the one that was said last.
+    if !hands.is_several() {
+        settings.side = side;
     }
-
-    /// Which side the hand that is shown is of.
-    pub(super) fn set_side(&mut self, side: Side) {
-        let Self {
-            hands, settings, ..
-        } = self;
-        if let Some(endpoint) = &hands.shown().endpoint {
-            settings.set_side_of(endpoint, side);
-        }
-        // Others of which nobody said a side have the one that was said last.
-        if !hands.is_several() {
-            settings.side = side;
-        }
-        hands.shown_mut().apply_settings(settings);
-    }
+    hands.shown_mut().apply_settings(settings);
 }
 
 /// One joint, or all.

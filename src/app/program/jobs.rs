@@ -6,6 +6,8 @@ use crate::app::files::open::open;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamAction;
+use crate::app::program::hand_tick::start_series;
+use crate::app::program::hands;
 use crate::app::state::State;
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
@@ -72,7 +74,10 @@ impl Jobs {
     /// What is done with files is begun here, all else with the hand.
     pub(super) fn param_action(&mut self, action: ParamAction, state: &mut State, env: &Env) {
         if action != ParamAction::Dump {
-            state.hands.shown_mut().param_action(action, env);
+            hands::with_shown(state, env, |hand, _, ctx| {
+                let sample = hand.readings.sample;
+                hand.params.act(action, &hand.connection, &sample, ctx);
+            });
             return;
         }
         let hand = state.hand();
@@ -81,7 +86,7 @@ impl Jobs {
             return;
         }
         let file = ParamsFile {
-            hand: hand.name(),
+            hand: hand.connection.name(),
             at: stamp(since_1970()),
             why: "dump".into(),
             params,
@@ -93,13 +98,16 @@ impl Jobs {
     /// The same for trials.
     pub(super) fn trial_action(&mut self, action: TrialAction, state: &mut State, env: &Env) {
         let State {
-            hands,
-            trials,
-            settings,
-            ..
+            trials, settings, ..
         } = state;
         match action {
-            TrialAction::Start => hands.shown_mut().start_series(trials, env),
+            TrialAction::Start => {
+                let mut trials = std::mem::take(trials);
+                hands::with_shown(state, env, |hand, _, ctx| {
+                    start_series(hand, &mut trials, ctx)
+                });
+                state.trials = trials;
+            }
             TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
             TrialAction::Open(typed) => {
                 trials.is_opening = true;

@@ -1,33 +1,44 @@
 //! The program: carries out actions, lets hands and files go on. The rules of motion are with the hand.
 
 mod closing;
+pub(crate) mod exhibit;
 mod hand_actions;
+mod hand_tick;
+mod hands;
+mod inputs;
 mod jobs;
+mod leading;
 mod pose_actions;
+pub(crate) mod quirk_notes;
 mod saved;
 mod start;
+mod taring;
 
 use crate::app::action::Action;
+use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::Exhibition;
-use crate::app::exhibit::work::ExhibitWork;
 use crate::app::files::export::{self, Export};
-use crate::app::files::quirk_notes::QuirkNotes;
-use crate::app::hand::HandState;
-use crate::app::hand::connection::REST_WITHIN;
-use crate::app::hand::sequence::Play;
-use crate::app::notices::NoticeKind;
+use crate::app::hand::controls::JointWish;
+use crate::app::hands::Hand;
+use crate::app::hands::hand::REST_WITHIN;
+use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::program::closing::Closing;
+use crate::app::program::exhibit::ExhibitWork;
 use crate::app::program::hand_actions::each;
+use crate::app::program::hand_tick::{Shared, record_event};
 use crate::app::program::jobs::Jobs;
+use crate::app::program::pose_actions::takes_poses;
+use crate::app::program::quirk_notes::QuirkNotes;
 use crate::app::program::saved::SavedFiles;
+use crate::app::replay::work::SessionWork;
 use crate::app::sessions::SessionAction;
 use crate::app::sessions::recording::HandRecording;
-use crate::app::sessions::work::SessionWork;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::exhibit::run::ExhibitWish;
-use crate::hand::Moment;
+use crate::hand::{HandCommand, Moment};
+use crate::poses::Play;
 use crate::record::EventKind;
 use crate::transport::Endpoint;
 use std::time::Duration;
@@ -69,12 +80,12 @@ impl App {
 
     /// At start: the given hand, else the remembered one, else the built-in one. Remembers nothing.
     pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
-        self.state.open(endpoint, &self.env, now);
+        start::open(&mut self.state, endpoint, &self.env, now);
     }
 
     /// At start: further hands, each in a slot of its own; the first stays shown. Remembers nothing.
     pub fn open_beside(&mut self, endpoints: Vec<Endpoint>, now: Moment) {
-        self.state.open_beside(endpoints, &self.env, now);
+        start::open_beside(&mut self.state, endpoints, &self.env, now);
     }
 
     /// Records nothing in this run, whatever the settings say.
@@ -87,7 +98,6 @@ impl App {
         if let Some(player) = &mut self.recorded.player {
             player.tell(what.clone());
         }
-        self.state.notices.about(None);
         self.state.notices.push(now, what);
     }
 
@@ -115,36 +125,30 @@ impl App {
             fleet,
             ..
         } = &mut self.state;
-        let env = &self.env;
         let is_several = hands.is_several();
         for hand in hands.iter_mut() {
             hand.apply_settings(settings);
-            notices.about(is_several.then_some(&hand.label));
-            hand.take_news(notices, now);
-            hand.tick_sequence();
-            hand.tick_inputs(notices, settings, poses);
-            hand.tick_hold(settings.hold_to_run);
-            hand.tick_requests(notices);
-            hand.tick_params(env, notices);
-            hand.tick_series(trials, notices);
-            hand.tick_procedure(env, settings, notices);
-            hand.read_first(settings.read_first);
-            hand.offer_tare(settings);
-            hand.record();
-            if self.records {
-                hand.tick_recording(settings, env, notices);
-            }
-            hand.go_on_leaving(env, notices);
-            self.quirk_notes.tick(hand, env, notices, now);
+            let mut ctx = Ctx {
+                now,
+                env: &self.env,
+                notices: notices.about(is_several.then_some(&hand.label)),
+            };
+            let mut shared = Shared {
+                settings: &mut *settings,
+                trials: &mut *trials,
+                poses: &*poses,
+                records: self.records,
+            };
+            hand_tick::tick(hand, &mut shared, &mut ctx);
+            self.quirk_notes.tick(hand, &mut ctx);
         }
-        notices.about(None);
-        let has = |hand: &HandState, id| hand.series.as_ref().is_some_and(|run| run.session == id);
+        let has = |hand: &Hand, id| hand.series.as_ref().is_some_and(|run| run.session == id);
         let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
         told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
         fleet.drain();
-        self.state.stop_mirrored();
-        self.state.drop_removed();
+        leading::stop_mirrored(&mut self.state);
+        hands::drop_removed(&mut self.state);
         self.exhibit.tick(&mut self.state, &self.env, now);
         let told = self.jobs.tick(&mut self.state, &self.env);
         told.into_iter().for_each(|told| self.tell(told, now));
@@ -170,10 +174,7 @@ impl App {
         if self.state.exhibit.is_some() && !action.effect().passes_in_exhibit() {
             return;
         }
-        self.state.notices.about(None);
-        let hand = self.state.hand_mut();
-        hand.now = now;
-        if hand.runs_series() && !action.effect().passes_in_series() {
+        if self.state.hand().series.is_some() && !action.effect().passes_in_series() {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
@@ -187,30 +188,34 @@ impl App {
             Action::Stop => self.stop(),
             Action::Arm if self.closing.is_some() => {}
             Action::Arm => {
-                let (hand, notices, _) = state.shown();
-                hand.arm(notices);
+                hands::with_shown(state, env, |hand, _, ctx| hand.arm(ctx));
             }
-            Action::Disarm => state.hand_mut().disarm(),
-            Action::HoldToRun(on) => state.set_hold_to_run(on),
+            Action::Disarm => {
+                let now = state.now;
+                state.hand_mut().disarm(now);
+            }
+            Action::HoldToRun(on) => hand_actions::set_hold_to_run(state, on),
             Action::HoldKey(_) if self.closing.is_some() => {}
-            Action::HoldKey(key) => state.hold_key(key),
-            Action::Target(dof, angle) => state.hand_mut().target(dof, angle),
+            Action::HoldKey(key) => hands::hold_key(state, key, env),
+            Action::Target(dof, angle) => state.hand_mut().wish(dof, JointWish::Target(angle)),
             Action::Force(dof, force) => {
-                each(dof).for_each(|dof| state.hand_mut().force(dof, force));
+                each(dof).for_each(|dof| state.hand_mut().wish(dof, JointWish::Force(force)));
             }
             Action::Speed(dof, speed) => {
-                each(dof).for_each(|dof| state.hand_mut().speed(dof, speed));
+                each(dof).for_each(|dof| state.hand_mut().wish(dof, JointWish::Speed(speed)));
             }
-            Action::Lock(dof, locked) => state.hand_mut().lock(dof, locked),
-            Action::Preset(preset) => state.hand_mut().preset(preset),
-            Action::Gesture(gesture) => state.gesture(gesture, env),
-            Action::Capture(name) => state.capture(&name),
-            Action::Recapture(id) => state.recapture(id),
+            Action::Lock(dof, locked) => state.hand_mut().wish(dof, JointWish::Lock(locked)),
+            Action::Preset(preset) => pose_actions::preset(state.hand_mut(), preset),
+            Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
+                hand.gesture(gesture, settings.gesture_route, ctx);
+            }),
+            Action::Capture(name) => pose_actions::capture(state, &name),
+            Action::Recapture(id) => pose_actions::recapture(state, id),
             Action::Library(edit) => state.poses.edit(edit),
-            Action::Recall(id) => state.recall(id, env),
-            Action::Play(play) => state.play(play, env),
-            Action::HideShipped(name, hide) => state.hide_shipped(name, hide),
-            Action::DryRun(sequence) => state.dry_run(sequence),
+            Action::Recall(id) => pose_actions::recall(state, id, env),
+            Action::Play(play) => pose_actions::play(state, play, env),
+            Action::HideShipped(name, hide) => pose_actions::hide_shipped(state, name, hide),
+            Action::DryRun(sequence) => pose_actions::dry_run(state, sequence),
             Action::Session(action) => {
                 let on = [
                     SessionAction::Record(true),
@@ -221,7 +226,7 @@ impl App {
                 self.recorded.act(action, state, env);
             }
             Action::Exhibit(action) => self.leaves |= self.exhibit.act(action, state, env),
-            Action::Input(action) => state.input_action(action, env),
+            Action::Input(action) => inputs::act(state, action, env),
             Action::Trial(action) => self.jobs.trial_action(action, state, env),
             Action::ImportPoses(typed) => self.jobs.import_poses(typed, state, env),
             Action::ExportPoses => {
@@ -231,28 +236,45 @@ impl App {
             Action::NameGesture(gesture, name) => state.settings.name_gesture(gesture, &name),
             Action::GestureRoute(route) => state.settings.gesture_route = route,
             // A card that is open clears them itself, or must not be disturbed.
-            Action::ClearErrors if state.hand().procedure.is_some() => {}
+            Action::ClearErrors if state.hand().procedures.card.is_some() => {}
             Action::ClearErrors => {
-                let (hand, notices, _) = state.shown();
-                hand.clear_errors(env, notices);
+                hands::with_shown(state, env, |hand, _, ctx| {
+                    hand.ask(RequestKind::ClearErrors, HandCommand::ClearErrors, ctx);
+                });
             }
-            Action::ChangePlace(id, wanted) => state.hand_mut().open_place_change(id, wanted),
-            Action::FactoryReset => state.hand_mut().open_reset(),
-            Action::CalibrateForce => state.hand_mut().open_calibration(),
-            Action::Procedure(action) => state.hand_mut().procedure_action(action, env),
-            Action::Connect(endpoint) => state.connect(Some(endpoint), env),
-            Action::Disconnect => state.connect(None, env),
-            Action::Hands(action) => state.hands_action(action, env),
+            Action::ChangePlace(id, wanted) => {
+                let hand = state.hand_mut();
+                let (connection, params) = (&hand.connection, &hand.params);
+                hand.procedures
+                    .open_place_change(id, wanted, connection, params);
+            }
+            Action::FactoryReset => {
+                let hand = state.hand_mut();
+                hand.procedures.open_reset(&hand.connection);
+            }
+            Action::CalibrateForce => {
+                let hand = state.hand_mut();
+                hand.procedures.open_calibration(&hand.connection);
+            }
+            Action::Procedure(action) => hands::with_shown(state, env, |hand, _, ctx| {
+                let sample = hand.readings.sample;
+                hand.procedures.act(action, &hand.connection, &sample, ctx);
+            }),
+            Action::Connect(endpoint) => hand_actions::connect(state, Some(endpoint), env),
+            Action::Disconnect => hand_actions::connect(state, None, env),
+            Action::Hands(action) => hands::act(state, action, env),
             Action::FindPorts => self.jobs.find_ports(env),
             Action::Scan(wish) => {
                 let held = state.hands.iter();
-                let held = held.filter_map(|hand| hand.endpoint.clone()).collect();
+                let held = held
+                    .filter_map(|hand| hand.connection.endpoint.clone())
+                    .collect();
                 state.scan.begin(wish, held, env);
             }
             Action::CancelScan => state.scan.cancel(),
             Action::FindShared(interface) => state.fleet.listen(interface, env),
-            Action::SeenFault(dof, what) => state.hand_mut().faults.see_one(dof, what),
-            Action::SeenFaults => state.hand_mut().faults.see_all(),
+            Action::SeenFault(dof, what) => state.hand_mut().readings.faults.see_one(dof, what),
+            Action::SeenFaults => state.hand_mut().readings.faults.see_all(),
             Action::Save(content) => self.jobs.export(content, env),
             // The shell draws it, and asks for its file to be saved then.
             Action::SavePicture(_) => {}
@@ -260,7 +282,7 @@ impl App {
             Action::Leave => (self.leaves, state.leave) = (true, None),
             Action::Dismiss(id) => state.notices.dismiss(id),
             Action::Theme(theme) => state.settings.theme = theme,
-            Action::Side(side) => state.set_side(side),
+            Action::Side(side) => hand_actions::set_side(state, side),
             Action::Language(language) => state.settings.language = language,
             Action::Layout(layout) => state.settings.layout = layout,
             Action::Zoom(zoom) => state.settings.zoom = zoom,
@@ -268,13 +290,12 @@ impl App {
             Action::AngleUnit(unit) => state.settings.angle_unit = unit,
             Action::PlotWindow(window) => state.settings.plot_window = window,
             Action::ShowPlot(kind, on) => state.settings.plots.set(kind, on),
-            Action::Note(at, words) => state.note(at, &words),
-            Action::RemoveMark(mark) => state.remove_mark(&mark),
-            Action::Tare(finger) => state.tare(finger),
-            Action::UndoTare => state.undo_tare(),
+            Action::Note(at, words) => hand_actions::note(state, at, &words),
+            Action::RemoveMark(mark) => hand_actions::remove_mark(state, &mark),
+            Action::Tare(finger) => hand_actions::tare(state, finger, env),
+            Action::UndoTare => hand_actions::undo_tare(state, env),
             Action::TakeKeptTare => {
-                let (hand, notices, _) = state.shown();
-                hand.take_kept_tare(notices);
+                hands::with_shown(state, env, |hand, _, ctx| taring::take_kept(hand, ctx));
             }
             Action::Stage(id, value) => state.hand_mut().params.stage(id, value),
             Action::Param(action) => self.jobs.param_action(action, state, env),
@@ -285,17 +306,17 @@ impl App {
     fn record_act(&mut self, action: &Action, now: Moment) {
         let State { hands, poses, .. } = &mut self.state;
         let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
-        for hand in hands.with_shown(|hand| goes_to_all && hand.takes_poses()) {
-            if let Some(done) = action.person_act(hand.is_armed(), poses) {
-                hand.record_event(now, EventKind::Person, done.words());
-                hand.recorder.person(done, now);
+        for hand in hands.with_shown(|hand| goes_to_all && takes_poses(hand)) {
+            if let Some(done) = action.person_act(hand.connection.is_armed(), poses) {
+                record_event(hand, now, EventKind::Person, done.words());
+                hand.measured.recorder.person(done, now);
             }
         }
     }
 
     /// Holds every hand, shown or not.
     fn stop(&mut self) {
-        self.state.stop_all();
+        hands::stop_all(&mut self.state, &self.env);
         if let Some(exhibit) = &mut self.state.exhibit {
             exhibit.wish(ExhibitWish::Stop);
         }
@@ -310,7 +331,7 @@ impl App {
             }
             None => (&mut self.state, now),
         };
-        export::read_on(&mut state.hand_mut().traffic, now);
+        export::read_on(&mut state.hand_mut().connection.traffic, now);
     }
 
     /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
@@ -319,13 +340,13 @@ impl App {
             return;
         }
         let hand = self.state.hands.shown_mut();
-        hand.now = now;
-        hand.look_at_params(&self.env);
+        hand.params.look_at(&hand.connection, &self.env, now);
     }
 
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: Exhibition, now: Moment) {
-        self.exhibit.enter(start, &mut self.state, &self.env, now);
+        self.exhibit
+            .enter(start, &mut &mut self.state, &self.env, now);
     }
 
     /// A frame was drawn: whoever stands before it can see and press STOP. An exhibition goes on only while this is called.
@@ -365,7 +386,7 @@ impl App {
         let state = &mut self.state;
         let closing = *self
             .closing
-            .get_or_insert_with(|| Closing::begin(state, now));
+            .get_or_insert_with(|| Closing::begin(state, &self.env, now));
         let saved = self.saved.flush(state, now);
         let rests = closing.is_at_rest(&state.hands);
         let reported = self.exhibit.flush(state, now);

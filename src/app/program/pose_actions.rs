@@ -1,80 +1,158 @@
 //! What a person does with poses and sequences.
 
 use crate::app::env::Env;
-use crate::app::hand::Play;
+use crate::app::hand::SequenceRun;
+use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
-use crate::hand::{Angle, PerDof};
+use crate::hand::{Angle, Moment, PerDof, Target};
 use crate::poses::library::{EntryId, LibraryPose, PoseId, SequenceId};
+use crate::poses::player::{PlayMode, PlayPlan};
 use crate::poses::preview::Preview;
+use crate::poses::{Play, Preset};
+use crate::tasks::play::PlayCommand;
 
-impl State {
-    /// Keeps the pose of the hand that is shown, by this name or the next free one.
-    pub(super) fn capture(&mut self, name: &str) {
-        if let Some(angles) = self.pose_now() {
-            let poses = &mut self.poses;
-            poses.newest = poses.library.add_pose(name, LibraryPose::at(angles));
+/// Keeps the pose of the hand that is shown, by this name or the next free one.
+pub(super) fn capture(state: &mut State, name: &str) {
+    if let Some(angles) = pose_now(state) {
+        let poses = &mut state.poses;
+        poses.newest = poses.library.add_pose(name, LibraryPose::at(angles));
+    }
+}
+
+/// Puts the pose of the hand that is shown in the place of this one.
+pub(super) fn recapture(state: &mut State, id: PoseId) {
+    if let Some(angles) = pose_now(state) {
+        let mut known = state.poses.library.poses.iter_mut();
+        if let Some(pose) = known.find(|pose| pose.id == id) {
+            pose.angles = angles;
         }
     }
+}
 
-    /// Puts the pose of the hand that is shown in the place of this one.
-    pub(super) fn recapture(&mut self, id: PoseId) {
-        if let Some(angles) = self.pose_now() {
-            let mut known = self.poses.library.poses.iter_mut();
-            if let Some(pose) = known.find(|pose| pose.id == id) {
-                pose.angles = angles;
+/// The pose of the hand that is shown; if it is not known, that is told.
+fn pose_now(state: &mut State) -> Option<PerDof<Angle>> {
+    let known = state.hands.shown().pose_now(state.now);
+    if known.is_none() {
+        state.notices.push(state.now, NoticeKind::PoseUnknown);
+    }
+    known
+}
+
+pub(super) fn hide_shipped(state: &mut State, name: String, hide: bool) {
+    let hidden = &mut state.settings.hidden_poses;
+    if hide {
+        hidden.insert(name)
+    } else {
+        hidden.remove(&name)
+    };
+}
+
+/// Takes a pose, with each hand that takes poses.
+pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
+    let plan = state.poses.plan(EntryId::Pose(id));
+    for hand in state.hands.with_shown(takes_poses) {
+        let plan = plan.clone();
+        if plan.is_some_and(|plan| go_to_pose(hand, plan, env, state.now)) {
+            state.poses.recalled = Some(id);
+        }
+    }
+}
+
+/// Shows a sequence on the drawn hand, from where the hand is now, or none any more.
+pub(super) fn dry_run(state: &mut State, sequence: Option<SequenceId>) {
+    let angle = state.hands.shown().readings.sample.angle;
+    let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
+    let (poses, now) = (&mut state.poses, state.now);
+    let preview = |id| Preview::of(poses.library_of(id), id, from, now);
+    poses.preview = sequence.and_then(preview);
+}
+
+/// Plays, with each hand that plays along.
+pub(super) fn play(state: &mut State, play: Play, env: &Env) {
+    if matches!(play, Play::Start(_) | Play::Step(_)) {
+        state.poses.preview = None;
+    }
+    let entry = state.hands.shown().sequence.as_ref().map(|run| run.entry);
+    for hand in state
+        .hands
+        .with_shown(|hand| plays_along(hand, play, entry))
+    {
+        match next_step(hand, play) {
+            PlayStep::Tell(command) => {
+                if let Some(run) = &hand.sequence {
+                    run.command(command);
+                }
+            }
+            PlayStep::Start(entry, pace) => {
+                if let Some(plan) = state.poses.plan(entry) {
+                    hand.play(plan, pace, env, state.now);
+                }
             }
         }
     }
+}
 
-    /// The pose of the hand that is shown; if it is not known, that is told.
-    fn pose_now(&mut self) -> Option<PerDof<Angle>> {
-        let known = self.hands.shown().pose_now();
-        if known.is_none() {
-            self.notices.push(self.now, NoticeKind::PoseUnknown);
-        }
-        known
+/// All joints that are not locked to where the preset has them, in one step, at the speeds that are set.
+pub(super) fn preset(hand: &mut Hand, preset: Preset) {
+    hand.go_to(|setpoints| {
+        setpoints.angle = PerDof::from_fn(|dof| preset.angle(dof).map(Target::Go));
+    });
+}
+
+/// Takes a pose: speed and force first, then the angles of joints that are free. Where thumb and index could meet on the way,
+/// it goes part by part. Arms nothing; true if something is sent.
+fn go_to_pose(hand: &mut Hand, plan: PlayPlan, env: &Env, now: Moment) -> bool {
+    let Some(cue) = plan.cues.first() else {
+        return false;
+    };
+    let angle = hand.readings.sample.angle;
+    let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
+    if cue.legs(&from).len() > 1 {
+        return hand.play(plan, PlayMode::Through, env, now);
     }
+    hand.go_to(|setpoints| {
+        setpoints.angle = cue.targets.map(|to| to.map(Target::Go));
+        setpoints.speed = PerDof::splat(Some(cue.speed));
+        setpoints.force = PerDof::splat(Some(cue.force));
+    })
+}
 
-    pub(super) fn hide_shipped(&mut self, name: String, hide: bool) {
-        let hidden = &mut self.settings.hidden_poses;
-        if hide {
-            hidden.insert(name)
-        } else {
-            hidden.remove(&name)
-        };
-    }
+/// What a wish to play comes to at one hand.
+enum PlayStep {
+    Start(EntryId, PlayMode),
+    Tell(PlayCommand),
+}
 
-    /// Takes a pose, with each hand that takes poses.
-    pub(super) fn recall(&mut self, id: PoseId, env: &Env) {
-        let plan = self.poses.plan(EntryId::Pose(id));
-        for hand in self.hands.with_shown(|hand| hand.takes_poses()) {
-            hand.now = self.now;
-            let plan = plan.clone();
-            if plan.is_some_and(|plan| hand.recall(plan, env)) {
-                self.poses.recalled = Some(id);
+fn next_step(hand: &Hand, play: Play) -> PlayStep {
+    match play {
+        Play::Start(entry) => PlayStep::Start(entry, PlayMode::Through),
+        Play::Step(id) => {
+            let entry = EntryId::Sequence(id);
+            let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
+            if hand.sequence.as_ref().is_some_and(waits) {
+                PlayStep::Tell(PlayCommand::Resume(PlayMode::OneStep))
+            } else {
+                PlayStep::Start(entry, PlayMode::OneStep)
             }
         }
+        Play::Pause => PlayStep::Tell(PlayCommand::Pause),
+        Play::Resume => PlayStep::Tell(PlayCommand::Resume(PlayMode::Through)),
+        Play::End => PlayStep::Tell(PlayCommand::End),
     }
+}
 
-    /// Shows a sequence on the drawn hand, from where the hand is now, or none any more.
-    pub(super) fn dry_run(&mut self, sequence: Option<SequenceId>) {
-        let angle = self.hands.shown().sample.angle;
-        let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
-        let (poses, now) = (&mut self.poses, self.now);
-        let preview = |id| Preview::of(poses.library_of(id), id, from, now);
-        poses.preview = sequence.and_then(preview);
-    }
+/// True for a hand that takes a pose which is meant for all: it is armed, and the person at this window moves it.
+pub(super) fn takes_poses(hand: &Hand) -> bool {
+    hand.own_epoch().is_some()
+}
 
-    /// Plays, with each hand that plays along.
-    pub(super) fn play(&mut self, play: Play, env: &Env) {
-        if matches!(play, Play::Start(_) | Play::Step(_)) {
-            self.poses.preview = None;
-        }
-        let entry = self.hands.shown().sequence.as_ref().map(|run| run.entry);
-        for hand in self.hands.with_shown(|hand| hand.plays_along(play, entry)) {
-            hand.now = self.now;
-            hand.play(play, &self.poses, env);
-        }
+/// True if this hand does what a person asks of the shown one, where that is meant for all. `entry` is what the shown one plays:
+/// nothing else is resumed with it.
+fn plays_along(hand: &Hand, play: Play, entry: Option<EntryId>) -> bool {
+    match play {
+        Play::Start(_) | Play::Step(_) => takes_poses(hand),
+        Play::Resume => hand.sequence.as_ref().map(|run| run.entry) == entry,
+        Play::Pause | Play::End => true,
     }
 }

@@ -1,4 +1,5 @@
-//! Readers of what is heard of a hand: faults and what happened around them, peaks, taring, friction.
+//! What is read of a hand, and the readers of that: faults and what happened around them, peaks, taring, friction. A live hand and
+//! a replayed recording have the same.
 
 pub mod fault_recorder;
 pub mod faults;
@@ -6,3 +7,144 @@ pub(crate) mod friction;
 pub mod pace;
 pub mod peaks;
 pub mod tare;
+
+use crate::app::readings::fault_recorder::FaultRecorder;
+use crate::app::readings::faults::{FaultEntry, FaultList};
+use crate::app::readings::pace::ReadingPace;
+use crate::app::readings::peaks::ForcePeaks;
+use crate::app::readings::tare::Tare;
+use crate::hand::{
+    Angle, AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger,
+};
+use crate::history::{History, MarkKind};
+use crate::transport::Endpoint;
+
+/// How much a shown value can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freshness {
+    /// Never read on this connection: shown as "-".
+    Unknown,
+    /// From a live link and young.
+    Live,
+    /// Older than about three readings of this wire take, or the link is gone: greyed out, with its age.
+    Stale,
+}
+
+/// What was read on one connection.
+#[derive(Debug, Default)]
+pub struct Readings {
+    /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
+    pub sample: HandSample,
+    /// How often angles, and with them what else tells the motion, are read.
+    pub pace: ReadingPace,
+    /// How often a fingertip is read.
+    pub tip_pace: PerFinger<ReadingPace>,
+    /// What the tactile channels are counted from.
+    pub tare: Tare,
+    /// The highest forces of the last seconds.
+    pub peaks: ForcePeaks,
+    /// Faults now and before.
+    pub faults: FaultList,
+}
+
+/// What was measured of a hand, over as many connections as it was connected.
+#[derive(Debug, Default)]
+pub struct Measured {
+    /// What was measured over the last minutes.
+    pub history: History,
+    /// What happened around faults. Goes on with the next hand.
+    pub recorder: FaultRecorder,
+    of: Option<Endpoint>,
+}
+
+impl Readings {
+    /// Takes a reading, dated `at`; gives the faults that are new with it.
+    pub(crate) fn take(
+        &mut self,
+        sample: &HandSample,
+        fresh: Groups,
+        at: Moment,
+    ) -> Vec<FaultEntry> {
+        self.sample = *sample;
+        if let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) {
+            self.pace.take(angle.asked);
+        }
+        for finger in Finger::ALL {
+            let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));
+            if let Some(block) = block {
+                self.tip_pace[finger].take(block.asked);
+            }
+        }
+        self.tare.begin(sample);
+        if fresh.contains(Group::Force) {
+            self.peaks.update(sample);
+        }
+        if !self.faults.update(sample, fresh, at) {
+            return Vec::new();
+        }
+        let is_new = |entry: &&FaultEntry| entry.since == at;
+        self.faults.active().filter(is_new).copied().collect()
+    }
+
+    /// How fresh a value asked for at `asked` is now, on a link that is live or not.
+    pub fn freshness(&self, asked: Option<Moment>, is_live: bool, now: Moment) -> Freshness {
+        freshness(asked, self.pace, is_live, now)
+    }
+
+    /// The same for the reading of a fingertip.
+    pub fn tip_freshness(&self, finger: Finger, is_live: bool, now: Moment) -> Freshness {
+        let asked = self.sample.tactile[finger].map(|block| block.asked);
+        freshness(asked, self.tip_pace[finger], is_live, now)
+    }
+
+    /// The pose that the hand has, if all six angles are known, live and fresh.
+    pub fn pose_now(&self, is_live: bool, now: Moment) -> Option<PerDof<Angle>> {
+        let angle = self.sample.angle?;
+        let is_fresh = self.freshness(Some(angle.asked), is_live, now) == Freshness::Live;
+        let angles = angle.value.map(AngleReading::hold).all();
+        angles.filter(|_| is_fresh)
+    }
+}
+
+fn freshness(asked: Option<Moment>, pace: ReadingPace, is_live: bool, now: Moment) -> Freshness {
+    match asked {
+        None => Freshness::Unknown,
+        Some(at) if is_live && now.since(at) <= pace.stale_after() => Freshness::Live,
+        Some(_) => Freshness::Stale,
+    }
+}
+
+impl Measured {
+    /// The hand is left; it was called so.
+    pub(crate) fn leave(&mut self, name: &str, now: Moment) {
+        self.recorder.another_hand(&self.history, name, now);
+    }
+
+    /// This hand is connected. One that is another only by its place goes on where it was.
+    pub(crate) fn begin(&mut self, hand: &Endpoint, is_moved: bool) {
+        if self.of.as_ref() != Some(hand) {
+            self.of = Some(hand.clone());
+            if !is_moved {
+                self.history = History::new();
+            }
+        }
+    }
+
+    /// Adds a reading dated `at`, and the faults that are new with it.
+    pub(crate) fn take(
+        &mut self,
+        sample: &HandSample,
+        fresh: Groups,
+        at: Moment,
+        faults: &[FaultEntry],
+    ) {
+        self.history.push(sample, fresh);
+        self.recorder.sample(sample, fresh, at);
+        if !faults.is_empty() {
+            self.history.mark(at, MarkKind::Fault);
+        }
+        for entry in faults {
+            self.recorder.fault(entry.dof, entry.what, at);
+        }
+    }
+}

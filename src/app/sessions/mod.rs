@@ -8,11 +8,8 @@ pub(crate) mod folder;
 pub mod holding;
 pub mod item;
 pub mod list;
-pub(crate) mod player;
 pub mod recording;
-pub(crate) mod replay;
 pub mod timeline;
-pub(crate) mod work;
 
 pub use crate::app::sessions::about::{SessionAbout, SessionNote};
 pub use crate::app::sessions::action::SessionAction;

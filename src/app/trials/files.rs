@@ -1,7 +1,7 @@
 //! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
 
 use crate::app::env::Env;
-use crate::app::files::day_folder;
+use crate::app::env::day_folder;
 use crate::app::files::open::open as open_file;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{

@@ -1,6 +1,6 @@
 //! A series on its way, as the window sees it: where it stands.
 
-use crate::app::running::Running;
+use crate::app::env::running::Running;
 use crate::app::trials::state::SessionId;
 use crate::hand::{ArmEpoch, Moment};
 use crate::tasks::series::{SeriesReport, SeriesStep};

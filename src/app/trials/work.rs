@@ -1,17 +1,17 @@
 //! What a person asks about grasp trials, and the series that runs on the hand.
 
-use crate::app::env::Env;
-use crate::app::hand::HandState;
-use crate::app::notices::{NoticeKind, Notices};
-use crate::app::running::Running;
+use crate::app::ctx::Ctx;
+use crate::app::env::running::Running;
+use crate::app::hand::Connection;
+use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
 use crate::app::trials::run::SeriesRun;
 use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
-use crate::hand::{Dof, PerDof};
+use crate::hand::{ArmEpoch, Dof, HandSample, Moment, PerDof};
 use crate::link::quirks::book;
-use crate::record::EventKind;
+use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, series};
 use crate::trials::plan_settings::to_settings;
@@ -90,39 +90,58 @@ impl TrialsState {
     }
 }
 
-impl HandState {
-    /// Why a plan cannot begin now, if it makes sense at all.
-    pub fn start_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
-        if self.runs_series() {
-            return Some(StartRefusal::Runs);
-        }
-        if !self.is_armed() || self.link.armed.is_none() {
-            return Some(StartRefusal::NotArmed);
-        }
-        let locked = self.joints.map(|joint| joint.locked);
-        plan.locked(&locked).map(StartRefusal::Locked)
+/// Why a plan cannot begin now, if it makes sense at all. `epoch` is the arming of now.
+pub fn start_refusal(
+    plan: &TrialPlan,
+    runs: bool,
+    epoch: Option<ArmEpoch>,
+    locked: &PerDof<bool>,
+) -> Option<StartRefusal> {
+    if runs {
+        Some(StartRefusal::Runs)
+    } else if epoch.is_none() {
+        Some(StartRefusal::NotArmed)
+    } else {
+        plan.locked(locked).map(StartRefusal::Locked)
     }
+}
 
-    /// Begins the series that is planned, in the arming of now. Without one nothing happens.
-    pub(crate) fn start_series(&mut self, trials: &mut TrialsState, env: &Env) {
+/// A hand that is armed for a series.
+pub(crate) struct SeriesHand<'a> {
+    pub(crate) link: LinkHandle,
+    pub(crate) lease: Lease,
+    pub(crate) epoch: ArmEpoch,
+    pub(crate) seen: HandSample,
+    pub(crate) connection: &'a Connection,
+}
+
+/// What a series did since it was looked at last.
+#[derive(Debug, Default)]
+pub(crate) struct SeriesNews {
+    /// Trials that began, in words.
+    pub(crate) begun: Vec<(Moment, String)>,
+    /// Set once it is over.
+    pub(crate) end: Option<NoticeKind>,
+}
+
+impl SeriesRun {
+    /// Begins the series that is planned.
+    pub(crate) fn begin(hand: SeriesHand<'_>, trials: &mut TrialsState, ctx: &Ctx<'_>) -> Self {
+        let SeriesHand {
+            link,
+            lease,
+            epoch,
+            seen,
+            connection,
+        } = hand;
         let plan = trials.plan.clone();
-        let is_refused = self.start_refusal(&plan).is_some() || plan.check().is_err();
-        // One series at a time: any key stops it, and it has the view to itself.
-        if is_refused || trials.running.is_some() {
-            return;
-        }
-        self.take_over();
-        let (Some(epoch), Some(open)) = (self.link.armed, &mut self.open) else {
-            return;
-        };
         let start = SeriesStart {
             plan: plan.clone(),
             epoch,
-            lease: open.lend_lease(),
-            seen: self.sample,
-            clock: env.clock,
+            lease,
+            seen,
+            clock: ctx.env.clock,
         };
-        let link = open.link.clone();
         let (end, ended) = oneshot::channel();
         let ended = async move {
             match ended.await {
@@ -130,20 +149,18 @@ impl HandState {
                 Err(_gone) => std::future::pending().await,
             }
         };
-        let task = Running::start(env, |steps| async move {
+        let task = Running::start(ctx.env, |steps| async move {
             let tell = |step| {
                 steps.tell(step);
                 true
             };
             series(&link, start, ended, tell).await
         });
-        self.steered = PerDof::default();
-        self.commanded = true;
-        let head = self.session_head(plan.clone());
+        let head = session_head(plan.clone(), connection);
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
         (trials.last, trials.running) = (Some(session), Some(session));
         let (count, whole) = estimate::series(&plan);
-        self.series = Some(SeriesRun {
+        Self {
             view: SeriesView {
                 number: 0,
                 total: count,
@@ -154,61 +171,52 @@ impl HandState {
             epoch,
             session,
             plan,
-            since: self.now,
-            zero: self.now,
+            since: ctx.now,
+            zero: ctx.now,
             each: whole / u32::try_from(count.max(1)).unwrap_or(u32::MAX),
             end: Some(end),
             task: Some(task),
-        });
-    }
-
-    fn session_head(&self, plan: TrialPlan) -> SessionHead {
-        let now = since_1970();
-        let quirks = |hand| book::sheet(hand, &self.link.quirks, &day(now));
-        SessionHead {
-            hand: self.name(),
-            simulated: self.is_simulated(),
-            quirks: self.endpoint.as_ref().map(quirks),
-            ..SessionHead::begin(plan, now)
         }
     }
 
-    /// Takes in what the series did.
-    pub(crate) fn tick_series(&mut self, trials: &mut TrialsState, notices: &mut Notices) {
-        let now = self.now;
-        let Some(mut run) = self.series.take() else {
-            return;
-        };
-        let Some(task) = &mut run.task else {
-            self.series = Some(run);
-            return;
+    /// Takes in what it did.
+    pub(crate) fn news(&mut self, trials: &mut TrialsState) -> SeriesNews {
+        let mut news = SeriesNews::default();
+        let Some(task) = &mut self.task else {
+            return news;
         };
         let (steps, end) = task.news();
         for (at, step) in steps {
             match step {
                 SeriesStep::View(view) => {
-                    if view.number != run.view.number {
-                        (run.since, run.zero) = (at, at);
+                    if view.number != self.view.number {
+                        (self.since, self.zero) = (at, at);
                         let words = format!("{} of {}", view.number, view.total);
-                        self.record_event(at, EventKind::Trial, words);
+                        news.begun.push((at, words));
                     }
                     if view.stage == Stage::Closing {
-                        run.zero = at;
+                        self.zero = at;
                     }
-                    run.view = view;
+                    self.view = view;
                 }
-                SeriesStep::Trial(trial) => trials.add_trial(run.session, *trial),
+                SeriesStep::Trial(trial) => trials.add_trial(self.session, *trial),
             }
         }
-        let Some(end) = end else {
-            self.series = Some(run);
-            return;
-        };
-        let aborted = end.ok().and_then(|report| report.aborted);
-        notices.push(now, trials.close(run.session, aborted));
-        // The task disarmed the hand, or stopped it.
-        if self.link.armed == Some(run.epoch) {
-            self.disarm();
-        }
+        news.end = end.map(|end| {
+            let aborted = end.ok().and_then(|report| report.aborted);
+            trials.close(self.session, aborted)
+        });
+        news
+    }
+}
+
+fn session_head(plan: TrialPlan, connection: &Connection) -> SessionHead {
+    let now = since_1970();
+    let quirks = |hand| book::sheet(hand, &connection.status.quirks, &day(now));
+    SessionHead {
+        hand: connection.name(),
+        simulated: connection.is_simulated(),
+        quirks: connection.endpoint.as_ref().map(quirks),
+        ..SessionHead::begin(plan, now)
     }
 }

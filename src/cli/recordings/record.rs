@@ -1,7 +1,7 @@
 //! `record`: everything that a hand reports, into a session file, until the time is up or a person ends it. Writes nothing to the
 //! hand.
 
-use crate::app::files::day_folder;
+use crate::app::env::day_folder;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;

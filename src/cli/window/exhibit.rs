@@ -1,7 +1,7 @@
 //! `handscope exhibit`: looks at the file of an exhibition and shows it in place of the window.
 
 use crate::app::exhibit::Exhibition;
-use crate::app::files::exhibit_file;
+use crate::app::exhibit::exhibit_file;
 use crate::cli::out::Out;
 use crate::cli::window::DrawnArgs;
 use anyhow::Context as _;

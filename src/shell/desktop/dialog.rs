@@ -1,6 +1,6 @@
 //! The system's own file dialogs. Reads and writes no file.
 
-use crate::app::files::choose::ChooseFile;
+use crate::app::env::choose::ChooseFile;
 use futures::future::BoxFuture;
 use std::path::PathBuf;
 

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
-use crate::app::files::day_folder::documents;
+use crate::app::env::day_folder::documents;
 use crate::app::layout::{Layout, WINDOW_LEAST, WindowSize};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
@@ -187,9 +187,11 @@ impl Program {
     /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.
     fn title(&mut self, ctx: &egui::Context) {
         let state = self.desktop_app.state();
-        let title = match &state.hand().endpoint {
+        let title = match &state.hand().connection.endpoint {
             _ if state.timeline.is_some() => "Handscope - RECORDED session".to_owned(),
-            Some(_) if state.hand().is_simulated() => "Handscope - SIMULATED hand".to_owned(),
+            Some(_) if state.hand().connection.is_simulated() => {
+                "Handscope - SIMULATED hand".to_owned()
+            }
             Some(_) if state.hands.is_several() => {
                 format!("Handscope - {} hands", state.hands.count())
             }
@@ -380,8 +382,8 @@ mod tests {
 
     #[test]
     fn a_panic_in_the_window_holds_the_hand_before_it_ends() {
-        use crate::app::hand::joint::Preset;
         use crate::hand::Dof;
+        use crate::poses::Preset;
         use crate::sim::serve::modbus_tcp;
         use crate::sim::{SharedHand, SimConfig, SimHand};
         let mut builder = tokio::runtime::Builder::new_multi_thread();
@@ -415,13 +417,22 @@ mod tests {
         let ctx = egui::Context::default();
         let mut program = Program::new(&ctx, start, services);
         let angle = |program: &Program| {
-            let angle = program.desktop_app.state().hand().sample.angle;
+            let angle = program.desktop_app.state().hand().readings.sample.angle;
             angle.map_or(1000, |angle| angle.value[Dof::Index].raw())
         };
-        let is_armed = |program: &Program| program.desktop_app.state().hand().link.armed.is_some();
+        let is_armed = |program: &Program| {
+            program
+                .desktop_app
+                .state()
+                .hand()
+                .connection
+                .status
+                .armed
+                .is_some()
+        };
         until(&ctx, &mut program, "it answers", |program| {
             let hand = program.desktop_app.state().hand();
-            hand.link.state.is_live() && hand.sample.faults.is_some()
+            hand.connection.status.state.is_live() && hand.readings.sample.faults.is_some()
         });
         let now = clock.now();
         program.desktop_app.app().act(Action::Arm, now);

@@ -125,7 +125,7 @@ impl Driver {
 }
 
 fn is_kept_open(state: &State) -> bool {
-    let Some(Procedure::Place(run)) = &state.hand().procedure else {
+    let Some(Procedure::Place(run)) = &state.hand().procedures.card else {
         return false;
     };
     matches!(run.stage, ProcedureStage::Doing(PlaceStep::Keeping(_), _))

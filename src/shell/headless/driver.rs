@@ -4,8 +4,8 @@
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
-use crate::app::files::choose::NoChoice;
-use crate::app::files::reveal::no_reveal;
+use crate::app::env::choose::NoChoice;
+use crate::app::env::reveal::no_reveal;
 use crate::app::params::action::ParamAction;
 use crate::app::program::App;
 use crate::app::sessions::SessionAction;
@@ -220,8 +220,24 @@ impl Driver {
     /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_WITHIN`].
     pub fn connect(&mut self) -> Result<(), DriveError> {
         let begun = self.now();
-        while !self.desktop_app.state().hand().link.state.is_live() {
-            if let Some(trouble) = self.desktop_app.state().hand().link.trouble.clone() {
+        while !self
+            .desktop_app
+            .state()
+            .hand()
+            .connection
+            .status
+            .state
+            .is_live()
+        {
+            if let Some(trouble) = self
+                .desktop_app
+                .state()
+                .hand()
+                .connection
+                .status
+                .trouble
+                .clone()
+            {
                 return Err(DriveError::NoHand {
                     endpoint: self.endpoint.clone(),
                     trouble,
@@ -331,7 +347,7 @@ impl Driver {
             self.act(wish);
             self.run_for(ARM_WITHIN);
         }
-        self.until(GRASPS_WITHIN, |state| !state.hand().runs_series());
+        self.until(GRASPS_WITHIN, |state| !state.hand().series.is_some());
     }
 
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is

@@ -20,7 +20,7 @@ const BUDGET: [(Text, f32); 3] = [
 /// Draws the card of the link.
 pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let link = &pane.state.hand().link;
+    let link = &pane.state.hand().connection.status;
     kit::card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
         let (word, color) = link_words(pane);
@@ -31,7 +31,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Label::new(&since, look.palette.text).wrap().ui(ui);
         });
         let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
-        if let Some(endpoint) = &pane.state.hand().endpoint {
+        if let Some(endpoint) = &pane.state.hand().connection.endpoint {
             let endpoint = endpoint.to_string();
             let label = Label::new(&endpoint, look.palette.muted).number();
             label.wrap().ui(ui);
@@ -62,8 +62,8 @@ type Figures = Vec<(Text, String, Color32)>;
 
 fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     let palette = pane.look.palette;
-    let stats = &pane.state.hand().stats;
-    let live = pane.state.hand().link.state.is_live();
+    let stats = &pane.state.hand().connection.stats;
+    let live = pane.state.hand().connection.status.state.is_live();
     let measured = |text, value: String| {
         if live {
             (text, value, palette.text)
@@ -77,7 +77,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         0 => count(text, 0),
         value => (text, value.to_string(), palette.warn),
     };
-    let (look, quirks) = (pane.look, &pane.state.hand().link.quirks);
+    let (look, quirks) = (pane.look, &pane.state.hand().connection.status.quirks);
     let said = |text: Option<Text>| {
         text.map_or(format::UNKNOWN, |text| look.say(text))
             .to_owned()
@@ -87,7 +87,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         measured(scan::fact(Fact::HandId), format::whole(id, 0)),
         measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
     ];
-    let endpoint = pane.state.hand().endpoint.as_ref();
+    let endpoint = pane.state.hand().connection.endpoint.as_ref();
     if matches!(endpoint, Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_))) {
         let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
         hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
@@ -123,8 +123,8 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
 /// Draws the card of the line's time: each group of reads, what it gets and what the wire could give.
 pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let line = &pane.state.hand().stats.line;
-    let live = pane.state.hand().link.state.is_live();
+    let line = &pane.state.hand().connection.stats.line;
+    let live = pane.state.hand().connection.status.state.is_live();
     let row = |ui: &mut Ui, caption: Text, values: [String; 3]| {
         let caption = look.say(caption);
         figure_ui(ui, pane, caption, |ui| {

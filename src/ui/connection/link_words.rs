@@ -1,6 +1,6 @@
 //! Where the link stands, in a word and a colour.
 
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::link::Dialling;
 use crate::record::LinkState;
 use crate::ui::kit::{Look, Pane};
@@ -13,11 +13,11 @@ pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
 }
 
 /// The same of any hand.
-pub(crate) fn link_words_of(look: Look, hand: &HandState) -> (Text, Color32) {
-    let (palette, link) = (look.palette, &hand.link);
+pub(crate) fn link_words_of(look: Look, hand: &Hand) -> (Text, Color32) {
+    let (palette, link) = (look.palette, &hand.connection.status);
     match link.state {
         // A hand that never answered is not reached yet; only one that did can be lost.
-        LinkState::Offline if link.trouble.is_some() && hand.sample.angle.is_some() => {
+        LinkState::Offline if link.trouble.is_some() && hand.readings.sample.angle.is_some() => {
             (main::STATE_LOST, palette.bad)
         }
         LinkState::Offline if link.dialling != Dialling::Idle => {

@@ -82,7 +82,7 @@ impl Default for ConnectionForm {
 impl ConnectionForm {
     /// Draws the form, the scan and, beside them, how the link goes.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let endpoint = pane.state.hand().endpoint.as_ref();
+        let endpoint = pane.state.hand().connection.endpoint.as_ref();
         if let Some(endpoint) = endpoint.filter(|it| Some(*it) != self.filled_from.as_ref()) {
             self.filled_from = Some(endpoint.clone());
             self.fields.remove("packing");
@@ -300,7 +300,7 @@ impl ConnectionForm {
                     Err(_) => self.refused = Some(spelled.clone()),
                 }
             }
-            let none = pane.state.hand().endpoint.is_none();
+            let none = pane.state.hand().connection.endpoint.is_none();
             let disconnect = Button::said(look, panels::DISCONNECT)
                 .disabled(none.then(|| look.say(panels::DISCONNECT_NONE)));
             disconnect.large().on_click(ui, pane, Action::Disconnect);
@@ -318,7 +318,12 @@ fn hands_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let (hands, hand) = (&state.hands, state.hand());
     let slot = hand.label.slot;
-    if let Some(endpoint) = hand.endpoint.as_ref().filter(|_| hands.is_several()) {
+    if let Some(endpoint) = hand
+        .connection
+        .endpoint
+        .as_ref()
+        .filter(|_| hands.is_several())
+    {
         let caption = look.say(window::HAND_NAME);
         row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
             let name = state.settings.hand_name(endpoint).unwrap_or_default();

@@ -190,8 +190,9 @@ pub(crate) fn connect_ui(
 ) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let is_now =
-        hand.link.state.is_live() && endpoint.is_some() && hand.endpoint.as_ref() == endpoint;
+    let is_now = hand.connection.status.state.is_live()
+        && endpoint.is_some()
+        && hand.connection.endpoint.as_ref() == endpoint;
     let (text, weight) = if is_now {
         (scan::CONNECTED, Weight::Chosen)
     } else {

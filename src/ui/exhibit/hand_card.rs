@@ -5,7 +5,7 @@ use crate::hand::{Finger, PerFinger};
 use crate::ui::exhibit::large::PageLook;
 use crate::ui::exhibit::places::{PagePlaces, above};
 use crate::ui::hand::fingertip::{self, Tip};
-use crate::ui::hand::panel::StillHand;
+use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::kit::{Label, Pane};
 use crate::ui::text::{exhibit, main, words};
 use crate::ui::touch::heat;
@@ -33,14 +33,17 @@ impl HandCard {
         let (hand, feels) = above(inner, inner.height() - below, 14.0 * unit);
         // A little to the right: the badge stands before the little finger.
         let hand = hand.with_min_x(hand.left() + 64.0 * unit);
-        let shown = (pane.state.hand(), &tips);
-        self.0.felt_ui(ui, hand, page.look, shown);
+        let shown = picture(pane.state.hand(), &tips, pane.state.now);
+        self.0.ui(ui, hand, page.look, &shown);
         feels_ui(ui, page, feels, &tips);
         badges_ui(
             ui,
             page,
             inner.with_max_y(inner.top() + 48.0 * unit),
-            (pane.state.hand().is_simulated(), exhibit.view.is_slow),
+            (
+                pane.state.hand().connection.is_simulated(),
+                exhibit.view.is_slow,
+            ),
         );
     }
 }

@@ -178,7 +178,7 @@ fn open_ui(
         exhibit,
     );
     let is_halted = matches!(exhibit.view.stage, ExhibitStage::Halted(_));
-    let no_hand = !pane.state.hand().link.state.is_live();
+    let no_hand = !pane.state.hand().connection.status.state.is_live();
     let arm = LargeButton {
         note: look.say(exhibit::ARM_NOTE),
         size: 48.0,

@@ -27,7 +27,7 @@ struct StageWords {
 pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
     matches!(exhibit.view.stage, ExhibitStage::Halted(_))
         && exhibit.plan.visitor_restart
-        && state.hand().link.state == LinkState::Monitoring
+        && state.hand().connection.status.state == LinkState::Monitoring
 }
 
 /// Why pressing a tile does nothing now.
@@ -103,7 +103,8 @@ fn trouble(look: Look, state: &State) -> Option<StageWords> {
     if notices.any(|notice| notice.what == NoticeKind::StopNotSent) {
         return Some(told(window::STOP_NOT_SENT));
     }
-    matches!(state.hand().link.hold, Hold::Alarm { .. }).then(|| told(main::ALARM_TITLE))
+    matches!(state.hand().connection.status.hold, Hold::Alarm { .. })
+        .then(|| told(main::ALARM_TITLE))
 }
 
 fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords {

@@ -1,6 +1,6 @@
 //! What a drive says of itself: the colour of its lamp and the words beside it. Draws nothing.
 
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::hand::{Dof, Status, Words};
 use crate::ui::kit::{Pane, format};
 use crate::ui::text::{main, words};
@@ -28,7 +28,7 @@ impl DriveWords {
     pub(crate) fn of(pane: &Pane<'_>, dof: Dof) -> Self {
         let look = pane.look;
         let palette = look.palette;
-        let sample = &pane.state.hand().sample;
+        let sample = &pane.state.hand().readings.sample;
         let status = sample.status.map(|group| group.value[dof]);
         let faults = sample.faults.map(|group| group.value[dof]);
         let fault = faults.and_then(|faults| faults.iter().next());

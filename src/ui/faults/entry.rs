@@ -1,7 +1,7 @@
 //! One fault as a person reads it: what, since when, why, what to do, and whether clearing errors can help. Clears nothing.
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::app::readings::fault_recorder::RecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
@@ -36,7 +36,7 @@ pub(crate) fn steady(
     pane: &Pane<'_>,
     wanted: impl Fn(&FaultEntry) -> bool,
 ) -> Vec<FaultEntry> {
-    let faults = pane.state.hand().faults.iter();
+    let faults = pane.state.hand().readings.faults.iter();
     let mut entries: Vec<FaultEntry> = faults.copied().filter(|entry| wanted(entry)).collect();
     let place = ui.scope_id().with("order");
     let seen = Rect::from_x_y_ranges(ui.max_rect().x_range(), ui.clip_rect().y_range());
@@ -146,7 +146,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
     let look = pane.look;
     let text = times(pane, entry);
-    let recorder = &pane.state.hand().recorder;
+    let recorder = &pane.state.hand().measured.recorder;
     let recording = recorder.of(entry.dof, entry.what, entry.since);
     let mut replay = None;
     let pressed = ui.horizontal_wrapped(|ui| {
@@ -159,7 +159,13 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Recor
             let button = Button::new(words, look.tip(faults::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         });
-        let hand = pane.state.hand().endpoint.as_ref().map(ToString::to_string);
+        let hand = pane
+            .state
+            .hand()
+            .connection
+            .endpoint
+            .as_ref()
+            .map(ToString::to_string);
         let stretch = ReplayedStretch {
             title: &title(pane, entry.dof, entry.what),
             hand: &hand.unwrap_or_default(),
@@ -184,7 +190,7 @@ pub(crate) fn title(pane: &Pane<'_>, dof: Dof, what: FaultKind) -> String {
 /// Whether it lasts, and the colour of that.
 fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
     let palette = pane.look.palette;
-    let sample = &pane.state.hand().sample;
+    let sample = &pane.state.hand().readings.sample;
     let asked = match entry.what {
         FaultKind::Fault(_) => sample.faults.map(|group| group.asked),
         FaultKind::Status(_) => sample.status.map(|group| group.asked),
@@ -206,7 +212,7 @@ pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
 
 /// A ring for faults of this joint that nobody has seen yet.
 pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
-    let mut unseen = pane.state.hand().faults.unseen();
+    let mut unseen = pane.state.hand().readings.faults.unseen();
     let Some(first) = unseen.find(|entry| entry.dof == dof) else {
         return;
     };
@@ -244,7 +250,14 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
     let Some(color) = unseen_color(pane) else {
         return;
     };
-    let count = pane.state.hand().faults.unseen().count().to_string();
+    let count = pane
+        .state
+        .hand()
+        .readings
+        .faults
+        .unseen()
+        .count()
+        .to_string();
     let width = (kit::text_width(ui, &count, theme::small()) + theme::GAP).max(FAULT_BADGE);
     let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
     ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
@@ -255,7 +268,7 @@ pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.
 pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
     let palette = pane.look.palette;
-    let mut unseen = pane.state.hand().faults.unseen();
+    let mut unseen = pane.state.hand().readings.faults.unseen();
     let first = unseen.next()?;
     // What lasts comes first.
     Some(if first.is_active() {
@@ -268,7 +281,7 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 /// Marks all as seen.
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let none = pane.state.hand().faults.unseen().next().is_none();
+    let none = pane.state.hand().readings.faults.unseen().next().is_none();
     let button = Button::said(look, faults::SEEN_ALL);
     button
         .disabled_if(none, look.say(faults::SEEN_NONE))

@@ -6,8 +6,8 @@ pub(crate) mod recording_events;
 pub(crate) mod recordings;
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
 use crate::app::notices::Notice;
+use crate::app::readings::Freshness;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
@@ -124,7 +124,7 @@ impl FaultsView {
     /// The messages, or the recordings.
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recordings = match pane.state.hand().recorder.iter().count() {
+        let recordings = match pane.state.hand().measured.recorder.iter().count() {
             0 => look.say(faults::RECORDINGS).to_owned(),
             count => format!("{} ({count})", look.say(faults::RECORDINGS)),
         };
@@ -150,9 +150,9 @@ impl FaultsView {
 fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let reason = match hand.faults.nothing_to_clear() {
-        _ if !hand.link.state.is_live() => Some(main::REFUSED_OFFLINE),
-        _ if hand.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
+    let reason = match hand.readings.faults.nothing_to_clear() {
+        _ if !hand.connection.status.state.is_live() => Some(main::REFUSED_OFFLINE),
+        _ if hand.readings.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
         Some(NothingToClear::NoFault) => Some(faults::CLEAR_NO_FAULT),
         Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
         None => None,
@@ -167,7 +167,13 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// That nothing is wrong, or that nobody knows.
 fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane.state.hand().sample.faults.map(|faults| faults.asked);
+    let asked = pane
+        .state
+        .hand()
+        .readings
+        .sample
+        .faults
+        .map(|faults| faults.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
         Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
@@ -199,7 +205,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
-    let sample = &pane.state.hand().sample;
+    let sample = &pane.state.hand().readings.sample;
     let status = sample.status.map(|group| group.value[dof]);
     // A fault is explained by its entry below; what the status adds to it is said here.
     let faulty = sample

@@ -1,9 +1,9 @@
 //! What happened in a recording, as lines of words: what a person did, how drives changed, what the link did.
 
-use crate::app::hand::{Play, Preset};
 use crate::app::readings::fault_recorder::{FaultEventKind, PersonAct, Recording};
 use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
+use crate::poses::{Play, Preset};
 use crate::ui::kit::Look;
 use crate::ui::plots::marks;
 use crate::ui::text::{faults, main, panels, poses, words};

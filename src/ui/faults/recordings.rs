@@ -99,13 +99,18 @@ impl RecordingsView {
 
     /// The open one, if it is still kept.
     pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<Recording>> {
-        pane.state.hand().recorder.get(self.open?).map(Arc::clone)
+        pane.state
+            .hand()
+            .measured
+            .recorder
+            .get(self.open?)
+            .map(Arc::clone)
     }
 
     /// Draws the list.
     pub(crate) fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recorder = &pane.state.hand().recorder;
+        let recorder = &pane.state.hand().measured.recorder;
         let mut pressed = None;
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {

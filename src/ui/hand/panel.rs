@@ -1,9 +1,10 @@
 //! The drawn hand in the window: what the state says goes into the picture, and the finger that was chosen comes out.
 
 use crate::app::action::Action;
-use crate::app::hand::{Freshness, HandState};
+use crate::app::hands::Hand;
+use crate::app::readings::Freshness;
 use crate::hand::kinematics::Side;
-use crate::hand::{Finger, PerDof, PerFinger};
+use crate::hand::{Finger, Moment, PerDof, PerFinger};
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::hand::fingertip::{Sense as Meant, Tip};
@@ -36,7 +37,7 @@ impl HandPanel {
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
             lit: pointed::pointed(ui, PointedPlace::Row),
-            ..picture(pane.state.hand(), tips)
+            ..picture(pane.state.hand(), tips, pane.state.now)
         };
         let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
         unknown_note(ui, look, place, &picture);
@@ -59,23 +60,11 @@ impl HandPanel {
 pub(crate) struct StillHand(HandView);
 
 impl StillHand {
-    /// Draws a hand, without what its fingertips feel.
-    pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look, hand: &HandState) {
-        self.felt_ui(ui, place, look, (hand, &PerFinger::default()));
-    }
-
-    /// Draws it with that.
-    pub(crate) fn felt_ui(
-        &mut self,
-        ui: &Ui,
-        place: Rect,
-        look: Look,
-        (hand, tips): (&HandState, &PerFinger<Option<Tip>>),
-    ) {
+    pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look, picture: &HandPicture) {
         let response = ui.interact(place, ui.scope_id().with("still hand"), Sense::hover());
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
-        self.0.paint(ui, place, look.palette, &picture(hand, tips));
+        self.0.paint(ui, place, look.palette, picture);
     }
 }
 
@@ -84,21 +73,24 @@ pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f3
     tile::pose_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
 }
 
-fn picture(state: &HandState, tips: &PerFinger<Option<Tip>>) -> HandPicture {
-    let angle = state.sample.angle;
+/// A hand as it is known now, with what its fingertips feel.
+pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) -> HandPicture {
+    let angle = state.readings.sample.angle;
     let actual = PerDof::from_fn(|dof| {
         let raw = angle?.value[dof].documented()?;
         Some(f32::from(raw) / 1000.0)
     });
     let target = PerDof::from_fn(|dof| {
-        let target = state.joints[dof].target.filter(|_| state.is_armed())?;
+        let target = state.controls.joints[dof]
+            .target
+            .filter(|_| state.connection.is_armed())?;
         Some(f32::from(target.get()) / 1000.0)
     });
     HandPicture {
         target,
-        is_stale: state.freshness(angle.map(|angle| angle.asked)) == Freshness::Stale,
+        is_stale: state.freshness(angle.map(|angle| angle.asked), now) == Freshness::Stale,
         tips: tips.map(|tip| tip.as_ref().map(load).unwrap_or_default()),
-        held: state.endpoint.as_ref().and_then(held),
+        held: state.connection.endpoint.as_ref().and_then(held),
         ..HandPicture::of(state.side, &actual)
     }
 }
@@ -160,7 +152,7 @@ fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
 /// A finger with its force, as a sentence reads it.
 fn said(pane: &Pane<'_>, finger: Finger) -> String {
     let look = pane.look;
-    let block = pane.state.hand().sample.tactile[finger].map(|block| block.value);
+    let block = pane.state.hand().readings.sample.tactile[finger].map(|block| block.value);
     format!(
         "{}: {} {} N, {} {} N",
         look.say(words::finger(finger)),

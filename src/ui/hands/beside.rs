@@ -1,10 +1,10 @@
 //! All hands side by side: of each the drawn hand, its state, and what its joints do now.
 
-use crate::app::hand::HandState;
-use crate::app::hand::slot::SlotId;
+use crate::app::hands::Hand;
 use crate::app::settings::PlotKind;
-use crate::hand::PerDof;
-use crate::ui::hand::panel::StillHand;
+use crate::app::slot::SlotId;
+use crate::hand::{PerDof, PerFinger};
+use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::hands::strips::HandWords;
 use crate::ui::kit::{self, Label, Pane};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
@@ -65,9 +65,9 @@ impl BesideView {
 }
 
 impl HandColumn {
-    fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, at: usize, hand: &HandState) {
+    fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, at: usize, hand: &Hand) {
         let look = pane.look;
-        let words = HandWords::of(look, at, hand);
+        let words = HandWords::of(look, (at, hand), pane.state.now);
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             let title = format!("{}  {}", words.number, words.name);
@@ -83,17 +83,18 @@ impl HandColumn {
             let whole = ui.available_height();
             let plot = (whole * PLOT_PART).max(PLOT_LEAST).floor();
             let plots = 2.0 * plot + theme::PLOT_TIME_AXIS + theme::GAP;
-            let picture = vec2(ui.available_width(), (whole - plots).max(1.0));
-            let (_, place) = ui.allocate_space(picture);
-            self.picture.ui(ui, place, look, hand);
+            let room = vec2(ui.available_width(), (whole - plots).max(1.0));
+            let (_, place) = ui.allocate_space(room);
+            let shown = picture(hand, &PerFinger::default(), pane.state.now);
+            self.picture.ui(ui, place, look, &shown);
             self.plots_ui(ui, pane, hand, plot);
         });
     }
 
-    fn plots_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, hand: &HandState, height: f32) {
+    fn plots_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, hand: &Hand, height: f32) {
         let look = pane.look;
         let now = pane.state.now.secs();
-        let first = hand.history.first_secs().unwrap_or(now);
+        let first = hand.measured.history.first_secs().unwrap_or(now);
         let window = pane.state.settings.plot_window.seconds();
         self.charts.time.advance((first.min(now), now), window);
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -104,7 +105,7 @@ impl HandColumn {
             let curves = lines.iter().map(|line| ChartCurve {
                 told: Some(panel.row.decimals),
                 ..ChartCurve::new(
-                    Points::Measured(&hand.history, line.series),
+                    Points::Measured(&hand.measured.history, line.series),
                     Stroke::new(theme::LINE, look.palette.dof[line.dof]),
                 )
             });

@@ -1,10 +1,11 @@
 //! A strip for each hand below the header, with its state and a STOP of its own. Only where there are several.
 
 use crate::app::action::Action;
-use crate::app::hand::HandState;
-use crate::app::hand::mover::Mover;
-use crate::app::hand::slot::SlotId;
+use crate::app::hands::Hand;
+use crate::app::hands::Mover;
 use crate::app::hands::action::HandsAction;
+use crate::app::slot::SlotId;
+use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::record::Hold;
 use crate::ui::connection::link_words::link_words_of;
@@ -72,18 +73,18 @@ pub(crate) struct HandWords {
 
 impl HandWords {
     /// Of the hand with this index.
-    pub(crate) fn of(look: Look, at: usize, hand: &HandState) -> Self {
-        let (state, color) = match hand.link.hold {
+    pub(crate) fn of(look: Look, (at, hand): (usize, &Hand), now: Moment) -> Self {
+        let (state, color) = match hand.connection.status.hold {
             Hold::Alarm { .. } => (main::ALARM_TITLE, look.palette.bad),
             _ => link_words_of(look, hand),
         };
-        let is_moved = !matches!(hand.mover(), None | Some(Mover::Stop));
+        let is_moved = !matches!(Mover::of(hand, now), None | Some(Mover::Stop));
         let state = if is_moved {
             format!("{} · {}", look.say(state), look.say(window::MOVES))
         } else {
             look.say(state).to_owned()
         };
-        let name = match &hand.endpoint {
+        let name = match &hand.connection.endpoint {
             Some(_) => hand.label.name.to_string(),
             None => look.say(main::NO_HAND).to_owned(),
         };
@@ -134,12 +135,12 @@ pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_a
 fn strip_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
-    (at, hand): (usize, &HandState),
+    (at, hand): (usize, &Hand),
     (rect, is_free): (Rect, bool),
 ) {
     let look = pane.look;
     let palette = look.palette;
-    let words = HandWords::of(look, at, hand);
+    let words = HandWords::of(look, (at, hand), pane.state.now);
     let slot = hand.label.slot;
     let (strip, stop) = rect.split_left_right_at_x(rect.right() - STOP);
     let strip = strip.with_max_x(strip.right() - theme::STEP);

@@ -1,7 +1,7 @@
 //! Each way in and out besides the window: where it is, whether it is open, who is there.
 
 use crate::app::action::Action;
-use crate::app::inputs::{InputAction, InputKind};
+use crate::app::inputs::{InputAction, InputKind, InputSource};
 use crate::hand::Moment;
 use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::stream::StreamPlace;
@@ -50,7 +50,10 @@ impl SourceCards {
         if pane.state.hands.is_several() {
             card_ui(ui, pane, inputs::MIRROR, |ui, pane| {
                 let missing = mirror_ui(ui, pane);
-                let source = (look.say(inputs::MIRROR), InputAction::GrantMirror);
+                let source = (
+                    look.say(inputs::MIRROR),
+                    InputAction::Grant(InputSource::Mirror),
+                );
                 grant_ui(ui, pane, source, missing);
             });
         }
@@ -89,7 +92,10 @@ impl SourceCards {
             switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
             let sender = pane.state.hand().inputs.stream_view.intake.sender;
             let missing = silence(pane, sender.map(|(_, last)| last).filter(|_| at.is_some()));
-            let source = (look.say(inputs::STREAM), InputAction::GrantStream);
+            let source = (
+                look.say(inputs::STREAM),
+                InputAction::Grant(InputSource::Stream),
+            );
             grant_ui(ui, pane, source, missing);
         });
         if at.is_some() {
@@ -117,7 +123,7 @@ impl SourceCards {
             let other = view.as_ref().and_then(|view| view.other.as_ref());
             let other =
                 other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
-            let source = (look.say(inputs::DDS), InputAction::GrantDds);
+            let source = (look.say(inputs::DDS), InputAction::Grant(InputSource::Dds));
             grant_ui(ui, pane, source, other.as_deref().or(missing));
         });
         let Some(view) = view else { return };
@@ -213,7 +219,7 @@ fn place(text: &str) -> Option<SocketAddr> {
 
 /// Why nothing can be opened without a hand.
 pub(crate) fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
-    let is_live = pane.state.hand().link.state.is_live();
+    let is_live = pane.state.hand().connection.status.state.is_live();
     (!is_live).then(|| pane.look.say(inputs::NO_HAND))
 }
 
@@ -254,10 +260,13 @@ pub(crate) fn grant_ui(
     let look = pane.look;
     let hand = pane.state.hand();
     // What has to be held can still be held once it may.
-    let refusal = hand.arm_refusal();
+    let refusal = hand.arm_refusal(pane.state.now);
     let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
     let refusal = refusal.map(|reason| words::refusal(look, reason));
-    let taken = hand.outside_owner().map(|_| look.say(inputs::TAKEN));
+    let taken = hand
+        .connection
+        .outside_owner()
+        .map(|_| look.say(inputs::TAKEN));
     let reason = no_hand(pane).or(taken).or(missing);
     let reason = reason.map(ToOwned::to_owned).or(refusal);
     let name = look.pair(look.say(inputs::GRANT), source);
@@ -271,7 +280,7 @@ pub(crate) fn grant_ui(
 
 /// Why nobody can be followed now who was heard last at this moment.
 fn silence(pane: &Pane<'_>, last: Option<Moment>) -> Option<&'static str> {
-    let now = pane.state.hand().now;
+    let now = pane.state.now;
     let is_there = last.is_some_and(|last| now.since(last) < HOLDS_AFTER);
     (!is_there).then(|| pane.look.say(inputs::NOBODY_SENDS))
 }

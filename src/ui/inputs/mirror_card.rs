@@ -1,9 +1,9 @@
 //! Another hand of this window that can lead the shown one: which one, how much of it is followed, and whether it may.
 
 use crate::app::action::Action;
-use crate::app::hand::slot::SlotId;
 use crate::app::inputs::InputAction;
 use crate::app::inputs::mirror::HandMirror;
+use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
 use crate::ui::inputs::owner::{figures_ui, leader_name};
@@ -28,7 +28,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str
     let taken = look.say(inputs::TAKEN);
     choice.response.on_disabled_hover_text(taken);
     if let Some(mirror) = mirror {
-        let is_fresh = mirror.view.is_fresh(state.hand().now);
+        let is_fresh = mirror.view.is_fresh(state.now);
         let (answers, rate) = if is_fresh {
             (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz))
         } else {
@@ -108,7 +108,7 @@ fn missing(state: &State, mirror: Option<&HandMirror>) -> Option<Text> {
         Some(mirror) if state.hands.is_circle(mirror.leader, hand.label.slot) => {
             Some(inputs::CIRCLE)
         }
-        Some(mirror) if !mirror.view.is_fresh(hand.now) => Some(inputs::LEADER_SILENT),
+        Some(mirror) if !mirror.view.is_fresh(state.now) => Some(inputs::LEADER_SILENT),
         Some(_) => None,
     }
 }

@@ -1,8 +1,8 @@
 //! Who may move the hand now, how that goes, its end, and within which limits.
 
 use crate::app::action::Action;
-use crate::app::hand::slot::SlotId;
 use crate::app::inputs::InputAction;
+use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
@@ -16,7 +16,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, look.say(inputs::OWNER), |_| ());
-        let owner = pane.state.hand().outside_owner();
+        let owner = pane.state.hand().connection.outside_owner();
         let words = match owner {
             Some(owner) => owner_words(pane, owner),
             None => look.say(inputs::NOBODY_OUTSIDE).to_owned(),
@@ -141,7 +141,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
 pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
     let mut all = state.hands.iter().enumerate();
     let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;
-    hand.endpoint.as_ref()?;
+    hand.connection.endpoint.as_ref()?;
     Some(format!("{} · {}", at + 1, hand.label.name))
 }
 

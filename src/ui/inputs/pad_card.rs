@@ -1,7 +1,7 @@
 //! The gamepad: which one is there, what its controls do, and where it wants the hand.
 
 use crate::app::action::Action;
-use crate::app::inputs::{InputAction, InputKind};
+use crate::app::inputs::{InputAction, InputKind, InputSource};
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::{Angle, PerDof};
@@ -84,7 +84,7 @@ fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
         grant_ui(
             ui,
             pane,
-            (look.say(inputs::PAD), InputAction::GrantPad),
+            (look.say(inputs::PAD), InputAction::Grant(InputSource::Pad)),
             missing,
         );
     });
@@ -111,7 +111,7 @@ fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: Option<&PadView>) {
         return;
     }
     let look = pane.look;
-    let angle = pane.state.hand().sample.angle;
+    let angle = pane.state.hand().readings.sample.angle;
     let shares = PerDof::from_fn(|dof| {
         let wanted = view.and_then(|view| view.aims[dof]);
         let raw = wanted.map(Angle::get).or(angle?.value[dof].documented())?;

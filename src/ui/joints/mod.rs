@@ -7,10 +7,10 @@ pub(crate) mod track;
 pub(crate) mod tracks;
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
-use crate::app::hand::Preset;
+use crate::app::readings::Freshness;
 use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
+use crate::poses::Preset;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
@@ -95,10 +95,15 @@ impl JointsView {
         }
         age_ui(ui, pane);
         let hand = pane.state.hand();
-        let live = pane.freshness(hand.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
+        let live =
+            pane.freshness(hand.readings.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
         // A first look must find what comes before moving; the header says why it cannot be armed.
         let recorded = pane.state.timeline.is_some();
-        if live && !recorded && !hand.is_armed() && hand.arm_refusal().is_none() {
+        if live
+            && !recorded
+            && !hand.connection.is_armed()
+            && hand.arm_refusal(pane.state.now).is_none()
+        {
             Label::new(look.say(window::ARM_FIRST), look.palette.accent)
                 .small()
                 .ui(ui);
@@ -109,7 +114,13 @@ impl JointsView {
 /// How old the angles are, where they are not live.
 pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane.state.hand().sample.angle.map(|angle| angle.asked);
+    let asked = pane
+        .state
+        .hand()
+        .readings
+        .sample
+        .angle
+        .map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),

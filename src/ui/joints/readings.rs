@@ -1,6 +1,6 @@
 //! What a joint measures, as numbers: angle, force, current, temperature. Moves nothing.
 
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::app::settings::AngleUnit;
 use crate::hand::Quantity;
 use crate::ui::joints::row::{JointRow, READING};
@@ -35,7 +35,7 @@ impl JointRow {
 
     fn angle_in_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, unit: AngleUnit) {
         let palette = pane.look.palette;
-        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().sample.angle);
+        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
         let documented = angle.and_then(|angle| angle.documented());
         let text = match unit {
             AngleUnit::Raw => format::whole(angle.map(|angle| i64::from(angle.raw())), 4),
@@ -54,7 +54,7 @@ impl JointRow {
 
     pub(crate) fn force_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let palette = pane.look.palette;
-        let (force, freshness) = pane.newest(self.dof, pane.state.hand().sample.force);
+        let (force, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.force);
         let odd = force.is_some_and(|force| force.documented().is_none());
         let live = if odd { palette.warn } else { palette.text };
         let raw = force.map(|force| i64::from(force.raw()));
@@ -67,8 +67,9 @@ impl JointRow {
     /// Current and temperature, in another colour where the drive is warm or hot.
     pub(crate) fn drive_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
-        let (current, current_age) = pane.newest(self.dof, pane.state.hand().sample.current);
-        let (heat, heat_age) = pane.newest(self.dof, pane.state.hand().sample.temperature);
+        let (current, current_age) =
+            pane.newest(self.dof, pane.state.hand().readings.sample.current);
+        let (heat, heat_age) = pane.newest(self.dof, pane.state.hand().readings.sample.temperature);
         let raw = current.map(|current| i64::from(current.raw()));
         let milliamps = format::with_unit(raw, 4, Quantity::Current.row().unit);
         let degrees = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);

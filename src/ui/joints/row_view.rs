@@ -141,10 +141,10 @@ pub(crate) fn explain_ui(
 
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
 fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
-    let joint = pane.state.hand().joints[row.dof];
+    let joint = pane.state.hand().controls.joints[row.dof];
     let rough_from = impact::rough_from_speed(joint.force);
     let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
-    if is_gentle || pane.state.hand().runs_series() {
+    if is_gentle || pane.state.hand().series.is_some() {
         return;
     }
     let response = kit::warning_ui(ui, pane.look.palette.warn);
@@ -165,7 +165,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 
 fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let look = pane.look;
-    let locked = pane.state.hand().joints[row.dof].locked;
+    let locked = pane.state.hand().controls.joints[row.dof].locked;
     let (icon, tip) = if locked {
         (theme::LOCKED, main::UNLOCK_TIP)
     } else {

@@ -48,8 +48,8 @@ impl JointRow {
     /// Target over actual.
     pub(crate) fn angle_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, linked: bool) {
         let look = pane.look;
-        let joint = pane.state.hand().joints[self.dof];
-        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().sample.angle);
+        let joint = pane.state.hand().controls.joints[self.dof];
+        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
         let locked = joint.locked.then(|| look.say(main::LOCKED));
         let setting = TrackRow {
@@ -74,7 +74,7 @@ impl JointRow {
 
     /// Linked fingers go as far as this one does, each from where it stands.
     fn target(&self, pane: &mut Pane<'_>, angle: Angle, linked: bool) {
-        let joints = pane.state.hand().joints;
+        let joints = pane.state.hand().controls.joints;
         pane.actions.push(Action::Target(self.dof, angle));
         let by = joints[self.dof].target.map(|old| angle.get() - old.get());
         let Some(by) = by.filter(|_| linked && LINKED.contains(&self.dof)) else {
@@ -92,7 +92,7 @@ impl JointRow {
 /// The threshold over the live force of one joint; without a row the threshold of all.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
     let (look, hand) = (pane.look, pane.state.hand());
-    let joints = hand.joints;
+    let joints = hand.controls.joints;
     let name = named(pane, row, main::NAME_FORCE_THRESHOLD);
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.force.get()));
@@ -105,13 +105,13 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     };
     if let Some(row) = row {
         let joint = joints[row.dof];
-        let (force, freshness) = pane.newest(row.dof, hand.sample.force);
+        let (force, freshness) = pane.newest(row.dof, hand.readings.sample.force);
         track.actual = force.and_then(|force| force.documented());
         let over = track.actual.is_some_and(|now| now >= joint.force.get());
         let live = if over { look.palette.warn } else { row.color };
         track.color = look.value(freshness, live);
         track.rough_from = impact::rough_from_threshold(joint.speed).map(Force::get);
-        track.peak = hand.peaks.get(row.dof).map(|(grams, _)| grams);
+        track.peak = hand.readings.peaks.get(row.dof).map(|(grams, _)| grams);
     }
     let setting = TrackRow {
         caption: main::FORCE,
@@ -130,7 +130,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// The speed of one joint; without a row that of all.
 pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
-    let joints = pane.state.hand().joints;
+    let joints = pane.state.hand().controls.joints;
     let runs = series(pane);
     let value = value_of(row, joints.map(|joint| joint.speed.get()));
     let value = value.filter(|_| runs.is_none());
@@ -175,7 +175,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Each trial of a series sets its own force and speed: what a person set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
-    let runs = pane.state.hand().runs_series();
+    let runs = pane.state.hand().series.is_some();
     runs.then(|| pane.look.say(main::SERIES_RUNS))
 }
 
@@ -202,7 +202,7 @@ fn value_of(row: Option<&JointRow>, values: PerDof<i16>) -> Option<i16> {
 
 fn staged(pane: &Pane<'_>, tip: Text) -> String {
     let tip = pane.look.say(tip);
-    if pane.state.hand().is_armed() {
+    if pane.state.hand().connection.is_armed() {
         return tip.into();
     }
     format!("{tip}\n{}", pane.look.say(main::STAGED))

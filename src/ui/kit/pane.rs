@@ -1,7 +1,7 @@
 //! What every part of the window is given: the state, how it looks, and where to put actions.
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::app::state::State;
 use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::record::ArmRefusal;
@@ -45,22 +45,22 @@ impl Pane<'_> {
 
     /// Why nothing that moves the hand can be asked for now.
     pub(crate) fn unready(&self) -> Option<&'static str> {
-        if self.state.hand().runs_series() {
+        if self.state.hand().series.is_some() {
             return Some(self.look.say(main::SERIES_RUNS));
         }
-        if self.state.hand().outside_owner().is_some() {
+        if self.state.hand().connection.outside_owner().is_some() {
             return Some(self.look.say(inputs::TAKEN));
         }
-        let advice = match self.state.hand().arm_refusal() {
+        let advice = match self.state.hand().arm_refusal(self.state.now) {
             Some(ArmRefusal::LetGo) => main::REFUSED_LET_GO,
             _ => main::NOT_ARMED,
         };
-        (!self.state.hand().is_armed()).then(|| self.look.say(advice))
+        (!self.state.hand().connection.is_armed()).then(|| self.look.say(advice))
     }
 
     /// How fresh something asked for at `asked` is.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
-        self.state.hand().freshness(asked)
+        self.state.hand().freshness(asked, self.state.now)
     }
 
     /// The newest value of one joint, and how fresh it is.

@@ -23,7 +23,11 @@ pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card 
 }
 
 fn ask(state: &State, card: Card, run: &Checks) -> Card {
-    let (sample, link, now) = (&state.hand().sample, &state.hand().link, state.now);
+    let (sample, link, now) = (
+        &state.hand().readings.sample,
+        &state.hand().connection.status,
+        state.now,
+    );
     let card = Check::ALL
         .into_iter()
         .fold(card.words(cards::CALIBRATE_WORDS), |card, check| {

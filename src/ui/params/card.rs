@@ -35,7 +35,11 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
         card = dangers(look, card, &question.dangers);
         manner = ButtonRole::Danger;
     }
-    let why = state.hand().write_refusal().map(device::refusal);
+    let why = state
+        .hand()
+        .params
+        .write_refusal(&state.hand().connection.status)
+        .map(device::refusal);
     let back = Choice::new(device::DECLINE, ButtonRole::Safe);
     let agree = Choice::new(agree, manner).does(Action::Param(ParamAction::Agree));
     card.choice(back.does(Action::Param(ParamAction::Decline)))

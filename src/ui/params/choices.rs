@@ -1,6 +1,7 @@
 //! What the cards of all procedures have in common.
 
 use crate::app::action::Action;
+use crate::app::params::rest_refusal;
 use crate::app::procedures::ProcedureAction;
 use crate::app::state::State;
 use crate::ui::kit::{ButtonRole, Card, Choice};
@@ -23,7 +24,9 @@ pub(crate) fn asking(
     (begin, manner): (Text, ButtonRole),
     not_yet: Option<Text>,
 ) -> Card {
-    let why = state.hand().rest_refusal().map(device::refusal).or(not_yet);
+    let why = rest_refusal(&state.hand().connection.status)
+        .map(device::refusal)
+        .or(not_yet);
     card.choice(step(
         cards::CANCEL,
         ButtonRole::Safe,

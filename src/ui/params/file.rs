@@ -78,7 +78,9 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (P
         pane.actions.push(Action::Param(ParamAction::Tick(id)));
     }
     let held = pane.state.hand().params.live(id).map(|(value, _)| value);
-    let fresh = pane.state.hand().param_freshness(id);
+    let hand = pane.state.hand();
+    let is_live = hand.connection.is_live();
+    let fresh = hand.params.freshness(id, is_live, pane.state.now);
     let color = look.value(fresh, palette.text);
     let label = cell_name(pane, id, device::LIVE);
     cell_ui(ui, (&label, &value_text(id, held), color), "");

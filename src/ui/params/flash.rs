@@ -34,7 +34,7 @@ pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
     let hand = pane.state.hand();
-    let reason = hand.save_refusal();
+    let reason = hand.params.save_refusal(&hand.connection.status);
     let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
     let unsaved = hand.params.unsaved();
@@ -183,7 +183,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
 /// The buttons of what is done to a hand only under a card. Each opens its card and does nothing else.
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let live = pane.state.hand().link.state.is_live();
+    let live = pane.state.hand().connection.status.state.is_live();
     for (text, action) in [
         (cards::RESET_ENTRY, Action::FactoryReset),
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),

@@ -53,7 +53,11 @@ impl DeviceView {
             kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
         });
         kit::right_ui(ui, |ui| {
-            let refusal = pane.state.hand().read_refusal();
+            let refusal = pane
+                .state
+                .hand()
+                .params
+                .read_refusal(&pane.state.hand().connection.status);
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
             read.disabled(refusal)
@@ -76,9 +80,10 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let nothing = hand.params.all_staged().is_empty();
     let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingStaged)));
-    let is_known = hand.sample.speed_set.is_some() && hand.link.state.is_live();
+    let is_known =
+        hand.readings.sample.speed_set.is_some() && hand.connection.status.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
-    let weight = match hand.apply_refusal() {
+    let weight = match hand.params.apply_refusal(&hand.connection.status) {
         None => Weight::Strong,
         Some(_) => Weight::Normal,
     };
@@ -89,8 +94,16 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let drop = Button::said(look, device::UNSTAGE_ALL);
     let copy = Button::said(look, device::COPY);
     let tools = [
-        (apply, why(hand.apply_refusal()), ParamAction::Apply),
-        (undo, why(hand.undo_refusal()), ParamAction::Undo),
+        (
+            apply,
+            why(hand.params.apply_refusal(&hand.connection.status)),
+            ParamAction::Apply,
+        ),
+        (
+            undo,
+            why(hand.params.undo_refusal(&hand.connection.status)),
+            ParamAction::Undo,
+        ),
         (drop, nothing, ParamAction::UnstageAll),
         (copy, unknown, ParamAction::CopyLive),
     ];
@@ -108,7 +121,7 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
     if let Some(doing) = device::doing(book.doing) {
         return (look.say(doing).into(), look.palette.accent);
     }
-    if !hand.link.state.is_live() {
+    if !hand.connection.status.state.is_live() {
         return (look.say(device::NO_HAND).into(), look.palette.warn);
     }
     if let Some(error) = &book.trouble {

@@ -29,7 +29,7 @@ pub(crate) const RESET_WORD: &str = "RESET";
 
 /// The card of what is under way, if something is.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
-    Some(match state.hand().procedure.as_ref()? {
+    Some(match state.hand().procedures.card.as_ref()? {
         Procedure::Calibrate(run) => calibration::card(state, look, run),
         Procedure::Place(run) => place_card(state, look, run),
         Procedure::Reset(run) => reset_card(state, look, run),
@@ -120,7 +120,7 @@ fn keep_card(
 ) -> Card {
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
-    let lost = (!state.hand().link.state.is_live()).then_some(main::REFUSED_OFFLINE);
+    let lost = (!state.hand().connection.status.state.is_live()).then_some(main::REFUSED_OFFLINE);
     let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))

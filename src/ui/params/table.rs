@@ -2,7 +2,7 @@
 //! Every change is an action that stages; nothing here writes.
 
 use crate::app::action::Action;
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::hand::SerialSpeed;
 use crate::params::changes::RowVerdict;
 use crate::params::rows::{ParamId, Value};
@@ -274,7 +274,9 @@ fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 
 fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let live = pane.state.hand().params.live(id);
-    let fresh = pane.state.hand().param_freshness(id);
+    let hand = pane.state.hand();
+    let is_live = hand.connection.is_live();
+    let fresh = hand.params.freshness(id, is_live, pane.state.now);
     let color = pane.look.value(fresh, pane.look.palette.text);
     let age = live.map(|(_, at)| format::age(pane.state.now.since(at)));
     let below = match (age, fresh) {
@@ -373,8 +375,11 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let wanted = wanted.filter(|wanted| Some(*wanted) != live);
     let reason = match wanted {
         None => Some(device::CHANGE_NONE),
-        Some(_) if hand.is_simulated() => Some(device::CHANGE_SIM),
-        Some(_) => hand.write_refusal().map(device::refusal),
+        Some(_) if hand.connection.is_simulated() => Some(device::CHANGE_SIM),
+        Some(_) => hand
+            .params
+            .write_refusal(&hand.connection.status)
+            .map(device::refusal),
     };
     let button = Button::said(look, device::CHANGE)
         .named(&label)

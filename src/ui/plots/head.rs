@@ -93,7 +93,7 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
     let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
-        let history = &pane.state.hand().history;
+        let history = &pane.state.hand().measured.history;
         let series = view.shown_series(pane);
         Action::Save(Export::Plots(history.table(&series, from_s, to_s)))
     });

@@ -13,7 +13,7 @@ const NOTE_SHOWN: usize = 24;
 
 /// The lines.
 pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): (f64, f64)) -> Vec<(f64, Color32)> {
-    let marks = pane.state.hand().history.marks(from_s, to_s);
+    let marks = pane.state.hand().measured.history.marks(from_s, to_s);
     let moment = |mark: &Mark| (mark.at.secs(), told(pane.look, &mark.kind).1);
     marks.map(moment).collect()
 }
@@ -23,7 +23,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let rect = *shown.transform.frame();
     let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
     let mut free_from = rect.left();
-    for mark in pane.state.hand().history.marks(from_s, to_s) {
+    for mark in pane.state.hand().measured.history.marks(from_s, to_s) {
         let x = shown.transform.position_from_point_x(mark.at.secs());
         if x < free_from {
             continue;
@@ -78,7 +78,12 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     // A line is easily missed by some pixels.
     let per_point = shown.transform.dvalue_dpos()[0];
     let by_s = f64::from(theme::STEP) * per_point;
-    let marks = pane.state.hand().history.marks(at_s - by_s, at_s + by_s);
+    let marks = pane
+        .state
+        .hand()
+        .measured
+        .history
+        .marks(at_s - by_s, at_s + by_s);
     let lines = marks.map(|mark| {
         let at = clock(mark.at.secs(), per_point);
         format!("{at}  {}", told(pane.look, &mark.kind).0)

@@ -72,13 +72,13 @@ impl PlotView {
     /// Time went on; nothing that was chosen for one hand is kept for another.
     fn advance(&mut self, pane: &Pane<'_>) {
         let hand = pane.state.hand();
-        if self.hand != hand.endpoint && hand.endpoint.is_some() {
-            self.hand.clone_from(&hand.endpoint);
+        if self.hand != hand.connection.endpoint && hand.connection.endpoint.is_some() {
+            self.hand.clone_from(&hand.connection.endpoint);
             self.view.time.follow();
             self.cursors = Cursors::default();
         }
         let now = pane.state.now.secs();
-        let first = hand.history.first_secs().unwrap_or(now);
+        let first = hand.measured.history.first_secs().unwrap_or(now);
         let window = pane.state.settings.plot_window.seconds();
         self.view.time.advance((first.min(now), now), window);
     }
@@ -156,7 +156,7 @@ impl PlotView {
             steps: line.wished,
             told: (!line.wished).then_some(panel.row.decimals),
             ..ChartCurve::new(
-                Points::Measured(&hand.history, line.series),
+                Points::Measured(&hand.measured.history, line.series),
                 self.stroke(look, line),
             )
         };
@@ -176,7 +176,11 @@ impl PlotView {
         });
         let mut levels = Vec::new();
         if self.thresholds && panel.kind == PlotKind::Force {
-            let joints = hand.joints.iter().filter(|(dof, _)| !self.hidden[*dof]);
+            let joints = hand
+                .controls
+                .joints
+                .iter()
+                .filter(|(dof, _)| !self.hidden[*dof]);
             let force =
                 joints.map(|(dof, joint)| (joint.force.get().into(), look.palette.dof[dof]));
             levels.extend(force);

@@ -111,7 +111,7 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
 
 fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let unknown = pane.state.hand().pose_now().is_none();
+    let unknown = pane.state.hand().pose_now(pane.state.now).is_none();
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
     let at = pane.state.poses.library.place(pose.id).unwrap_or_default();
     let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| edit(PoseEdit::Move(to)));

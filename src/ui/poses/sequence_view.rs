@@ -1,8 +1,8 @@
 //! Sequences: their steps, the dry run on the drawn hand, and the real one. Every change and start is an action.
 
 use crate::app::action::Action;
-use crate::app::hand::Play;
 use crate::hand::PerDof;
+use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
@@ -167,7 +167,7 @@ fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         ui.ctx().request_repaint_after(FRAME);
     }
     let actual = || {
-        let angle = state.hand().sample.angle;
+        let angle = state.hand().readings.sample.angle;
         PerDof::from_fn(|dof| Some(f32::from(angle?.value[dof].documented()?) / 1000.0))
     };
     let pose = shown.map_or_else(actual, |shown| shown.shares);

@@ -1,11 +1,11 @@
 //! Poses as tiles with a drawn hand, in the library and in the overview's strip. Starts nothing by itself.
 
 use crate::app::action::Action;
-use crate::app::hand::Play;
 use crate::app::hands::action::HandsAction;
 use crate::app::poses::PoseState;
 use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
+use crate::poses::Play;
 use crate::poses::library::{EntryId, LibraryPose};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
@@ -32,7 +32,7 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     if let Some(unready) = pane.unready() {
         return Some(unready);
     }
-    let moves = |dof: Dof| !pose.leave[dof] && !pane.state.hand().joints[dof].locked;
+    let moves = |dof: Dof| !pose.leave[dof] && !pane.state.hand().controls.joints[dof].locked;
     let any = Dof::ALL.into_iter().any(moves);
     (!any).then(|| pane.look.say(main::LOCKED))
 }
@@ -152,7 +152,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Keeps the pose of now.
 pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     let look = pane.look;
-    let unknown = pane.state.hand().pose_now().is_none();
+    let unknown = pane.state.hand().pose_now(pane.state.now).is_none();
     let button = button.disabled(unknown.then(|| look.say(poses::CAPTURE_UNKNOWN)));
     if button.ui(ui, look).clicked() {
         let name = look.say(poses::POSE).to_owned();

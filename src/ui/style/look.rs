@@ -1,8 +1,8 @@
 //! Colours and language of a frame, and sentences in that language.
 
-use crate::app::hand::Freshness;
 use crate::app::notices::Level;
 use crate::app::poses::PoseState;
+use crate::app::readings::Freshness;
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;

@@ -1,6 +1,6 @@
 //! From tactile counts to heat, on one scale for all fingers that never changes. Draws only the scale.
 
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::ui::hand::fingertip::{Sense, Tip};
 use crate::ui::kit::{Label, Pane, format};
@@ -17,9 +17,9 @@ const STEPS: u8 = 16;
 /// What is drawn of each fingertip; none where it was never read.
 pub(crate) fn tips(pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
     PerFinger::from_fn(|finger| {
-        let block = pane.state.hand().sample.tactile[finger]?;
+        let block = pane.state.hand().readings.sample.tactile[finger]?;
         Some(Tip {
-            stale: pane.state.hand().tip_freshness(finger) != Freshness::Live,
+            stale: pane.state.hand().tip_freshness(finger, pane.state.now) != Freshness::Live,
             ..tip(pane, finger, &block.value)
         })
     })
@@ -40,9 +40,9 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
         ui.painter().rect_filled(piece, CornerRadius::ZERO, color);
     }
     let hand = pane.state.hand();
-    let touched = Finger::ALL
-        .into_iter()
-        .any(|finger| hand.sample.tactile[finger].is_some() && hand.tare.zero(finger).is_none());
+    let touched = Finger::ALL.into_iter().any(|finger| {
+        hand.readings.sample.tactile[finger].is_some() && hand.readings.tare.zero(finger).is_none()
+    });
     let (words, tip, color) = if touched {
         (
             panels::TOUCH_NO_ZERO,
@@ -58,7 +58,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {
     let mut heat = [None; 8];
-    if let Some(zero) = pane.state.hand().tare.zero(finger) {
+    if let Some(zero) = pane.state.hand().readings.tare.zero(finger) {
         for ((heat, raw), zero) in heat.iter_mut().zip(block.raw).zip(zero.raw) {
             *heat = known(raw).then(|| part(raw, zero));
         }

@@ -145,7 +145,7 @@ impl TouchView {
             kit::pick_ui(ui, look, shown, all);
             let assumed = Label::note(look, panels::ASSUMED).ui(ui);
             assumed.on_hover_text(look.tip(panels::ASSUMED));
-            let zero = pane.state.hand().tare.zero(finger);
+            let zero = pane.state.hand().readings.tare.zero(finger);
             let tared = match zero {
                 None => look.say(panels::NO_ZERO).to_owned(),
                 Some(zero) => panels::zero(look, zero, pane.state.now),
@@ -180,7 +180,7 @@ impl TouchView {
         if button.ground(ui, look, place, id).clicked() {
             self.detail.finger = finger;
         }
-        let block = pane.state.hand().sample.tactile[finger];
+        let block = pane.state.hand().readings.sample.tactile[finger];
         let block = block.map(|block| block.value);
         let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
         let (below, color) = match (sense, self.detail.hold(finger)) {
@@ -204,7 +204,7 @@ impl TouchView {
             Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
-        let freshness = pane.state.hand().tip_freshness(finger);
+        let freshness = pane.state.hand().tip_freshness(finger, pane.state.now);
         let builder = egui::UiBuilder::new()
             .max_rect(place.shrink(theme::STEP))
             .layout(Layout::bottom_up(Align::Center));
@@ -230,14 +230,15 @@ impl TouchView {
     fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let hand = pane.state.hand();
-        let offline = (!hand.link.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
+        let offline =
+            (!hand.connection.status.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let finger = self.detail.finger;
         let name = look.say(words::finger(finger));
         let one = look.told(panels::TARE_ONE, name);
         let all = look.say(panels::TARE_ALL);
-        let nothing = (!hand.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
+        let nothing = (!hand.readings.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
         let undo = look.say(panels::TARE_UNDO);
-        let offered = hand.tare.offered(pane.state.now);
+        let offered = hand.readings.tare.offered(pane.state.now);
         ui.horizontal(|ui| {
             for (words, tip, disabled, action) in [
                 (all, panels::TARE_ALL.tip(), offline, Action::Tare(None)),

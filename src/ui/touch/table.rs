@@ -70,7 +70,7 @@ fn direction(block: &TactileBlock, look: Look) -> String {
 /// One number of one fingertip.
 pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
     let look = pane.look;
-    let block = pane.state.hand().sample.tactile[finger];
+    let block = pane.state.hand().readings.sample.tactile[finger];
     let text = block.map(|block| (line.value)(&block.value, look));
     number_ui(ui, pane, finger, (look.say(line.name), text));
 }
@@ -78,7 +78,10 @@ pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &Touc
 /// A number that is known or not, named for accessibility.
 fn number_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, (name, text): (&str, Option<String>)) {
     let look = pane.look;
-    let color = look.value(pane.state.hand().tip_freshness(finger), look.palette.text);
+    let color = look.value(
+        pane.state.hand().tip_freshness(finger, pane.state.now),
+        look.palette.text,
+    );
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
     let name = look.told(words::finger(finger), name);
     Label::new(&text, color).number().named(&name).ui(ui);
@@ -121,9 +124,9 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
 /// A channel as sent, and its change from its zero.
 fn channel_text(pane: &Pane<'_>, finger: Finger, channel: usize) -> Option<String> {
     let hand = pane.state.hand();
-    let raw = hand.sample.tactile[finger]?.value.raw;
+    let raw = hand.readings.sample.tactile[finger]?.value.raw;
     let raw = i64::from(*raw.get(channel)?);
-    let zero = hand.tare.zero(finger);
+    let zero = hand.readings.tare.zero(finger);
     let zero = zero.and_then(|zero| zero.raw.get(channel).copied());
     let change = zero.map(|zero| raw - i64::from(zero));
     let sign = if change > Some(0) { "+" } else { "" };

@@ -80,15 +80,15 @@ impl TipChannels {
     fn plot_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         let look = pane.look;
         let hand = pane.state.hand();
-        let zero = hand.tare.zero(finger).filter(|_| self.tared);
+        let zero = hand.readings.tare.zero(finger).filter(|_| self.tared);
         let now = pane.state.now.secs();
-        let first = hand.history.first_secs().unwrap_or(now);
+        let first = hand.measured.history.first_secs().unwrap_or(now);
         self.chart
             .time
             .advance((first.min(now), now), self.window_s);
         let curve = |(channel, number): (u8, usize)| {
             let zero = zero.and_then(|zero| zero.raw.get(number).copied());
-            let points = Points::Measured(&hand.history, Series::Channel(channel, finger));
+            let points = Points::Measured(&hand.measured.history, Series::Channel(channel, finger));
             ChartCurve {
                 zero: [0.0, zero.map_or(0.0, f64::from)],
                 told: Some(0),

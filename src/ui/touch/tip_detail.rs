@@ -1,6 +1,6 @@
 //! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
 
-use crate::app::hand::Freshness;
+use crate::app::readings::Freshness;
 use crate::app::readings::friction::{Grip, GripState, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
@@ -53,8 +53,8 @@ impl TipDetail {
     /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
     pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
         for finger in Finger::ALL {
-            let block = pane.state.hand().sample.tactile[finger];
-            let live = pane.state.hand().tip_freshness(finger) == Freshness::Live;
+            let block = pane.state.hand().readings.sample.tactile[finger];
+            let live = pane.state.hand().tip_freshness(finger, pane.state.now) == Freshness::Live;
             let block = block.filter(|_| live).map(|block| block.value);
             self.holds[finger] = self.holds[finger].next(Grip::of(block.as_ref()), self.friction());
         }
@@ -94,8 +94,8 @@ impl TipDetail {
     }
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
-        let block = pane.state.hand().sample.tactile[self.finger].as_ref();
-        let freshness = pane.state.hand().tip_freshness(self.finger);
+        let block = pane.state.hand().readings.sample.tactile[self.finger].as_ref();
+        let freshness = pane.state.hand().tip_freshness(self.finger, pane.state.now);
         (block.map(|block| &block.value), freshness)
     }
 
@@ -210,7 +210,7 @@ impl TipDetail {
 
     fn forces_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let history = &pane.state.hand().history;
+        let history = &pane.state.hand().measured.history;
         let own = look.palette.dof[self.finger.bend()];
         let lines = [
             (Touch::Normal, panels::TIP_NORMAL, own),

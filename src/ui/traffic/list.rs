@@ -186,7 +186,7 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 /// Copies one frame, also as lines of a program.
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
     ui.label(pane.look.say(traffic::COPY_AS));
-    let endpoint = pane.state.hand().endpoint.as_ref();
+    let endpoint = pane.state.hand().connection.endpoint.as_ref();
     for form in SnippetFormat::ALL {
         if let Some(text) = form.text(&frame.bytes, endpoint)
             && ui.button(form.name()).clicked()

@@ -55,7 +55,7 @@ impl TrafficView {
     }
 
     fn update(&mut self, pane: &Pane<'_>) {
-        let live = &pane.state.hand().traffic;
+        let live = &pane.state.hand().connection.traffic;
         // Another link counts its frames from the beginning.
         if live.newest() < self.filter.cleared {
             self.filter.cleared = 0;
@@ -102,9 +102,9 @@ impl TrafficView {
     }
 
     fn why_empty(&self, pane: &Pane<'_>) -> Text {
-        if pane.state.hand().endpoint.is_none() {
+        if pane.state.hand().connection.endpoint.is_none() {
             traffic::EMPTY_LINK
-        } else if pane.state.hand().traffic.frames().is_empty() {
+        } else if pane.state.hand().connection.traffic.frames().is_empty() {
             traffic::EMPTY
         } else {
             traffic::EMPTY_FILTER
@@ -113,7 +113,7 @@ impl TrafficView {
 
     fn count(&self, pane: &Pane<'_>) -> String {
         let look = pane.look;
-        let live = &pane.state.hand().traffic;
+        let live = &pane.state.hand().connection.traffic;
         let (shown, all) = (self.passed.len(), live.frames().len());
         let of = look.say(traffic::SHOWN_OF);
         let text = format!("{shown} {of} {all} {}", look.say(traffic::FRAMES));
@@ -135,7 +135,7 @@ impl TrafficView {
         let pause = Button::said(look, text);
         let pause = pause.named(look.say(traffic::PAUSE_NAME)).switch(is_paused);
         if pause.ui(ui, look).clicked() {
-            let live = &pane.state.hand().traffic;
+            let live = &pane.state.hand().connection.traffic;
             self.paused = (!is_paused).then(|| Paused {
                 frames: live.frames().clone(),
                 changes: live.changes(),
@@ -156,7 +156,7 @@ impl TrafficView {
         let clear = Button::said(look, traffic::CLEAR);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
         if clear.ui(ui, look).clicked() {
-            let newest = pane.state.hand().traffic.newest();
+            let newest = pane.state.hand().connection.traffic.newest();
             self.filter.cleared = self.paused.as_ref().map_or(newest, |paused| paused.newest);
             self.choice = ChosenFrames::default();
         }

@@ -36,7 +36,7 @@ impl TuneView {
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
             kit::head_ui(ui, look, look.say(tune::SERIES), |_| ());
-            if pane.state.hand().runs_series() {
+            if pane.state.hand().series.is_some() {
                 tune_live::live_ui(ui, pane, &mut self.live)
             } else {
                 self.rest_ui(ui, pane)
@@ -73,13 +73,13 @@ impl TuneView {
 /// Why the series cannot begin, in words.
 fn refusal(pane: &Pane<'_>) -> Option<String> {
     let (look, hand, plan) = (pane.look, pane.state.hand(), &pane.state.trials.plan);
-    if !hand.link.state.is_live() {
+    if !hand.connection.status.state.is_live() {
         return Some(look.say(main::REFUSED_OFFLINE).into());
     }
     if plan.check().is_err() {
         return Some(look.say(tune::PLAN_WRONG).into());
     }
-    hand.start_refusal(plan).map(|why| match why {
+    hand.series_refusal(plan).map(|why| match why {
         StartRefusal::NotArmed => look.say(tune::NEED_ARM).into(),
         StartRefusal::Runs => look.say(main::SERIES_RUNS).into(),
         StartRefusal::Locked(dof) => look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]),

@@ -66,7 +66,7 @@ impl TuneForm {
         self.remember(&plan);
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
-        let runs = pane.state.hand().runs_series();
+        let runs = pane.state.hand().series.is_some();
         let mut pass = Pass {
             wrong,
             pane,
@@ -186,7 +186,7 @@ impl Pass<'_, '_> {
             let mut taken = None;
             egui::Popup::menu(&response).show(|ui| {
                 ui.set_width(220.0);
-                let now = state.hand().pose_now();
+                let now = state.hand().pose_now(state.now);
                 let button = egui::Button::new(look.say(tune::TAKE_NOW));
                 if ui.add_enabled(now.is_some(), button).clicked() {
                     taken = now.map(|angles| angles.map(Some));

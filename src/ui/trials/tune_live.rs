@@ -76,7 +76,7 @@ fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart
     }
     let chart = &mut chart.view;
     ui.horizontal(|ui| levels_ui(ui, pane, run));
-    let history = &pane.state.hand().history;
+    let history = &pane.state.hand().measured.history;
     let (from_s, to_s) = (run.since.secs(), pane.state.now.secs());
     let joints = run.plan.joints().filter(|_| run.view.setting.is_some());
     let lines: Vec<(Dof, Series)> = joints

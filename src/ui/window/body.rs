@@ -1,7 +1,7 @@
 //! The open view beside the joints of the hand that is shown, and what the views remember between frames.
 
-use crate::app::hand::slot::SlotId;
 use crate::app::layout::WindowRoom;
+use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::{self, FaultsView};

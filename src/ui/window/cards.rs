@@ -11,7 +11,7 @@ use crate::ui::trials::compare;
 
 /// True while a card covers the body of the window.
 pub(super) fn is_covered(state: &State) -> bool {
-    state.hand().procedure.is_some()
+    state.hand().procedures.card.is_some()
         || state.hand().params.question.is_some()
         || state.trials.to_confirm.is_some()
         || state.sessions.to_delete.is_some()

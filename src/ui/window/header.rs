@@ -55,8 +55,8 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let armed = pane.state.hand().is_armed();
-    let refusal = pane.state.hand().arm_refusal();
+    let armed = pane.state.hand().connection.is_armed();
+    let refusal = pane.state.hand().arm_refusal(pane.state.now);
     let (text, name, weight) = if armed {
         (main::DISARM, main::DISARM_NAME, Weight::Armed)
     } else {
@@ -100,12 +100,12 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
 
 /// Whether this hand is recorded, and the switch for it.
 fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    if pane.state.timeline.is_some() || pane.state.hand().endpoint.is_none() {
+    if pane.state.timeline.is_some() || pane.state.hand().connection.endpoint.is_none() {
         return;
     }
     let look = pane.look;
     let palette = look.palette;
-    let simulated = pane.state.hand().is_simulated();
+    let simulated = pane.state.hand().connection.is_simulated();
     let (text, color, tip) = match &pane.state.hand().recording {
         None => (sessions::NOT_RECORDING, palette.faint, String::new()),
         Some(recording) => {
@@ -172,7 +172,7 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let look = pane.look;
-    let count = pane.state.hand().faults.unseen().count();
+    let count = pane.state.hand().readings.faults.unseen().count();
     let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
     let text = format!("{before} {count} {after}");
     let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
@@ -185,9 +185,9 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
-    let simulated = pane.state.hand().is_simulated();
+    let simulated = pane.state.hand().connection.is_simulated();
     let recorded = pane.state.timeline.is_some();
-    let (text, fill, color) = match (&pane.state.hand().endpoint, simulated) {
+    let (text, fill, color) = match (&pane.state.hand().connection.endpoint, simulated) {
         _ if recorded => (sessions::RECORDED, palette.warn, palette.on_accent),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
@@ -203,7 +203,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
     }
-    if let (Some(endpoint), false) = (&pane.state.hand().endpoint, simulated) {
+    if let (Some(endpoint), false) = (&pane.state.hand().connection.endpoint, simulated) {
         let text = endpoint.to_string();
         let most = ui.available_width() * 0.5;
         let width = kit::text_width(ui, &text, theme::number()) + 1.0;
@@ -259,8 +259,8 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
-    let stats = &pane.state.hand().stats;
-    let live = pane.state.hand().link.state.is_live();
+    let stats = &pane.state.hand().connection.stats;
+    let live = pane.state.hand().connection.status.state.is_live();
     let color = if live { palette.text } else { palette.faint };
     let errors = stats.timeouts
         + stats.checksum_errors

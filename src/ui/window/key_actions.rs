@@ -1,11 +1,12 @@
 //! What a person asks for by keys that act everywhere.
 
 use crate::app::action::Action;
-use crate::app::hand::held_key::HoldKey;
-use crate::app::hand::{HandState, Preset};
+use crate::app::hand::HoldKey;
+use crate::app::hands::Hand;
 use crate::app::hands::action::HandsAction;
 use crate::app::settings::Zoom;
 use crate::app::state::State;
+use crate::poses::Preset;
 use crate::ui::joints::row::JointRow;
 use crate::ui::kit::Pane;
 use crate::ui::poses::tiles as pose_tiles;
@@ -22,7 +23,7 @@ pub(super) fn key_action(
     wish: Wish,
 ) -> Option<Action> {
     let state = pane.state;
-    let armed = state.hand().is_armed();
+    let armed = state.hand().connection.is_armed();
     let preset = |preset| armed.then_some(Action::Preset(preset));
     match wish {
         // These are not the views' own: what opens something, and what goes ahead of all others at the end of the frame.
@@ -38,9 +39,14 @@ pub(super) fn key_action(
             entry.map(|entry| pose_tiles::press(state, entry))
         }
         Wish::AngleUnit => Some(Action::AngleUnit(state.settings.angle_unit.next())),
-        Wish::Tare if !state.hand().link.state.is_live() => None,
+        Wish::Tare if !state.hand().connection.status.state.is_live() => None,
         Wish::Tare => Some(Action::Tare(None)),
-        Wish::UndoTare => state.hand().tare.can_undo().then_some(Action::UndoTare),
+        Wish::UndoTare => state
+            .hand()
+            .readings
+            .tare
+            .can_undo()
+            .then_some(Action::UndoTare),
         Wish::Language => Some(Action::Language(state.settings.language.other())),
         Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
         Wish::Pause => {
@@ -55,7 +61,7 @@ pub(super) fn key_action(
         }
         Wish::Hand(_) => None,
         Wish::Joint(dof) => {
-            JointRow::new(dof, pane).focus(ui, armed && !state.hand().joints[dof].locked);
+            JointRow::new(dof, pane).focus(ui, armed && !state.hand().controls.joints[dof].locked);
             None
         }
         Wish::LinkFingers => {
@@ -79,7 +85,8 @@ pub(super) fn held_key_action(ui: &Ui, state: &State, wishes: &[Wish]) -> Option
     if is_held {
         ui.request_repaint();
     }
-    (is_held || state.hands.iter().any(HandState::is_key_held)).then_some(Action::HoldKey(key))
+    let is_believed = |hand: &Hand| hand.controls.held.is_held(state.now);
+    (is_held || state.hands.iter().any(is_believed)).then_some(Action::HoldKey(key))
 }
 
 /// What the keys of the zoom did in the last frame, to be kept.

@@ -1,7 +1,7 @@
 //! Every key that acts everywhere: one table for what it does, what it is called, and the list that shows it. Keys of
 //! one control, such as the arrows of a track, are that control's own. Carries nothing out.
 
-use crate::app::hand::held_key::HoldKey;
+use crate::app::hand::HoldKey;
 use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::ViewRequest;

@@ -27,7 +27,7 @@ mod stop_first;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
-use crate::app::hand::HandState;
+use crate::app::hands::rests;
 use crate::app::sessions::SessionAction;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -117,7 +117,7 @@ impl Window {
         }
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
-        let mut wishes = if state.hands.iter().any(HandState::runs_series) {
+        let mut wishes = if state.hands.iter().any(|hand| hand.series.is_some()) {
             keys::take_any(ui)
         } else {
             keys::take(ui, escape)
@@ -166,7 +166,7 @@ impl Window {
             || self.cards.informs()
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
-        if !is_open || !state.hands.iter().all(HandState::rests) {
+        if !is_open || !state.hands.iter().all(|hand| rests(hand, state.now)) {
             return Escape::Stops;
         }
         // Popups, fields and cards do so themselves.

@@ -2,13 +2,14 @@
 //! reach, the newest message, and the note being written. It has its place always, so nothing moves when it changes.
 
 use crate::app::action::Action;
-use crate::app::hand::mover::Mover;
-use crate::app::hand::{Freshness, Play};
+use crate::app::hands::{Mover, rests};
 use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
+use crate::app::readings::Freshness;
 use crate::hand::{Dof, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::Dialling;
+use crate::poses::Play;
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
@@ -70,7 +71,7 @@ impl Warning {
 
     /// Tells when the link is tried again.
     fn retried(mut self, pane: &Pane<'_>) -> Self {
-        self.aside = match pane.state.hand().link.dialling {
+        self.aside = match pane.state.hand().connection.status.dialling {
             Dialling::Idle => String::new(),
             Dialling::Trying { attempt } => pane.look.told(main::LOST_TRYING, attempt),
             Dialling::Waiting { until, .. } => {
@@ -120,8 +121,8 @@ fn unsent(pane: &Pane<'_>) -> Option<Warning> {
 fn alarm(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.state.hand();
     let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
-    let hand = hands.find(|hand| matches!(hand.link.hold, Hold::Alarm { .. }))?;
-    let title = if hand.link.feedback_in_doubt {
+    let hand = hands.find(|hand| matches!(hand.connection.status.hold, Hold::Alarm { .. }))?;
+    let title = if hand.connection.status.feedback_in_doubt {
         main::DOUBT_TITLE
     } else {
         main::ALARM_TITLE
@@ -139,21 +140,22 @@ fn lost_elsewhere(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.state.hand().label.slot;
     let mut others = pane.state.hands.iter();
     let lost = others.find(|hand| {
-        let is_lost = hand.link.trouble.is_some() && hand.sample.angle.is_some();
-        hand.label.slot != shown && hand.link.state == LinkState::Offline && is_lost
+        let is_lost =
+            hand.connection.status.trouble.is_some() && hand.readings.sample.angle.is_some();
+        hand.label.slot != shown && hand.connection.status.state == LinkState::Offline && is_lost
     })?;
     let warning = Warning::new(pane, main::LOST_TITLE, pane.look.palette.bad);
     Some(warning.of(pane, &lost.label.name))
 }
 
 fn lost(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().link;
+    let link = &pane.state.hand().connection.status;
     if link.state != LinkState::Offline && link.state != LinkState::Identifying {
         return None;
     }
     let cause = errors::trouble(pane.look, link.trouble.as_ref()?);
     // A hand that has answered may be moving; one that never did is only not reached.
-    let (title, color) = match pane.state.hand().sample.angle {
+    let (title, color) = match pane.state.hand().readings.sample.angle {
         Some(_) => (main::LOST_TITLE, pane.look.palette.bad),
         None => (main::UNREACHABLE_TITLE, pane.look.palette.warn),
     };
@@ -161,7 +163,7 @@ fn lost(pane: &Pane<'_>) -> Option<Warning> {
 }
 
 fn faults(pane: &Pane<'_>) -> Option<Warning> {
-    let (look, sample) = (pane.look, &pane.state.hand().sample);
+    let (look, sample) = (pane.look, &pane.state.hand().readings.sample);
     let faults = sample.faults.filter(|_| sample.has_fault())?;
     let all = Dof::ALL
         .into_iter()
@@ -182,7 +184,7 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
 }
 
 fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().link;
+    let link = &pane.state.hand().connection.status;
     let other = || Warning::new(pane, main::OTHER_CONTROLLER_TITLE, pane.look.palette.warn);
     let warning = (link.state.is_live() && link.other_controller).then(other)?;
     Some(match &link.foreign_setpoint {
@@ -196,15 +198,15 @@ fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
 
 /// A setpoint that the armed hand ignores or limits.
 fn not_taken(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().link;
+    let link = &pane.state.hand().connection.status;
     let conflict = link.setpoint_not_taken.filter(|_| link.armed.is_some())?;
     let warning = Warning::new(pane, main::NOT_TAKEN_TITLE, pane.look.palette.warn);
     Some(warning.more(words::setpoint(pane.look, &conflict)))
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
-    let asked = pane.state.hand().sample.angle?.asked;
-    let link = &pane.state.hand().link;
+    let asked = pane.state.hand().readings.sample.angle?.asked;
+    let link = &pane.state.hand().connection.status;
     // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
     let expected = link.state.is_live() && !link.line_left;
     let is_stale = expected && pane.freshness(Some(asked)) == Freshness::Stale;
@@ -215,8 +217,8 @@ fn stale(pane: &Pane<'_>) -> Option<Warning> {
 
 /// A hand that is asked for the first time, and has not said no yet.
 fn connecting(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().link;
-    let hand = pane.state.hand().endpoint.as_ref()?;
+    let link = &pane.state.hand().connection.status;
+    let hand = pane.state.hand().connection.endpoint.as_ref()?;
     let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
     // One that answers at once is not announced.
     let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
@@ -229,7 +231,7 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
 fn empty(pane: &Pane<'_>) -> Option<Warning> {
     let warning = || Warning::new(pane, main::EMPTY_TITLE, pane.look.palette.accent);
     let help = Help::View(View::Connection, main::EMPTY_OPEN);
-    let is_none = pane.state.hand().endpoint.is_none();
+    let is_none = pane.state.hand().connection.endpoint.is_none();
     is_none.then(|| warning().help(help))
 }
 
@@ -237,7 +239,7 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
 fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
     let say = |text: Text| look.say(text).to_owned();
-    Some(match pane.state.hand().mover()? {
+    Some(match Mover::of(pane.state.hand(), pane.state.now)? {
         Mover::Stop => (say(window::MOVES_STOP), None),
         Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
@@ -346,7 +348,7 @@ impl StatusLine {
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
-        let hint = if pane.state.hand().rests() {
+        let hint = if rests(pane.state.hand(), pane.state.now) {
             panels::NOTE_HINT
         } else {
             panels::NOTE_HINT_MOVING
@@ -399,7 +401,7 @@ fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });
     let why = new.next().filter(|why| is_rest && why.level > newest.level);
     let shown = why.unwrap_or(newest);
-    let moves = pane.state.hand().mover().is_some();
+    let moves = Mover::of(pane.state.hand(), pane.state.now).is_some();
     (shown.level > Level::Info || !moves).then_some(shown)
 }
 
@@ -414,7 +416,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
-            let words = if pane.state.hand().link.state.is_live() {
+            let words = if pane.state.hand().connection.status.state.is_live() {
                 window::AT_REST
             } else {
                 window::NO_HAND

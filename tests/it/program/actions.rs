@@ -7,10 +7,9 @@ use handscope::app::action::Action;
 use handscope::app::effect::Effect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
-use handscope::app::hand::held_key::HoldKey;
-use handscope::app::hand::{Play, Preset};
+use handscope::app::hand::HoldKey;
 use handscope::app::hands::action::HandsAction;
-use handscope::app::inputs::InputAction;
+use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::layout::Layout;
 use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
@@ -30,6 +29,7 @@ use handscope::link::PollPriority;
 use handscope::params::rows::{ParamId, Value};
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{EntryId, PoseId, SequenceId};
+use handscope::poses::{Play, Preset};
 use handscope::sim::JournalEntry;
 use handscope::transport::Endpoint;
 use std::collections::BTreeSet;
@@ -53,10 +53,10 @@ fn inputs() -> Vec<InputAction> {
         InputAction::Show(None),
         InputAction::JoinDds(None),
         InputAction::Mirror(None),
-        InputAction::GrantStream,
-        InputAction::GrantDds,
-        InputAction::GrantPad,
-        InputAction::GrantMirror,
+        InputAction::Grant(InputSource::Stream),
+        InputAction::Grant(InputSource::Dds),
+        InputAction::Grant(InputSource::Pad),
+        InputAction::Grant(InputSource::Mirror),
         InputAction::GrantClient(Default::default()),
         InputAction::TakeBack,
         InputAction::Limit(FollowLimits::default()),
@@ -321,7 +321,7 @@ impl Bench {
     /// What reaches the hand because of this.
     async fn reached_by(&mut self, action: Action) -> BTreeSet<Reached> {
         self.forget();
-        let sample = self.app.live().hand().sample;
+        let sample = self.app.live().hand().readings.sample;
         let angles = Dof::ALL.map(|dof| sample.angle.unwrap().value[dof].raw());
         self.act(action);
         self.run(400).await;
@@ -415,7 +415,7 @@ async fn nothing_but_a_stop_reaches_a_hand_behind_a_recording() {
     let things = bench.things();
     let [recording, ..] = recorded::three(bench.folder.path());
     for action in all(things) {
-        if bench.state().timeline.is_none() || !bench.app.live().hand().is_armed() {
+        if bench.state().timeline.is_none() || !bench.app.live().hand().connection.is_armed() {
             bench.act(Action::Session(SessionAction::Close));
             bench.run(1000).await;
             bench.arm().await;
@@ -451,7 +451,7 @@ async fn nothing_but_a_stop_reaches_a_hand_behind_an_exhibition() {
             is_there || matches!(action, Action::Exhibit(_)),
             "{action:?}"
         );
-        assert!(!bench.hand().is_armed(), "{action:?}");
+        assert!(!bench.hand().connection.is_armed(), "{action:?}");
     }
 }
 
@@ -467,11 +467,11 @@ async fn in_a_series_nothing_passes_that_would_come_between_it_and_the_hand() {
         bench.things();
         bench.act(Action::Trial(TrialAction::Start));
         bench.run(300).await;
-        let before = Dof::ALL.map(|dof| bench.hand().joints[dof].speed);
+        let before = Dof::ALL.map(|dof| bench.hand().controls.joints[dof].speed);
         bench.act(action.clone());
         bench.run(300).await;
-        assert!(bench.hand().runs_series(), "{action:?}");
-        let after = Dof::ALL.map(|dof| bench.hand().joints[dof].speed);
+        assert!(bench.hand().series.is_some(), "{action:?}");
+        let after = Dof::ALL.map(|dof| bench.hand().controls.joints[dof].speed);
         assert_eq!(before, after, "{action:?}");
     }
 }
@@ -491,6 +491,6 @@ async fn nothing_that_passes_in_the_frame_of_a_stop_moves_the_hand() {
         let reached = bench.reached_by(action.clone()).await;
         let allowed = [Reached::Hold, Reached::Cleared, Reached::Limit].into();
         assert!(reached.is_subset(&allowed), "{action:?}: {reached:?}");
-        assert!(!bench.hand().is_armed(), "{action:?}");
+        assert!(!bench.hand().connection.is_armed(), "{action:?}");
     }
 }

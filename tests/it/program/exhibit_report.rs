@@ -30,7 +30,7 @@ impl Bench {
         let is_idle = |stage| stage == Some(ExhibitStage::Idle);
         for _ in 0..100 {
             self.run(100).await;
-            if is_idle(self.stage()) && !self.hand().is_armed() {
+            if is_idle(self.stage()) && !self.hand().connection.is_armed() {
                 break;
             }
         }

@@ -56,14 +56,20 @@ async fn the_first_start_shows_the_simulated_hand_live_and_writes_nothing() {
     use handscope::history::Series;
     let (app, _) = begun(None, Settings::default()).await;
     let (state, hand) = (app.state(), app.state().hand());
-    assert_eq!(hand.link.state, LinkState::Monitoring);
-    assert!(hand.is_simulated());
-    assert_eq!(hand.stats.writes, 0);
-    assert!(hand.stats.state_hz > 50.0, "{:?}", hand.stats);
+    assert_eq!(hand.connection.status.state, LinkState::Monitoring);
+    assert!(hand.connection.is_simulated());
+    assert_eq!(hand.connection.stats.writes, 0);
+    assert!(
+        hand.connection.stats.state_hz > 50.0,
+        "{:?}",
+        hand.connection.stats
+    );
     assert_eq!(state.settings.endpoint, None, "a start is not a choice");
     let mut line = Trace::default();
     let series = Series::Joint(Quantity::Angle, Dof::Index);
-    hand.history.trace(series, 0.0, 1.0, 800, &mut line);
+    hand.measured
+        .history
+        .trace(series, 0.0, 1.0, 800, &mut line);
     assert_eq!(line.segments.len(), 1);
     assert!(line.points().count() > 50);
 }
@@ -157,8 +163,8 @@ async fn the_plan_of_trials_is_kept_and_moves_nothing_when_it_is_read() {
     let (app, _) = begun(None, settings.clone()).await;
     let state = app.state();
     assert_eq!(state.trials.plan, plan);
-    assert!(!state.hand().is_armed() && !state.hand().runs_series());
-    assert_eq!(state.hand().stats.writes, 0);
+    assert!(!state.hand().connection.is_armed() && !state.hand().series.is_some());
+    assert_eq!(state.hand().connection.stats.writes, 0);
     let newer: toml::Table = "repeats = \"as often as it takes\"".parse().unwrap();
     let newer = Settings {
         trial_plan: Some(newer.into()),

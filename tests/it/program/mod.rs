@@ -18,7 +18,7 @@ use crate::setup::link::to_hand;
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::hand::HandState;
+use handscope::app::hands::Hand;
 use handscope::app::notices::NoticeKind;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
@@ -70,7 +70,7 @@ impl Bench {
             seen: 0,
         };
         bench.run(1000).await;
-        assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+        assert_eq!(bench.hand().connection.status.state, LinkState::Monitoring);
         bench
     }
 
@@ -93,7 +93,7 @@ impl Bench {
     async fn arm(&mut self) {
         self.act(Action::Arm);
         self.run(100).await;
-        assert!(self.hand().is_armed());
+        assert!(self.hand().connection.is_armed());
         self.forget();
     }
 
@@ -123,16 +123,16 @@ impl Bench {
         self.app.state()
     }
 
-    fn hand(&self) -> &HandState {
+    fn hand(&self) -> &Hand {
         self.app.state().hand()
     }
 
     fn angle(&self, dof: Dof) -> i16 {
-        self.hand().sample.angle.unwrap().value[dof].raw()
+        self.hand().readings.sample.angle.unwrap().value[dof].raw()
     }
 
     fn target(&self, dof: Dof) -> Option<i16> {
-        self.hand().joints[dof].target.map(Angle::get)
+        self.hand().controls.joints[dof].target.map(Angle::get)
     }
 
     fn told(&self) -> Vec<NoticeKind> {

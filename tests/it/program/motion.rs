@@ -7,11 +7,11 @@ use crate::setup::link::{missing, to_hand};
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::hand::Preset;
 use handscope::app::notices::{NoticeKind, RequestKind};
 use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandSample, Moment, Speed, Timed};
 use handscope::link::{Owner, RequestError};
+use handscope::poses::Preset;
 use handscope::record::{ArmRefusal, Hold, LinkState, Record, WriteFate};
 use handscope::sim::SimConfig;
 use handscope::transport::Endpoint;
@@ -41,7 +41,7 @@ async fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
         Some(at),
         "the slider shows where the joint is"
     );
-    let kept = bench.hand().joints[Dof::Index].force;
+    let kept = bench.hand().controls.joints[Dof::Index].force;
     assert_eq!(kept, Force::RATED, "kept for arming");
 }
 
@@ -51,7 +51,7 @@ async fn arming_sends_the_staged_limits_and_no_angle() {
     bench.act(Action::Speed(Some(Dof::Ring), Speed::MIN));
     bench.act(Action::Arm);
     bench.run(300).await;
-    assert!(bench.hand().is_armed());
+    assert!(bench.hand().connection.is_armed());
     let mut speeds = [Speed::GENTLE.get(); 6];
     speeds[Dof::Ring as usize] = Speed::MIN.get();
     let written = bench.written();
@@ -145,14 +145,14 @@ async fn an_armed_joint_moves_and_stop_holds_it() {
         "{start} {under_way}"
     );
     bench.act(Action::Stop);
-    assert!(!bench.hand().is_armed());
+    assert!(!bench.hand().connection.is_armed());
     bench.act(Action::Target(Dof::Index, Angle::MAX));
     bench.run(1500).await;
     let hand = bench.hand();
     assert!(
-        matches!(hand.link.hold, Hold::Confirmed { .. }),
+        matches!(hand.connection.status.hold, Hold::Confirmed { .. }),
         "{:?}",
-        hand.link
+        hand.connection.status
     );
     let is_told = |what: &NoticeKind| matches!(what, NoticeKind::HoldConfirmed { .. });
     assert!(bench.told().iter().any(is_told));
@@ -170,7 +170,7 @@ async fn stop_works_in_every_live_state_and_again() {
         bench.forget();
         bench.act(Action::Stop);
         bench.run(30).await;
-        assert_eq!(bench.hand().link.state, LinkState::Holding);
+        assert_eq!(bench.hand().connection.status.state, LinkState::Holding);
         bench.act(Action::Stop);
         bench.run(1000).await;
         assert!(bench.addresses().contains(&ANGLE_SET), "the pose is held");
@@ -185,18 +185,18 @@ async fn another_hand_inherits_nothing() {
     bench.run(20).await;
     bench.act(Action::Connect("rs485:y".parse().unwrap()));
     let other: Endpoint = "rs485:y".parse().unwrap();
-    while bench.hand().endpoint.as_ref() != Some(&other) {
+    while bench.hand().connection.endpoint.as_ref() != Some(&other) {
         bench.run(10).await;
     }
-    assert_eq!(bench.hand().sample, HandSample::default());
+    assert_eq!(bench.hand().readings.sample, HandSample::default());
     assert_eq!(bench.target(Dof::Index), None);
-    assert!(!bench.hand().is_armed());
-    let first = bench.hand().history.first_secs();
+    assert!(!bench.hand().connection.is_armed());
+    let first = bench.hand().measured.history.first_secs();
     assert_eq!(first, None, "its curves are not shown under the new name");
     bench.run(1000).await;
     bench.forget();
     bench.run(1000).await;
-    assert!(!bench.hand().is_armed());
+    assert!(!bench.hand().connection.is_armed());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
@@ -206,13 +206,13 @@ async fn leaving_an_armed_hand_holds_it_first() {
     bench.act(Action::Target(Dof::Index, Angle::MIN));
     bench.run(300).await;
     bench.act(Action::Disconnect);
-    assert!(bench.hand().endpoint.is_some());
+    assert!(bench.hand().connection.endpoint.is_some());
     bench.run(700).await;
-    assert_eq!(bench.hand().endpoint, None);
+    assert_eq!(bench.hand().connection.endpoint, None);
     bench.act(Action::Connect("rs485:x".parse().unwrap()));
     bench.run(500).await;
-    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
-    let history = &bench.hand().history;
+    assert_eq!(bench.hand().connection.status.state, LinkState::Monitoring);
+    let history = &bench.hand().measured.history;
     let first = history.first_secs().expect("measurements");
     let last = bench.state().now.secs();
     assert!(last - first > 1.2, "and its curves: {first} to {last}");
@@ -234,7 +234,7 @@ async fn closing_holds_an_armed_hand_first_and_ends_in_time() {
         bench.run(10).await;
     }
     assert!(bench.clock.now().since(asked) <= Duration::from_millis(620));
-    assert_ne!(bench.hand().link.hold, Hold::None);
+    assert_ne!(bench.hand().connection.status.hold, Hold::None);
     let mut idle = Bench::live().await;
     let now = idle.clock.now();
     while !idle.app.close(idle.clock.now()) {
@@ -281,12 +281,12 @@ async fn gestures_need_arming_a_route_and_free_joints() {
 #[tokio::test(start_paused = true)]
 async fn a_flood_of_records_is_taken_a_frame_at_a_time_and_nothing_is_lost() {
     let mut bench = Bench::live().await;
-    let before = bench.hand().sample.angle.unwrap().asked;
+    let before = bench.hand().readings.sample.angle.unwrap().asked;
     sleep(Duration::from_secs(3)).await;
     let now = bench.clock.now();
     let age = |angle: Option<Timed<_>>| -> Duration { now.since(angle.unwrap().asked) };
     bench.app.logic(now);
-    let first = age(bench.hand().sample.angle);
+    let first = age(bench.hand().readings.sample.angle);
     assert!(
         first > Duration::from_millis(100),
         "the rest waits: {first:?}"
@@ -294,10 +294,10 @@ async fn a_flood_of_records_is_taken_a_frame_at_a_time_and_nothing_is_lost() {
     for _ in 0..20 {
         bench.app.logic(now);
     }
-    let last = age(bench.hand().sample.angle);
+    let last = age(bench.hand().readings.sample.angle);
     assert!(last < Duration::from_millis(50), "{last:?}");
-    assert!(bench.hand().sample.angle.unwrap().asked > before);
-    assert_eq!(bench.hand().stats.dropped_events, 0);
+    assert!(bench.hand().readings.sample.angle.unwrap().asked > before);
+    assert_eq!(bench.hand().connection.stats.dropped_events, 0);
 }
 
 #[tokio::test(start_paused = true)]
@@ -307,7 +307,7 @@ async fn a_request_that_the_lost_link_took_along_is_told() {
     spoil(&line, Trouble::Gone(Duration::from_secs(2)));
     bench.act(Action::ClearErrors);
     bench.run(1000).await;
-    assert!(!bench.hand().link.state.is_live());
+    assert!(!bench.hand().connection.status.state.is_live());
     let told = bench.told();
     let failed = told.iter().find_map(|what| match what {
         NoticeKind::RequestFailed { what, error } => Some((*what, error.clone())),
@@ -320,7 +320,7 @@ async fn a_request_that_the_lost_link_took_along_is_told() {
     bench.run(5000).await;
     bench.forget();
     bench.run(1000).await;
-    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
+    assert_eq!(bench.hand().connection.status.state, LinkState::Monitoring);
     assert_eq!(
         bench.addresses(),
         [0_u16; 0],
@@ -336,14 +336,14 @@ async fn a_stop_while_the_link_is_gone_says_so_and_nothing_goes_out_later() {
     bench.run(100).await;
     spoil(&line, Trouble::Gone(Duration::from_secs(2)));
     bench.run(500).await;
-    assert!(!bench.hand().link.state.is_live());
+    assert!(!bench.hand().connection.status.state.is_live());
     assert_eq!(bench.target(Dof::Index), None);
     bench.forget();
     bench.act(Action::Stop);
     assert!(bench.told().contains(&NoticeKind::StopNotSent));
     bench.run(5000).await;
-    assert_eq!(bench.hand().link.state, LinkState::Monitoring);
-    assert!(!bench.hand().is_armed());
+    assert_eq!(bench.hand().connection.status.state, LinkState::Monitoring);
+    assert!(!bench.hand().connection.is_armed());
     assert!(bench.told().contains(&NoticeKind::Reconnected));
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }

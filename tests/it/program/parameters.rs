@@ -4,10 +4,10 @@
 use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::hand::Freshness;
 use handscope::app::params::state::{Doing, SaveEnd, WriteRequest};
 use handscope::app::params::{ParamAction, ParamRefusal};
 use handscope::app::procedures::{Procedure, ProcedureAction};
+use handscope::app::readings::Freshness;
 use handscope::hand::{Dof, Span};
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::Saved;
@@ -29,13 +29,19 @@ fn live(bench: &Bench, id: ParamId) -> Option<Value> {
     bench.hand().params.live(id).map(|(value, _)| value)
 }
 
+fn fresh(bench: &Bench, id: ParamId) -> Freshness {
+    let hand = bench.hand();
+    let is_live = hand.connection.is_live();
+    hand.params.freshness(id, is_live, bench.app.state().now)
+}
+
 fn staged(bench: &Bench, id: ParamId) -> Option<Value> {
     bench.hand().params.staged(id)
 }
 
 async fn done(bench: &mut Bench) {
     bench.run(10).await;
-    let idle = |hand: &handscope::app::hand::HandState| !hand.params.is_busy();
+    let idle = |hand: &handscope::app::hands::Hand| !hand.params.is_busy();
     bench.until("it ends", |state| idle(state.hand())).await;
 }
 
@@ -69,7 +75,7 @@ async fn connecting_staging_and_copying_ask_the_hand_for_nothing() {
     assert_eq!(bench.addresses(), [0_u16; 0]);
     assert_eq!(staged(&bench, INDEX), Some(Value::Number(250)));
     assert_eq!(live(&bench, INDEX), None, "nor was anything read");
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Unknown);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Unknown);
 }
 
 #[tokio::test(start_paused = true)]
@@ -97,26 +103,26 @@ async fn a_reading_makes_rows_live_and_old_values_are_told_apart() {
     let mut bench = gentle().await;
     read(&mut bench).await;
     assert_eq!(live(&bench, INDEX), Some(Value::Number(100)));
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     let now = bench.clock.now();
     assert!(!bench.hand().params.is_due(now));
     bench.run(61_000).await;
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Stale);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Stale);
     let now = bench.clock.now();
     assert!(bench.hand().params.is_due(now));
     read(&mut bench).await;
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Live);
 }
 
 #[tokio::test(start_paused = true)]
 async fn what_was_read_before_a_loss_is_old_until_it_is_read_again() {
     let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
     read(&mut bench).await;
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     spoil(&line, Trouble::Gone(Duration::from_secs(1)));
     bench.run(5000).await;
-    assert!(bench.hand().link.state.is_live());
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Stale);
+    assert!(bench.hand().connection.status.state.is_live());
+    assert_eq!(fresh(&bench, INDEX), Freshness::Stale);
     let now = bench.clock.now();
     assert!(bench.hand().params.is_due(now));
 }
@@ -179,14 +185,23 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
 async fn no_write_begins_while_the_hand_is_armed_or_something_is_under_way() {
     let mut bench = gentle().await;
     assert_eq!(
-        bench.hand().apply_refusal(),
+        bench
+            .hand()
+            .params
+            .apply_refusal(&bench.hand().connection.status),
         Some(ParamRefusal::NothingStaged)
     );
     stage(&mut bench, INDEX, 50);
     ask(&mut bench, ParamAction::Apply);
     ask(&mut bench, ParamAction::Save);
     assert_eq!(bench.hand().params.doing, Doing::Applying, "one at a time");
-    assert_eq!(bench.hand().write_refusal(), Some(ParamRefusal::Busy));
+    assert_eq!(
+        bench
+            .hand()
+            .params
+            .write_refusal(&bench.hand().connection.status),
+        Some(ParamRefusal::Busy)
+    );
     done(&mut bench).await;
     bench.run(1000).await;
     stage(&mut bench, INDEX, 60);
@@ -195,7 +210,13 @@ async fn no_write_begins_while_the_hand_is_armed_or_something_is_under_way() {
     ask(&mut bench, ParamAction::Save);
     bench.run(1000).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert_eq!(bench.hand().apply_refusal(), Some(ParamRefusal::Armed));
+    assert_eq!(
+        bench
+            .hand()
+            .params
+            .apply_refusal(&bench.hand().connection.status),
+        Some(ParamRefusal::Armed)
+    );
 }
 
 #[tokio::test(start_paused = true)]
@@ -238,17 +259,17 @@ async fn another_hand_takes_over_nothing_of_the_old_one() {
 async fn after_a_factory_reset_no_row_is_shown_as_it_was() {
     let mut bench = gentle().await;
     read(&mut bench).await;
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     bench.act(Action::FactoryReset);
     bench.act(Action::Procedure(ProcedureAction::Begin));
-    let is_over = |hand: &handscope::app::hand::HandState| match &hand.procedure {
+    let is_over = |hand: &handscope::app::hands::Hand| match &hand.procedures.card {
         Some(Procedure::Reset(card)) => card.stage.end().is_some(),
         _ => false,
     };
     bench
         .until("the reset ends", |state| is_over(state.hand()))
         .await;
-    let Some(Procedure::Reset(card)) = &bench.hand().procedure else {
+    let Some(Procedure::Reset(card)) = &bench.hand().procedures.card else {
         panic!("the card stays");
     };
     let end = card.stage.end().unwrap().as_ref().unwrap().end.clone();
@@ -261,12 +282,12 @@ async fn after_a_factory_reset_no_row_is_shown_as_it_was() {
         100_i16.to_le_bytes(),
         "the hand holds another"
     );
-    assert_ne!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_ne!(fresh(&bench, INDEX), Freshness::Live);
     for _ in 0..500 {
         bench.run(10).await;
         bench.app.look_at_params(bench.clock.now());
     }
-    assert_eq!(bench.hand().param_freshness(INDEX), Freshness::Live);
+    assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     let read = live(&bench, INDEX);
     assert_ne!(read, Some(Value::Number(100)), "the hand holds another");
 }
@@ -281,7 +302,7 @@ async fn after_a_change_of_address_no_row_is_shown_as_it_was() {
     assert_ne!(before, wanted);
     bench.act(Action::ChangePlace(ip, wanted));
     bench.act(Action::Procedure(ProcedureAction::Begin));
-    let is_there = |hand: &handscope::app::hand::HandState| match &hand.procedure {
+    let is_there = |hand: &handscope::app::hands::Hand| match &hand.procedures.card {
         Some(Procedure::Place(card)) => {
             card.stage.end().is_some() || {
                 use handscope::app::procedures::ProcedureStage::Doing;
@@ -298,6 +319,6 @@ async fn after_a_change_of_address_no_row_is_shown_as_it_was() {
         .hand
         .with(|hand, now| hand.read(Span::new(1700, 4), now));
     assert_eq!(held.unwrap(), [192, 168, 11, 99]);
-    let shown = (live(&bench, ip), bench.hand().param_freshness(ip));
+    let shown = (live(&bench, ip), fresh(&bench, ip));
     assert_ne!(shown, (Some(before), Freshness::Live));
 }

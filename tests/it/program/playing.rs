@@ -3,7 +3,6 @@
 use crate::program::{ANGLE_SET, Bench, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::hand::{Play, Preset};
 use handscope::app::notices::NoticeKind;
 use handscope::hand::Finger;
 use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
@@ -11,6 +10,7 @@ use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::poses::starter::starter;
+use handscope::poses::{Play, Preset};
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
@@ -78,7 +78,7 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
     bench.act(Action::Recall(a));
     bench.run(300).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert!(!bench.hand().is_armed() && bench.hand().sequence.is_none());
+    assert!(!bench.hand().connection.is_armed() && bench.hand().sequence.is_none());
     bench.arm().await;
     bench.act(Action::Lock(Dof::Ring, true));
     for edit in [

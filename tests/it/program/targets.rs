@@ -15,7 +15,11 @@ const NOISE: f64 = 5.0;
 /// Times and values of one line of the history.
 fn line(bench: &Bench, quantity: Quantity) -> Vec<(f64, f64)> {
     let series = Series::Joint(quantity, Dof::Index);
-    let table = bench.hand().history.table(&[series], 0.0, f64::INFINITY);
+    let table = bench
+        .hand()
+        .measured
+        .history
+        .table(&[series], 0.0, f64::INFINITY);
     let csv = table.csv();
     let cells = csv.lines().skip(1).map(|line| line.split(','));
     let numbers = cells.filter_map(|mut cells| {

@@ -3,10 +3,10 @@
 use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::hand::Preset;
 use handscope::app::notices::NoticeKind;
 use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
 use handscope::hand::{Angle, Dof, Speed};
+use handscope::poses::Preset;
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
 use handscope::trials::session::load;
@@ -23,12 +23,12 @@ async fn running() -> Bench {
     let mut bench = Bench::armed().await;
     start(&mut bench);
     bench.run(300).await;
-    assert!(bench.hand().runs_series());
+    assert!(bench.hand().series.is_some());
     bench
 }
 
 fn refusal(bench: &Bench) -> Option<StartRefusal> {
-    bench.hand().start_refusal(&bench.state().trials.plan)
+    bench.hand().series_refusal(&bench.state().trials.plan)
 }
 
 #[tokio::test(start_paused = true)]
@@ -61,7 +61,7 @@ async fn a_plan_that_makes_no_sense_sends_nothing() {
     bench.act(Action::Trial(TrialAction::Plan(Box::new(senseless))));
     start(&mut bench);
     bench.run(300).await;
-    assert!(!bench.hand().runs_series());
+    assert!(!bench.hand().series.is_some());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
@@ -82,12 +82,12 @@ async fn nothing_else_moves_the_hand_while_a_series_runs() {
         bench.act(action);
     }
     bench.run(1000).await;
-    assert!(bench.hand().runs_series());
+    assert!(bench.hand().series.is_some());
     assert!(bench.told().contains(&NoticeKind::SeriesRuns));
     for (now, before) in others(&bench).iter().zip(before) {
         assert!((now - before).abs() <= 3);
     }
-    assert_ne!(bench.hand().joints[Dof::Index].speed, Speed::MAX);
+    assert_ne!(bench.hand().controls.joints[Dof::Index].speed, Speed::MAX);
 }
 
 #[tokio::test(start_paused = true)]
@@ -118,7 +118,7 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
 
 fn check_ended(bench: &Bench, why: Abort) {
     let trials = &bench.state().trials;
-    assert!(!bench.hand().runs_series() && !bench.hand().is_armed());
+    assert!(!bench.hand().series.is_some() && !bench.hand().connection.is_armed());
     let [session] = &trials.sessions[..] else {
         panic!("{why:?}");
     };
@@ -150,7 +150,7 @@ async fn what_was_tried_is_saved_by_itself_in_a_folder_of_the_day_with_its_words
     let mut places = Vec::new();
     let mut bench = running().await;
     for _ in 0..2 {
-        while bench.hand().runs_series() {
+        while bench.hand().series.is_some() {
             bench.run(200).await;
         }
         let folder = saved(&mut bench).await;
@@ -180,7 +180,7 @@ async fn what_was_tried_is_saved_by_itself_in_a_folder_of_the_day_with_its_words
 async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
     let mut bench = running().await;
     bench.run(12_000).await;
-    assert!(bench.hand().runs_series() && bench.state().trials.sessions[0].trials.is_empty());
+    assert!(bench.hand().series.is_some() && bench.state().trials.sessions[0].trials.is_empty());
     while !bench.app.close(bench.clock.now()) {
         bench.run(20).await;
     }
@@ -196,7 +196,7 @@ async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
 async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
     let mut bench = running().await;
     std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
-    while bench.hand().runs_series() {
+    while bench.hand().series.is_some() {
         bench.run(200).await;
     }
     for _ in 0..500 {

@@ -11,9 +11,8 @@ use crate::setup::time::Time;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
-use handscope::app::hand::Play;
 use handscope::app::hands::action::HandsAction;
-use handscope::app::inputs::InputAction;
+use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;
 use handscope::app::trials::action::TrialAction;
@@ -23,6 +22,7 @@ use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
 use handscope::exhibit::run::ExhibitWish;
 use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
+use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, PoseId};
 use handscope::record::LinkState;
@@ -85,7 +85,7 @@ impl Window {
     }
 
     fn state(&self) -> LinkState {
-        self.program.state().hand().link.state
+        self.program.state().hand().connection.status.state
     }
 
     fn run(&mut self, ms: u64) {
@@ -188,7 +188,7 @@ impl Window {
         let wanted = Some((leader, MirrorScale::WHOLE));
         self.act(Action::Input(InputAction::Mirror(wanted)));
         self.run(300);
-        self.act(Action::Input(InputAction::GrantMirror));
+        self.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
         self.until("led", |window| window.state() == LinkState::Armed);
         self.leader.with(|hand, now| {
             let speeds = slow().get().to_le_bytes().repeat(6);
@@ -257,7 +257,7 @@ impl Mover for Window {
             .iter()
             .map(|notice| format!("{:?}", notice.what))
             .collect();
-        let link = &state.hand().link;
+        let link = &state.hand().connection.status;
         let stage = state.exhibit.as_ref().map(|exhibit| exhibit.view.stage);
         format!("{notices:?} {link:?} {stage:?}")
     }

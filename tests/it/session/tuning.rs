@@ -62,7 +62,8 @@ impl Person {
             );
         let mut person = Self { harness };
         person.until("a live hand", |state| {
-            state.hand().link.state == LinkState::Monitoring && state.hand().stats.tactile_reads > 2
+            state.hand().connection.status.state == LinkState::Monitoring
+                && state.hand().connection.stats.tactile_reads > 2
         });
         person
     }
@@ -160,11 +161,13 @@ fn plan(person: &mut Person) {
 /// Runs the series in an arming of its own; whether it was left alone until its end.
 fn tried(person: &mut Person) -> bool {
     person.press("Arm the hand");
-    person.until("the arming", |state| state.hand().is_armed());
+    person.until("the arming", |state| state.hand().connection.is_armed());
     person.press("Start trials");
-    assert!(person.state().hand().runs_series());
-    person.until("the end of the series", |state| !state.hand().runs_series());
-    person.until("disarming", |state| !state.hand().is_armed());
+    assert!(person.state().hand().series.is_some());
+    person.until("the end of the series", |state| {
+        !state.hand().series.is_some()
+    });
+    person.until("disarming", |state| !state.hand().connection.is_armed());
     let last = person.state().trials.sessions.last().unwrap();
     last.head.aborted.is_none()
 }
@@ -215,7 +218,8 @@ fn power_cycle(sim: &mut Running, person: &mut Person) {
     sim.signal(Signal::SIGUSR1);
     sim.until(|line| line == "power cycled");
     person.until("the hand again", |state| {
-        state.hand().link.state == LinkState::Monitoring && state.hand().sample.speed_set.is_some()
+        state.hand().connection.status.state == LinkState::Monitoring
+            && state.hand().readings.sample.speed_set.is_some()
     });
 }
 

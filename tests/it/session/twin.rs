@@ -2,7 +2,7 @@
 
 use crate::session::display::SIZE;
 use handscope::app::action::Action;
-use handscope::app::files::exhibit_file;
+use handscope::app::exhibit::exhibit_file;
 use handscope::app::sessions::SessionAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::shell::headless::canvas::Picture;

@@ -98,13 +98,16 @@ impl Desk {
         for _ in 0..FRAMES_MAX {
             self.program.tick(FRAME);
             let state = self.program.state();
-            if state.hand().link.state == LinkState::Monitoring
-                && state.hand().stats.tactile_reads > 2
+            if state.hand().connection.status.state == LinkState::Monitoring
+                && state.hand().connection.stats.tactile_reads > 2
             {
                 return;
             }
         }
-        panic!("{endpoint}: {:?}", self.program.state().hand().link);
+        panic!(
+            "{endpoint}: {:?}",
+            self.program.state().hand().connection.status
+        );
     }
 }
 
@@ -141,7 +144,7 @@ fn the_window_shows_the_hand_on_every_wire_and_writes_nothing() {
         assert!(named("Link state: Monitoring"), "{endpoint}");
         assert!(!named("SIMULATED"), "{endpoint}: it is no built-in hand");
         assert!(!named("Disarm the hand"), "{endpoint}");
-        let stats = &desk.program.state().hand().stats;
+        let stats = &desk.program.state().hand().connection.stats;
         assert_eq!((stats.writes, stats.reconnects), (0, 0), "{endpoint}");
         let written = hand.with(|hand, _| hand.journal().len());
         assert_eq!(written, WRITES, "{endpoint}");

@@ -19,11 +19,10 @@ fn timed<T>(value: T, asked: Moment) -> Option<Timed<T>> {
 }
 
 pub(crate) fn empty() -> State {
-    let mut state = State {
+    let state = State {
         now: Moment::from_micros(60_000_000),
         ..State::default()
     };
-    state.hand_mut().now = state.now;
     state
 }
 
@@ -50,11 +49,11 @@ pub(crate) fn tactile(i: u32) -> TactileBlock {
 pub(crate) fn live() -> State {
     let mut state = empty();
     let asked = Moment::from_micros(59_990_000);
-    state.hand_mut().endpoint = Some(Endpoint::sim());
-    state.hand_mut().link.state = LinkState::Monitoring;
-    state.hand_mut().link.since = Moment::from_micros(20_000_000);
-    state.hand_mut().link.rest = Rest::Resting;
-    state.hand_mut().stats = LinkStats {
+    state.hand_mut().connection.endpoint = Some(Endpoint::sim());
+    state.hand_mut().connection.status.state = LinkState::Monitoring;
+    state.hand_mut().connection.status.since = Moment::from_micros(20_000_000);
+    state.hand_mut().connection.status.rest = Rest::Resting;
+    state.hand_mut().connection.stats = LinkStats {
         state_reads: 8123,
         tactile_reads: 4033,
         state_hz: 196.4,
@@ -66,30 +65,31 @@ pub(crate) fn live() -> State {
         ..LinkStats::default()
     };
     let angle = [982, 874, 402, 377, 510, 655];
-    state.hand_mut().sample.angle = timed(PerDof::new(angle.map(AngleReading::new)), asked);
-    state.hand_mut().sample.force = timed(
+    state.hand_mut().readings.sample.angle =
+        timed(PerDof::new(angle.map(AngleReading::new)), asked);
+    state.hand_mut().readings.sample.force = timed(
         PerDof::new([-5, 12, 488, 512, 260, 0].map(ForceReading::new)),
         asked,
     );
-    state.hand_mut().sample.current = timed(
+    state.hand_mut().readings.sample.current = timed(
         PerDof::new([0, 42, 318, 0, 120, 7].map(CurrentReading::new)),
         asked,
     );
-    state.hand_mut().sample.temperature = timed(
+    state.hand_mut().readings.sample.temperature = timed(
         PerDof::new([31, 32, 35, 36, 34, 31].map(TemperatureReading::new)),
         asked,
     );
-    state.hand_mut().sample.status =
+    state.hand_mut().readings.sample.status =
         timed(PerDof::new([2, 0, 1, 3, 1, 2].map(Status::from_raw)), asked);
-    state.hand_mut().sample.faults = timed(PerDof::splat(Faults::from_raw(0)), asked);
-    for (finger, block) in state.hand_mut().sample.tactile.iter_mut() {
+    state.hand_mut().readings.sample.faults = timed(PerDof::splat(Faults::from_raw(0)), asked);
+    for (finger, block) in state.hand_mut().readings.sample.tactile.iter_mut() {
         *block = timed(tactile(finger.index() as u32), asked);
     }
-    for (dof, joint) in state.hand_mut().joints.iter_mut() {
+    for (dof, joint) in state.hand_mut().controls.joints.iter_mut() {
         joint.target = Some(Angle::nearest(angle[dof.index()]));
     }
 
-    fill(&mut state.hand_mut().history);
+    fill(&mut state.hand_mut().measured.history);
     for (number, name) in [
         (1, "open"),
         (2, "two-finger pinch"),
@@ -152,40 +152,48 @@ fn fill(history: &mut History) {
 
 pub(crate) fn armed() -> State {
     let mut state = live();
-    state.hand_mut().link.state = LinkState::Armed;
-    state.hand_mut().link.armed = Some(ArmEpoch(1));
-    for (dof, joint) in state.hand_mut().joints.iter_mut() {
+    state.hand_mut().connection.status.state = LinkState::Armed;
+    state.hand_mut().connection.status.armed = Some(ArmEpoch(1));
+    for (dof, joint) in state.hand_mut().controls.joints.iter_mut() {
         joint.target = Some(Angle::nearest(
             [1000, 1000, 300, 300, 420, 655][dof.index()],
         ));
     }
-    state.hand_mut().joints[Dof::Index].speed = Speed::nearest(600);
-    state.hand_mut().joints[Dof::Index].force = Force::nearest(900);
-    state.hand_mut().joints[Dof::ThumbRotate].locked = true;
+    state.hand_mut().controls.joints[Dof::Index].speed = Speed::nearest(600);
+    state.hand_mut().controls.joints[Dof::Index].force = Force::nearest(900);
+    state.hand_mut().controls.joints[Dof::ThumbRotate].locked = true;
     state
 }
 
 pub(crate) fn faulted() -> State {
     let mut state = live();
-    state.hand_mut().link.state = LinkState::Fault;
+    state.hand_mut().connection.status.state = LinkState::Fault;
     let mut faults = PerDof::splat(Faults::from_raw(0));
     faults[Dof::Index] = Faults::from_raw(1);
     faults[Dof::ThumbBend] = Faults::from_raw(2);
-    state.hand_mut().sample.faults = timed(faults, Moment::from_micros(59_990_000));
+    state.hand_mut().readings.sample.faults = timed(faults, Moment::from_micros(59_990_000));
     let at = |s: u64| Moment::from_micros(s * 1_000_000);
     let mut fresh = Groups::NONE;
     fresh.insert(Group::Faults);
-    let mut earlier = state.hand().sample;
+    let mut earlier = state.hand().readings.sample;
     let mut one = PerDof::splat(Faults::from_raw(0));
     one[Dof::Ring] = Faults::from_raw(4);
     earlier.faults = timed(one, at(12));
-    state.hand_mut().faults.update(&earlier, fresh, at(12));
+    state
+        .hand_mut()
+        .readings
+        .faults
+        .update(&earlier, fresh, at(12));
     let mut two = PerDof::splat(Faults::from_raw(0));
     two[Dof::ThumbBend] = Faults::from_raw(2);
     earlier.faults = timed(two, at(51));
-    state.hand_mut().faults.update(&earlier, fresh, at(51));
-    let now = state.hand().sample;
-    state.hand_mut().faults.update(&now, fresh, at(56));
+    state
+        .hand_mut()
+        .readings
+        .faults
+        .update(&earlier, fresh, at(51));
+    let now = state.hand().readings.sample;
+    state.hand_mut().readings.faults.update(&now, fresh, at(56));
     state
         .notices
         .push(at(50), NoticeKind::Disarmed(Disarmed::Fault));
@@ -201,11 +209,11 @@ pub(crate) fn faulted() -> State {
 pub(crate) fn lost() -> State {
     let mut state = live();
     state.now = Moment::from_micros(62_400_000);
-    state.hand_mut().now = state.now;
-    state.hand_mut().endpoint = Some("rs485:/dev/ttyUSB0?baud=115200&id=1".parse().unwrap());
-    state.hand_mut().link.state = LinkState::Offline;
-    state.hand_mut().link.trouble = Some(LinkTrouble::Silent { silent: 5 });
-    state.hand_mut().link.dialling = Dialling::Waiting {
+    state.hand_mut().connection.endpoint =
+        Some("rs485:/dev/ttyUSB0?baud=115200&id=1".parse().unwrap());
+    state.hand_mut().connection.status.state = LinkState::Offline;
+    state.hand_mut().connection.status.trouble = Some(LinkTrouble::Silent { silent: 5 });
+    state.hand_mut().connection.status.dialling = Dialling::Waiting {
         attempt: 3,
         until: Moment::from_micros(63_000_000),
     };
@@ -240,9 +248,9 @@ pub(crate) fn several() -> State {
     state.hand_mut().side = handscope::hand::kinematics::Side::Left;
     state.hands.add();
     let hand = state.hand_mut();
-    hand.endpoint = Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
+    hand.connection.endpoint = Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
     hand.label.name = "192.168.11.210:6000".into();
-    hand.link.dialling = Dialling::Trying { attempt: 2 };
+    hand.connection.status.dialling = Dialling::Trying { attempt: 2 };
     let first = state.hands.iter().next().unwrap().label.slot;
     state.hands.show(first);
     state.hand_mut().label.name = "sim:?seed=1".into();

@@ -33,6 +33,7 @@ fn carry_out(state: &mut State, action: &Action) {
     match action {
         Action::Note(at, words) => state
             .hand_mut()
+            .measured
             .history
             .mark(*at, MarkKind::note(words).unwrap()),
         Action::PlotWindow(window) => state.settings.plot_window = *window,

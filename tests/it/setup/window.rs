@@ -217,7 +217,7 @@ impl Room {
     /// One frame's time goes by, drawn or not.
     fn tick(&mut self) {
         self.program.tick(Duration::from_millis(FRAME_MS));
-        let state = self.program.state().hand().link.state;
+        let state = self.program.state().hand().connection.status.state;
         if self.seen.last() != Some(&state) {
             self.seen.push(state);
         }
@@ -358,9 +358,9 @@ impl Bench {
         bench.click("Arm the hand");
         bench.run(200);
         assert!(
-            bench.state().hand().is_armed(),
+            bench.state().hand().connection.is_armed(),
             "{:?}",
-            bench.state().hand().link
+            bench.state().hand().connection.status
         );
         bench
     }
@@ -864,7 +864,8 @@ impl Bench {
         self.act(Action::Connect(endpoint));
         self.until(2000, |bench| {
             let hand = bench.state().hand();
-            hand.link.state == LinkState::Monitoring && hand.pose_now().is_some()
+            hand.connection.status.state == LinkState::Monitoring
+                && hand.pose_now(bench.state().now).is_some()
         });
     }
 

@@ -49,7 +49,7 @@ impl Hidden {
         self.act(Action::Arm);
         self.draw(Duration::from_millis(400)).await;
         self.act(Action::Trial(TrialAction::Start));
-        assert!(self.app.state().hand().runs_series());
+        assert!(self.app.state().hand().series.is_some());
     }
 }
 
@@ -79,10 +79,10 @@ async fn a_series_runs_to_its_end_though_no_frame_comes() {
     sleep(Duration::from_secs(40)).await;
     hidden.look();
     let state = hidden.app.state();
-    assert!(!state.hand().runs_series());
+    assert!(!state.hand().series.is_some());
     let session = &state.trials.sessions[0];
     assert_eq!((session.trials.len(), &session.head.aborted), (2, &None));
-    assert!(!state.hand().is_armed());
+    assert!(!state.hand().connection.is_armed());
 }
 
 #[tokio::test(start_paused = true)]
@@ -92,7 +92,7 @@ async fn the_first_reading_above_the_ceiling_ends_it_though_no_frame_comes() {
     sleep(Duration::from_secs(20)).await;
     hidden.look();
     let state = hidden.app.state();
-    assert!(!state.hand().runs_series());
+    assert!(!state.hand().series.is_some());
     let session = &state.trials.sessions[0];
     let Some(EarlyEnd::Here(Abort::Ceiling { grams, .. })) = session.head.aborted else {
         panic!("{:?}", session.head.aborted);

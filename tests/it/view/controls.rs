@@ -327,8 +327,8 @@ fn an_unconfirmed_stop_is_an_alarm() {
     let alarm = || {
         let mut state = states::live();
         let at = state.now;
-        state.hand_mut().link.state = LinkState::Holding;
-        state.hand_mut().link.hold = Hold::Alarm { at };
+        state.hand_mut().connection.status.state = LinkState::Holding;
+        state.hand_mut().connection.status.hold = Hold::Alarm { at };
         state
     };
     open(alarm()).get_by_label("STOP NOT CONFIRMED");
@@ -585,7 +585,7 @@ fn the_form_is_filled_from_an_rtu_endpoint() {
     let mut state = states::empty();
     let endpoint: handscope::transport::Endpoint =
         "rtu:/dev/ttyUSB3?baud=57600&id=4".parse().unwrap();
-    state.hand_mut().endpoint = Some(endpoint.clone());
+    state.hand_mut().connection.endpoint = Some(endpoint.clone());
     let mut harness = open_at(state, View::Connection, LARGE);
     harness.get_by_label("Connect").click();
     assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
@@ -606,7 +606,7 @@ fn a_can_interface_and_a_can_adapter_can_be_chosen() {
     ] {
         let mut state = states::empty();
         let endpoint: handscope::transport::Endpoint = url.parse().unwrap();
-        state.hand_mut().endpoint = Some(endpoint.clone());
+        state.hand_mut().connection.endpoint = Some(endpoint.clone());
         let mut harness = open_at(state, View::Connection, LARGE);
         harness.get_by_label("Connect").click();
         assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);

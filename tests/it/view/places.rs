@@ -35,8 +35,9 @@ const PRESSED: [Role; 5] = [
 
 fn connecting() -> State {
     let mut state = states::empty();
-    state.hand_mut().endpoint = Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
-    state.hand_mut().link.dialling = Dialling::Trying { attempt: 2 };
+    state.hand_mut().connection.endpoint =
+        Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
+    state.hand_mut().connection.status.dialling = Dialling::Trying { attempt: 2 };
     state
 }
 

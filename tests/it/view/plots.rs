@@ -52,7 +52,7 @@ fn known() -> State {
         };
         history.push(&sample, fresh);
     }
-    state.hand_mut().history = history;
+    state.hand_mut().measured.history = history;
     state
 }
 
@@ -257,15 +257,15 @@ fn a_pause_stands_still_and_loses_nothing() {
 #[test]
 fn what_was_chosen_for_one_hand_is_not_kept_for_another() {
     let mut state = known();
-    state.hand_mut().endpoint = Some("rs485:x".parse().unwrap());
+    state.hand_mut().connection.endpoint = Some("rs485:x".parse().unwrap());
     let mut harness = open_at(state, LARGE);
     press(&mut harness, "Pause the plots");
     press(&mut harness, "Cursors");
     assert!(is_held(&harness) && harness.query_by_label("Cursor A").is_some());
-    harness.state_mut().state.hand_mut().endpoint = None;
+    harness.state_mut().state.hand_mut().connection.endpoint = None;
     harness.run_steps(3);
     assert!(is_held(&harness), "what was seen last can be looked at");
-    harness.state_mut().state.hand_mut().endpoint = Some("rs485:y".parse().unwrap());
+    harness.state_mut().state.hand_mut().connection.endpoint = Some("rs485:y".parse().unwrap());
     harness.run_steps(3);
     assert!(!is_held(&harness) && harness.query_by_label("Cursor A").is_none());
 }
@@ -277,6 +277,7 @@ fn nothing_points_at_values_that_are_old() {
         .state_mut()
         .state
         .hand_mut()
+        .measured
         .history
         .gap(Moment::from_micros(100_000_000));
     pass(&mut harness, Duration::from_secs(5));
@@ -410,7 +411,7 @@ fn a_note_stands_at_the_moment_of_its_key() {
 #[test]
 fn escape_stops_an_armed_hand_while_a_note_is_written_and_a_letter_in_another_field_opens_none() {
     let mut state = known();
-    state.hand_mut().link.state = LinkState::Armed;
+    state.hand_mut().connection.status.state = LinkState::Armed;
     let mut harness = view::open(state, View::Live, view::display(LARGE));
     harness.key_press(Key::N);
     harness.run_steps(3);
@@ -507,6 +508,7 @@ fn what_is_shown_is_saved_with_heads_and_units_and_gaps_are_empty() {
     state.now = Moment::from_micros(64_000_000);
     state
         .hand_mut()
+        .measured
         .history
         .mark(Moment::from_micros(61_000_000), MarkKind::Stop);
     let mut harness = open_at(state, LARGE);

@@ -28,7 +28,10 @@ fn on_a_line(personality: Personality) -> Bench {
     };
     let mut bench = Bench::kept(config, "rs485:/dev/hand?id=1", LARGE);
     bench.wait(1500);
-    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
     bench
 }
 
@@ -100,8 +103,8 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     bench.hand(SimHand::power_cycle);
     assert_eq!(id_of(&bench), 7);
     bench.click_button("Done");
-    assert!(bench.state().hand().procedure.is_none());
-    assert!(!bench.state().hand().is_armed());
+    assert!(bench.state().hand().procedures.card.is_none());
+    assert!(!bench.state().hand().connection.is_armed());
     let kept = bench.state().settings.endpoint.clone().unwrap();
     assert!(kept.contains("id=7"), "{kept}");
 }
@@ -136,11 +139,12 @@ fn an_id_that_another_hand_has_is_refused_and_the_window_stays_with_its_hand() {
     assert_eq!((count(&bench, HAND_ID), bench.writes_to_others()), (0, 0));
     assert_eq!(id_of(&bench), 1);
     bench.until(5_000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring && place(bench).contains("id=1")
+        bench.state().hand().connection.status.state == LinkState::Monitoring
+            && place(bench).contains("id=1")
     });
     bench.click_button("Done");
     bench.wait(1000);
-    assert!(bench.state().hand().procedure.is_none());
+    assert!(bench.state().hand().procedures.card.is_none());
     assert!(place(&bench).contains("id=1"), "{}", place(&bench));
     let kept = bench.state().settings.endpoint.clone().unwrap();
     assert!(kept.contains("id=1"), "{kept}");
@@ -189,7 +193,7 @@ fn code_of(bench: &Bench) -> u8 {
 }
 
 fn place(bench: &Bench) -> String {
-    let place = bench.state().hand().endpoint.as_ref();
+    let place = bench.state().hand().connection.endpoint.as_ref();
     place.map(ToString::to_string).unwrap_or_default()
 }
 
@@ -207,7 +211,10 @@ fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
     bench.click_button("Done");
     bench.wait(3000);
     assert_eq!(code_of(&bench), 2);
-    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
     let kept = bench.state().settings.endpoint.clone().unwrap();
     assert!(kept.contains("baud=19200"), "{kept}");
 }
@@ -231,7 +238,10 @@ fn a_speed_that_acts_at_save_is_found_again_after_it() {
     );
     bench.click_button("Done");
     bench.wait(3000);
-    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
     let kept = bench.state().settings.endpoint.clone().unwrap();
     assert!(kept.contains("baud=19200"), "{kept}");
 }
@@ -245,7 +255,10 @@ fn a_speed_that_nobody_keeps_is_taken_back_over_the_new_speed() {
     assert_eq!(code_of(&bench), 0);
     bench.click_button("Done");
     bench.wait(3000);
-    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
     assert!(place(&bench).contains("baud=115200"), "{}", place(&bench));
     let kept = bench.state().settings.endpoint.clone().unwrap();
     assert_eq!(kept, "rs485:/dev/hand?id=1", "nothing else is remembered");
@@ -269,9 +282,9 @@ fn a_hand_that_is_gone_leaves_a_card_with_the_way_back() {
     bench.plug();
     bench.click_button("Connect: former place");
     bench.until(5_000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
-    assert!(bench.state().hand().procedure.is_none());
+    assert!(bench.state().hand().procedures.card.is_none());
 }
 
 #[test]
@@ -279,20 +292,23 @@ fn nothing_begins_while_the_hand_is_armed_or_on_a_key() {
     let mut bench = on_a_line(Personality::default());
     bench.click("Arm the hand");
     bench.run(300);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
     bench.act(Action::ChangePlace(ParamId::HandId, Value::Number(7)));
     bench.run(100);
     assert!(bench.is_disabled(Role::Button, "Change"));
     bench.key(Key::Space);
     bench.until(3_000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
     bench.wait(1500);
     assert!(!bench.is_disabled(Role::Button, "Change"));
     bench.key(Key::Enter);
     bench.run(200);
     assert_eq!((backups(&bench), count(&bench, HAND_ID)), (0, 0));
-    assert!(bench.state().hand().procedure.is_none(), "Enter cancels");
+    assert!(
+        bench.state().hand().procedures.card.is_none(),
+        "Enter cancels"
+    );
 }
 
 #[test]
@@ -305,10 +321,13 @@ fn a_speed_that_waits_for_power_is_kept_with_both_places_and_the_way_to_the_new_
     assert!(bench.shows("Connect: former place"));
     bench.hand(SimHand::power_cycle);
     bench.wait(3000);
-    assert_ne!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_ne!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
     bench.click_button("Connect: new place");
     bench.until(5_000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
     assert!(place(&bench).contains("baud=19200"), "{}", place(&bench));
     let known = |bench: &Bench| bench.state().hand().params.known.saved.is_some();
@@ -331,7 +350,7 @@ fn without_a_backup_nothing_is_written() {
         bench.shows("No backup could be made, and nothing was written.")
     });
     assert_eq!(count(&bench, HAND_ID), 0);
-    let Some(Procedure::Place(card)) = &bench.state().hand().procedure else {
+    let Some(Procedure::Place(card)) = &bench.state().hand().procedures.card else {
         panic!("the card is open");
     };
     let end = card.stage.end();
@@ -341,7 +360,7 @@ fn without_a_backup_nothing_is_written() {
     );
     bench.key(Key::Escape);
     bench.run(100);
-    assert!(bench.state().hand().procedure.is_none());
+    assert!(bench.state().hand().procedures.card.is_none());
 }
 
 #[test]
@@ -371,9 +390,9 @@ fn a_factory_reset_wants_its_word_and_a_hand_at_rest_and_tells_where_the_hand_is
         !bench.texts_with(begin).is_empty()
     });
     assert_eq!((count(&bench, RESET_PARA), backups(&bench)), (1, 1));
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
     bench.click_button("Done");
-    assert!(bench.state().hand().procedure.is_none());
+    assert!(bench.state().hand().procedures.card.is_none());
 }
 
 #[test]
@@ -446,7 +465,7 @@ fn a_calibration_measures_first_locks_motion_and_shows_the_offsets() {
     });
     assert!(bench.shows("Before, g") && bench.shows("After, g"));
     for dof in Dof::ALL {
-        let Some(Procedure::Calibrate(card)) = &bench.state().hand().procedure else {
+        let Some(Procedure::Calibrate(card)) = &bench.state().hand().procedures.card else {
             panic!("the card is open");
         };
         assert!(card.before.is_some());
@@ -455,7 +474,7 @@ fn a_calibration_measures_first_locks_motion_and_shows_the_offsets() {
     }
     assert!(!bench.addresses().contains(&register::ANGLE_SET.address));
     bench.click_button("Done");
-    assert!(bench.state().hand().procedure.is_none());
+    assert!(bench.state().hand().procedures.card.is_none());
 }
 
 #[test]
@@ -599,10 +618,13 @@ fn an_id_that_this_program_changed_is_not_staged_any_more_nor_warned_of() {
     bench.wait(1000);
     bench.plug();
     bench.until(10_000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
     bench.wait(2000);
-    assert_eq!(bench.state().hand().link.quirks.hand_id, Some(3));
+    assert_eq!(
+        bench.state().hand().connection.status.quirks.hand_id,
+        Some(3)
+    );
     let mut notices = bench.state().notices.iter();
     let warned = notices.any(|notice| matches!(notice.what, NoticeKind::HandDiffers { .. }));
     assert!(!warned, "its own change");

@@ -463,7 +463,7 @@ fn arming_while_the_hand_saves_is_refused_with_its_own_reason() {
     let words = "The hand writes its flash or calibrates: wait until that is over.";
     assert!(!bench.texts_with(words).is_empty(), "{:?}", bench.texts());
     settle(&mut bench);
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
     assert!(!bench.addresses().contains(&SPEED_SET));
 }
 
@@ -659,7 +659,7 @@ fn a_backup_is_a_way_back() {
         .unwrap();
     assert!(name.contains(" UTC "), "its time: {name}");
     let hand = bench.reading(&format!("Hand of the backup: {name}"));
-    assert_eq!(hand, bench.state().hand().name());
+    assert_eq!(hand, bench.state().hand().connection.name());
     bench.click_button(&name);
     bench.run(400);
     bench.click("Stage ticked rows");

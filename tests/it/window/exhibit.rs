@@ -187,7 +187,7 @@ fn nothing_moves_before_staff_arm_and_then_within_the_limits() {
     bench.click_button("Arm");
     bench.wait(6000);
     assert!(bench.shows("Touch a tile"), "{:?}", bench.texts());
-    assert!(!bench.state().hand().is_armed(), "it rests open");
+    assert!(!bench.state().hand().connection.is_armed(), "it rests open");
     press(&mut bench, "Fist");
     bench.run(200);
     assert!(bench.is_on("Fist") && !bench.is_on("Open"));
@@ -222,7 +222,7 @@ fn stop_ends_everything_until_staff_arm_again_even_under_what_staff_see() {
         let mut bench = armed_with(plan());
         press(&mut bench, "Fist");
         bench.run(500);
-        assert!(bench.state().hand().is_armed(), "{index}");
+        assert!(bench.state().hand().connection.is_armed(), "{index}");
         stop(&mut bench);
         bench.run(1500);
         assert_eq!(
@@ -230,7 +230,7 @@ fn stop_ends_everything_until_staff_arm_again_even_under_what_staff_see() {
             ExhibitStage::Halted(HaltReason::Stopped),
             "{index}"
         );
-        assert!(!bench.state().hand().is_armed(), "{index}");
+        assert!(!bench.state().hand().connection.is_armed(), "{index}");
         let at = bench.angle(Dof::Index);
         assert!((50..990).contains(&at), "{index}: on its way: {at}");
         let count = bench.writes().len();
@@ -246,7 +246,7 @@ fn nothing_leads_from_the_page_to_anything_else() {
     let mut bench = shown_with(plan());
     let texts = bench.texts();
     let (endpoint, theme) = (
-        bench.state().hand().endpoint.clone(),
+        bench.state().hand().connection.endpoint.clone(),
         bench.state().settings.theme,
     );
     let poses = bench.state().poses.library.clone();
@@ -299,11 +299,11 @@ fn nothing_leads_from_the_page_to_anything_else() {
     assert!(matches!(staff(&bench), StaffPanel::Ask { .. }));
     let state = bench.state();
     assert_eq!(
-        (&state.hand().endpoint, state.settings.theme),
+        (&state.hand().connection.endpoint, state.settings.theme),
         (&endpoint, theme)
     );
     assert_eq!(state.poses.library, poses);
-    assert!(state.hand().procedure.is_none() && state.leave.is_none());
+    assert!(state.hand().procedures.card.is_none() && state.leave.is_none());
     assert_eq!(bench.writes(), []);
 }
 
@@ -329,7 +329,7 @@ fn arming_that_was_asked_for_before_does_not_arm_the_exhibition() {
     bench.wait(1000);
     bench.act(Action::Arm);
     bench.exhibit(plan());
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
     unlock(&mut bench);
     bench.click_button("Arm");
     bench.wait(6000);
@@ -431,7 +431,7 @@ fn a_warm_hand_goes_slowly_a_hot_one_rests_open_and_comes_back() {
     );
     assert!(bench.is_disabled(Role::Button, "Fist"));
     bench.wait(6000);
-    assert!(bench.angle(Dof::Index) > 950 && !bench.state().hand().is_armed());
+    assert!(bench.angle(Dof::Index) > 950 && !bench.state().hand().connection.is_armed());
     let rests = bench.writes().len();
     press(&mut bench, "Fist");
     bench.wait(20_000);

@@ -6,11 +6,11 @@ use crate::window::tune::{on_block, short};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
-use handscope::app::hand::HandState;
-use handscope::app::hand::slot::SlotId;
+use handscope::app::hands::Hand;
 use handscope::app::hands::action::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Settings;
+use handscope::app::slot::SlotId;
 use handscope::app::trials::TrialAction;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof};
@@ -39,17 +39,17 @@ fn two_armed() -> Bench {
     show(&mut bench, 0);
     arm(&mut bench);
     show(&mut bench, 1);
-    assert!(hands(&bench).iter().all(|hand| hand.is_armed()));
+    assert!(hands(&bench).iter().all(|hand| hand.connection.is_armed()));
     bench
 }
 
 fn arm(bench: &mut Bench) {
     bench.click("Arm the hand");
     bench.run(200);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
 }
 
-fn hands(bench: &Bench) -> Vec<&HandState> {
+fn hands(bench: &Bench) -> Vec<&Hand> {
     bench.state().hands.iter().collect()
 }
 
@@ -87,14 +87,17 @@ fn with_one_hand_there_is_no_strip_and_no_switch() {
 fn another_hand_leaves_the_first_connected_unwritten_and_with_its_history() {
     let mut bench = two();
     let first = hands(&bench)[0];
-    assert_eq!(first.link.state, LinkState::Monitoring);
-    let since = first.history.first_secs();
-    let reads = first.stats.state_reads;
+    assert_eq!(first.connection.status.state, LinkState::Monitoring);
+    let since = first.measured.history.first_secs();
+    let reads = first.connection.stats.state_reads;
     bench.run(1000);
     let first = hands(&bench)[0];
-    assert!(first.stats.state_reads > reads + 10, "its link goes on");
-    assert_eq!(first.history.first_secs(), since);
-    assert!(hands(&bench)[1].history.first_secs() > since);
+    assert!(
+        first.connection.stats.state_reads > reads + 10,
+        "its link goes on"
+    );
+    assert_eq!(first.measured.history.first_secs(), since);
+    assert!(hands(&bench)[1].measured.history.first_secs() > since);
     assert_eq!(
         (bench.writes().len(), bench.addresses_at(SECOND).len()),
         (0, 0)
@@ -116,10 +119,10 @@ fn what_is_done_to_one_hand_reaches_no_other() {
     let [first, second] = hands(&bench)[..] else {
         panic!("two")
     };
-    assert!(!first.is_armed() && second.is_armed());
+    assert!(!first.connection.is_armed() && second.connection.is_armed());
     assert_ne!(
-        first.joints[Dof::Index].target,
-        second.joints[Dof::Index].target
+        first.controls.joints[Dof::Index].target,
+        second.controls.joints[Dof::Index].target
     );
     show(&mut bench, 0);
     assert!(bench.is_disabled(Role::Slider, "Index angle target"));
@@ -138,7 +141,10 @@ fn stop_holds_every_hand_and_that_of_a_strip_only_its_own() {
             Some(key) => bench.key(key),
         }
         bench.run(400);
-        assert!(hands(&bench).iter().all(|hand| !hand.is_armed()), "{key:?}");
+        assert!(
+            hands(&bench).iter().all(|hand| !hand.connection.is_armed()),
+            "{key:?}"
+        );
         let written = [bench.addresses(), bench.addresses_at(SECOND)];
         for (written, before) in written.iter().zip(before) {
             assert!(
@@ -151,7 +157,10 @@ fn stop_holds_every_hand_and_that_of_a_strip_only_its_own() {
     let before = bench.addresses_at(SECOND).len();
     bench.click_button("STOP hand 1");
     bench.run(400);
-    let armed: Vec<bool> = hands(&bench).iter().map(|hand| hand.is_armed()).collect();
+    let armed: Vec<bool> = hands(&bench)
+        .iter()
+        .map(|hand| hand.connection.is_armed())
+        .collect();
     assert_eq!(armed, [false, true]);
     assert_eq!(
         bench.addresses_at(SECOND).len(),
@@ -168,7 +177,10 @@ fn hold_to_run_arms_the_shown_hand_alone_and_letting_go_stops_every_hand() {
     bench.run(100);
     let armed = |bench: &Bench| -> Vec<bool> {
         let hands = hands(bench);
-        hands.iter().map(|hand| hand.is_armed()).collect()
+        hands
+            .iter()
+            .map(|hand| hand.connection.is_armed())
+            .collect()
     };
     bench.key_down(Key::H);
     bench.run(400);
@@ -199,7 +211,7 @@ fn an_empty_slot_has_nothing_to_stop() {
     bench.run(100);
     bench.key(Key::Space);
     bench.run(400);
-    assert!(!hands(&bench)[0].is_armed());
+    assert!(!hands(&bench)[0].connection.is_armed());
     assert!(!bench.shows("STOP COULD NOT BE SENT"));
 }
 
@@ -245,7 +257,8 @@ fn a_note_and_joints_that_are_linked_stay_with_their_hand() {
     assert!(!fields.iter().any(is_note), "{fields:?}");
     let note = Action::Note(bench.now(), "only here".into());
     bench.act(note);
-    let marks = |bench: &Bench, at: usize| hands(bench)[at].history.marks(0.0, 1e9).count();
+    let marks =
+        |bench: &Bench, at: usize| hands(bench)[at].measured.history.marks(0.0, 1e9).count();
     assert!(marks(&bench, 0) > marks(&bench, 1));
 }
 
@@ -255,7 +268,10 @@ fn a_lost_link_disarms_its_own_hand_alone_and_says_which() {
     show(&mut bench, 0);
     bench.unplug_at(SECOND);
     bench.until(500, |bench| bench.shows("LINK LOST"));
-    let armed: Vec<bool> = hands(&bench).iter().map(|hand| hand.is_armed()).collect();
+    let armed: Vec<bool> = hands(&bench)
+        .iter()
+        .map(|hand| hand.connection.is_armed())
+        .collect();
     assert_eq!(armed, [true, false]);
     assert!(
         !bench.texts_with("10.0.0.2:6000: ").is_empty(),
@@ -279,7 +295,7 @@ fn what_is_open_in_one_slot_is_refused_in_another() {
     for taken in ["sim:", SECOND, "tcp:10.0.0.2?packing=high"] {
         bench.act(Action::Connect(taken.parse().unwrap()));
         bench.run(200);
-        assert_eq!(bench.state().hand().endpoint, None, "{taken}");
+        assert_eq!(bench.state().hand().connection.endpoint, None, "{taken}");
         let told = bench.state().notices.iter().next().unwrap();
         let spelled = taken.parse::<Endpoint>().unwrap().to_string();
         let is_said = |what: &NoticeKind| matches!(what, NoticeKind::OpenElsewhere { endpoint, .. } if *endpoint == spelled);
@@ -290,7 +306,10 @@ fn what_is_open_in_one_slot_is_refused_in_another() {
     show(&mut bench, 0);
     bench.act(Action::Connect(SECOND.parse().unwrap()));
     bench.run(100);
-    assert!(bench.state().hand().is_simulated(), "the first goes on");
+    assert!(
+        bench.state().hand().connection.is_simulated(),
+        "the first goes on"
+    );
 }
 
 #[test]
@@ -299,7 +318,7 @@ fn several_hands_are_open_at_one_can_interface_and_each_id_once() {
     let connect = |bench: &mut Bench, url: &str| {
         bench.act(Action::Connect(url.parse().unwrap()));
         bench.run(100);
-        let open = &bench.state().hand().endpoint;
+        let open = &bench.state().hand().connection.endpoint;
         open.as_ref() == Some(&url.parse::<Endpoint>().unwrap())
     };
     for url in ["can:can7?id=1", "can:can7?id=2"] {
@@ -325,11 +344,14 @@ fn a_hand_that_is_taken_away_is_held_first_and_the_last_one_stays() {
         bench.addresses_at(SECOND)[before..].contains(&ANGLE_SET),
         "it is held"
     );
-    assert!(bench.state().hand().is_armed(), "the other is let alone");
+    assert!(
+        bench.state().hand().connection.is_armed(),
+        "the other is let alone"
+    );
     let last = slot(&bench, 0);
     bench.act(Action::Hands(HandsAction::Remove(last)));
     bench.run(1000);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
 }
 
 #[test]
@@ -381,12 +403,12 @@ fn a_pose_or_demo_goes_to_all_armed_hands_only_where_that_is_wanted() {
     );
     assert_eq!(both[2], 0, "the third is not armed");
     let demo = starter().sequences.first().unwrap().id;
-    bench.act(Action::Play(handscope::app::hand::Play::Start(
+    bench.act(Action::Play(handscope::poses::Play::Start(
         EntryId::Sequence(demo),
     )));
     bench.run(400);
     let runs = |bench: &Bench| -> Vec<bool> {
-        let runs = |hand: &&HandState| hand.sequence.as_ref().is_some_and(|run| run.is_running());
+        let runs = |hand: &&Hand| hand.sequence.as_ref().is_some_and(|run| run.is_running());
         hands(bench).iter().map(runs).collect()
     };
     assert_eq!(runs(&bench), [true, true, false]);
@@ -431,7 +453,7 @@ fn two_hands_are_recorded_each_into_its_own_file() {
         handscope::app::sessions::SessionAction::RecordSimulated(true),
     ));
     bench.open_another("sim:?seed=2");
-    let path = |hand: &&HandState| hand.recording.as_ref()?.status.path.clone();
+    let path = |hand: &&Hand| hand.recording.as_ref()?.status.path.clone();
     // Files are made by a thread of their own.
     let mut paths = Vec::new();
     for _ in 0..500 {
@@ -496,7 +518,7 @@ async fn hands_of_the_command_line_have_a_slot_each_and_none_twice() {
     let names: Vec<&str> = state.hands.iter().map(|hand| &*hand.label.name).collect();
     assert_eq!(names, ["sim:?seed=1", "sim:?seed=2", "sim:?seed=3"]);
     assert_eq!(&*state.hand().label.name, "sim:?seed=1");
-    let is_live = |hand: &HandState| hand.link.state == LinkState::Monitoring;
+    let is_live = |hand: &Hand| hand.connection.status.state == LinkState::Monitoring;
     assert!(state.hands.iter().all(is_live));
     assert!(state.settings.recent.is_empty(), "nothing is remembered");
 }
@@ -512,14 +534,20 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     bench.run(200);
     show(&mut bench, 1);
     bench.run(600);
-    assert!(hands(&bench)[0].runs_series(), "another hand ends it not");
+    assert!(
+        hands(&bench)[0].series.is_some(),
+        "another hand ends it not"
+    );
     assert!(bench.state().trials.running.is_some());
     arm(&mut bench);
     bench.act(Action::Trial(TrialAction::Start));
     bench.run(100);
-    assert!(!bench.state().hand().runs_series(), "one series at a time");
+    assert!(
+        !bench.state().hand().series.is_some(),
+        "one series at a time"
+    );
     bench.key(Key::F7);
     bench.run(600);
-    let busy = |hand: &&HandState| hand.runs_series() || hand.is_armed();
+    let busy = |hand: &&Hand| hand.series.is_some() || hand.connection.is_armed();
     assert_eq!(hands(&bench).iter().filter(|hand| busy(hand)).count(), 0);
 }

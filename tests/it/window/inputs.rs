@@ -52,9 +52,9 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     bench.click_button("Let it move the hand: Another program");
     send(&mut bench, &sender, to, 1500);
     let hand = bench.state().hand();
-    assert_eq!(hand.link.state, LinkState::Armed);
+    assert_eq!(hand.connection.status.state, LinkState::Armed);
     let from = sender.local_addr().unwrap();
-    assert_eq!(hand.outside_owner(), Some(Owner::Stream(from)));
+    assert_eq!(hand.connection.outside_owner(), Some(Owner::Stream(from)));
     assert!(
         (bench.angle(Dof::Index) - open).abs() > 20,
         "{}",
@@ -72,7 +72,13 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     bench.click_button("STOP");
     send(&mut bench, &sender, to, 1500);
     let hand = bench.state().hand();
-    assert_eq!((hand.outside_owner(), hand.link.armed), (None, None));
+    assert_eq!(
+        (
+            hand.connection.outside_owner(),
+            hand.connection.status.armed
+        ),
+        (None, None)
+    );
     let before = bench.writes().len();
     send(&mut bench, &sender, to, 500);
     assert_eq!(bench.writes().len(), before, "nothing after a stop");
@@ -93,7 +99,7 @@ fn take_back_stops_the_hand_and_silence_is_told() {
         send(&mut bench, &sender, to, 300);
         bench.click_button("Let it move the hand: Another program");
         send(&mut bench, &sender, to, 500);
-        assert!(bench.state().hand().outside_owner().is_some());
+        assert!(bench.state().hand().connection.outside_owner().is_some());
         if ends_by_click {
             bench.click_button("Take back");
             send(&mut bench, &sender, to, 1200);
@@ -101,7 +107,13 @@ fn take_back_stops_the_hand_and_silence_is_told() {
             bench.run(2500);
         }
         let hand = bench.state().hand();
-        assert_eq!((hand.outside_owner(), hand.link.armed), (None, None));
+        assert_eq!(
+            (
+                hand.connection.outside_owner(),
+                hand.connection.status.armed
+            ),
+            (None, None)
+        );
     }
     assert!(!bench.texts_with("fell silent").is_empty());
 }
@@ -181,7 +193,7 @@ fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
     for ends in ["let go", "lost focus", "hung"] {
         bench.key_down(Key::H);
         bench.run(1500);
-        assert!(bench.state().hand().is_armed(), "{ends}");
+        assert!(bench.state().hand().connection.is_armed(), "{ends}");
         let to = Angle::nearest(100);
         bench.act(Action::Target(Dof::Index, to));
         bench.run(100);
@@ -197,7 +209,7 @@ fn with_hold_to_run_the_hand_moves_only_while_the_key_is_held() {
         let held = held_after(&bench, let_go).since(let_go);
         assert!(held <= Duration::from_millis(within), "{ends}: {held:?}");
         let hand = bench.state().hand();
-        assert_eq!(hand.link.armed, None, "{ends}");
+        assert_eq!(hand.connection.status.armed, None, "{ends}");
         bench.run(1500);
         let away = (bench.angle(Dof::Index) - to.get()).abs();
         assert!(away > 100, "{ends}: it went on to {away}");
@@ -240,14 +252,14 @@ fn a_stop_while_the_key_is_held_is_not_undone_by_it() {
     bench.run(100);
     bench.key_down(Key::H);
     bench.run(300);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
     bench.click_button("STOP");
     bench.run(3000);
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
     bench.key_up(Key::H);
     bench.key_down(Key::H);
     bench.run(300);
-    assert!(bench.state().hand().is_armed(), "pressed anew");
+    assert!(bench.state().hand().connection.is_armed(), "pressed anew");
 }
 
 #[test]
@@ -260,16 +272,22 @@ fn a_program_too_moves_the_hand_only_while_the_key_is_held() {
     bench.click_button("Let it move the hand: Another program");
     send(&mut bench, &sender, to, 600);
     let owner = Some(Owner::Stream(sender.local_addr().unwrap()));
-    assert_eq!(bench.state().hand().outside_owner(), owner);
+    assert_eq!(bench.state().hand().connection.outside_owner(), owner);
     assert_eq!(bench.writes(), [], "not held yet");
     for _ in 0..2 {
         bench.key_down(Key::H);
         send(&mut bench, &sender, to, 1500);
-        assert!(bench.state().hand().is_armed());
+        assert!(bench.state().hand().connection.is_armed());
         bench.key_up(Key::H);
         send(&mut bench, &sender, to, 1500);
         let hand = bench.state().hand();
-        assert_eq!((hand.link.armed, hand.outside_owner()), (None, owner));
+        assert_eq!(
+            (
+                hand.connection.status.armed,
+                hand.connection.outside_owner()
+            ),
+            (None, owner)
+        );
         let before = bench.writes().len();
         send(&mut bench, &sender, to, 500);
         assert_eq!(bench.writes().len(), before);
@@ -300,7 +318,7 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
         let is_answered = |bench: &Bench| {
             let clients = &bench.state().hand().inputs.clients;
             clients.iter().any(|client| client.refusal.is_some())
-                || bench.state().hand().outside_owner().is_some()
+                || bench.state().hand().connection.outside_owner().is_some()
         };
         while !is_answered(&bench) {
             assert!(Instant::now() < patience);
@@ -308,7 +326,10 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
             std::thread::sleep(Duration::from_millis(5));
         }
         bench.run(500);
-        assert_eq!(bench.state().hand().outside_owner().is_some(), allows);
+        assert_eq!(
+            bench.state().hand().connection.outside_owner().is_some(),
+            allows
+        );
         assert_eq!(bench.writes().is_empty(), !allows);
     }
 }

@@ -8,7 +8,7 @@ fn a_preset_goes_at_the_speeds_that_are_set_and_leaves_locked_joints() {
     let mut bench = Bench::armed();
     bench.drag("Index speed", 0.2, 0.9);
     bench.run(200);
-    let speed = bench.state().hand().joints[Dof::Index].speed;
+    let speed = bench.state().hand().controls.joints[Dof::Index].speed;
     assert!(speed > Speed::GENTLE);
     bench.click("Ring lock");
     bench.run(60);
@@ -20,7 +20,10 @@ fn a_preset_goes_at_the_speeds_that_are_set_and_leaves_locked_joints() {
     let sent: Vec<u16> = writes[before..].iter().map(|write| write.address).collect();
     let is_angle = |address: &u16| (ANGLE_SET..ANGLE_SET + 12).contains(address);
     assert!(!sent.is_empty() && sent.iter().all(is_angle), "{sent:?}");
-    assert_eq!(bench.state().hand().joints[Dof::Index].speed, speed);
+    assert_eq!(
+        bench.state().hand().controls.joints[Dof::Index].speed,
+        speed
+    );
     assert!(
         (bench.angle(Dof::Index) - 500).abs() < 30,
         "{}",
@@ -44,7 +47,7 @@ fn linked_fingers_go_as_far_as_the_one_that_is_moved() {
     bench.run(60);
     bench.drag("Index angle target", 1.0, 0.7);
     bench.run(60);
-    let joints = bench.state().hand().joints;
+    let joints = bench.state().hand().controls.joints;
     let target = |dof: Dof| joints[dof].target.unwrap().get();
     for dof in [Dof::Little, Dof::Ring, Dof::Middle] {
         assert!((target(dof) - target(Dof::Index)).abs() <= 12, "{dof:?}");
@@ -60,7 +63,7 @@ fn all_joints_take_one_threshold_and_one_speed() {
     bench.drag("All force threshold", 0.2, 0.5);
     bench.drag("All speed", 0.2, 0.4);
     bench.run(500);
-    let joints = bench.state().hand().joints;
+    let joints = bench.state().hand().controls.joints;
     let first = joints[Dof::Little];
     assert!(first.force.get() > 1200 && first.speed.get() > 300);
     for dof in Dof::ALL {
@@ -90,7 +93,7 @@ fn angles_are_typed_in_the_unit_that_is_shown_with_a_decimal_comma() {
     bench.key(egui::Key::Enter);
     bench.run(60);
     assert_eq!(
-        bench.state().hand().joints[Dof::Index]
+        bench.state().hand().controls.joints[Dof::Index]
             .target
             .unwrap()
             .get(),
@@ -105,7 +108,7 @@ fn angles_are_typed_in_the_unit_that_is_shown_with_a_decimal_comma() {
 fn the_wheel_moves_only_the_track_that_has_the_keyboard() {
     let mut bench = Bench::armed();
     let target = |bench: &Bench| {
-        bench.state().hand().joints[Dof::Index]
+        bench.state().hand().controls.joints[Dof::Index]
             .target
             .unwrap()
             .get()
@@ -142,7 +145,9 @@ fn one_click_on_a_number_selects_all_of_it() {
     assert_eq!(bench.typed("Index angle number"), "700");
     bench.key(egui::Key::Enter);
     bench.run(60);
-    let target = bench.state().hand().joints[Dof::Index].target.unwrap();
+    let target = bench.state().hand().controls.joints[Dof::Index]
+        .target
+        .unwrap();
     assert_eq!(target.get(), 700);
 }
 

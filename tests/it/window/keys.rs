@@ -23,15 +23,15 @@ fn arming_by_key_needs_what_arming_by_click_needs() {
     bench.key(Key::A);
     bench.wait(300);
     assert!(
-        !bench.state().hand().is_armed(),
+        !bench.state().hand().connection.is_armed(),
         "one key alone arms nothing"
     );
     bench.key_with(Modifiers::SHIFT, Key::A);
     bench.wait(300);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
     bench.key_with(Modifiers::SHIFT, Key::A);
     bench.wait(300);
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn a_number_gives_the_keyboard_to_a_joint_and_arrows_then_move_it() {
     }
     bench.key_with(Modifiers::SHIFT, Key::ArrowLeft);
     bench.wait(100);
-    let target = bench.state().hand().joints[Dof::Index]
+    let target = bench.state().hand().controls.joints[Dof::Index]
         .target
         .unwrap()
         .get();
@@ -96,10 +96,10 @@ fn switches_of_the_window_have_keys() {
     assert_eq!(bench.state().settings.angle_unit, AngleUnit::Degrees);
     bench.key(Key::T);
     bench.wait(100);
-    assert!(bench.state().hand().tare.can_undo());
+    assert!(bench.state().hand().readings.tare.can_undo());
     bench.key_with(Modifiers::SHIFT, Key::T);
     bench.wait(100);
-    assert!(!bench.state().hand().tare.can_undo());
+    assert!(!bench.state().hand().readings.tare.can_undo());
     bench.key(Key::P);
     bench.step();
     assert!(bench.is_on("Pause the plots"), "the plots hold still");
@@ -131,9 +131,9 @@ fn keys_are_letters_while_somebody_types() {
     }
     bench.key_with(Modifiers::SHIFT, Key::A);
     bench.wait(300);
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
     assert_eq!(bench.state().settings.angle_unit, AngleUnit::Raw);
-    assert!(!bench.state().hand().tare.can_undo());
+    assert!(!bench.state().hand().readings.tare.can_undo());
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
     bench.click_button("STOP");
     bench.wait(200);
     assert!(
-        !bench.state().hand().is_armed(),
+        !bench.state().hand().connection.is_armed(),
         "the list does not cover STOP"
     );
     assert!(!bench.shows("Shift+A"), "a press beside it closes it");
@@ -173,7 +173,10 @@ fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
     bench.key(Key::F1);
     bench.key(Key::Space);
     bench.wait(200);
-    assert!(!bench.state().hand().is_armed(), "and Space stops over it");
+    assert!(
+        !bench.state().hand().connection.is_armed(),
+        "and Space stops over it"
+    );
 }
 
 /// Opens something, and tells whether it is open.
@@ -223,7 +226,7 @@ fn escape_stops_an_armed_hand_whatever_is_open() {
         assert!(is_open(&bench), "{index}");
         bench.key(Key::Escape);
         bench.run(100);
-        assert!(!bench.state().hand().is_armed(), "{index}");
+        assert!(!bench.state().hand().connection.is_armed(), "{index}");
     }
 }
 

@@ -60,7 +60,7 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         bench.wait(400);
         bench.click("Arm the hand");
         bench.wait(200);
-        assert!(bench.state().hand().is_armed());
+        assert!(bench.state().hand().connection.is_armed());
         bench.drag("Index angle target", 1.0, 0.6);
         check(&bench, size, "STOP", &format!("{size} armed"));
         bench.click_first_button("Poses");
@@ -82,7 +82,7 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
             check(&bench, size, "STOP", &format!("{size} {kind}"));
         }
         assert!(
-            bench.state().hand().is_armed(),
+            bench.state().hand().connection.is_armed(),
             "looking around disarms nothing"
         );
     }

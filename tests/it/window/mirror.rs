@@ -3,11 +3,11 @@
 
 use crate::setup::window::{ANGLE_SET, Bench, Role};
 use handscope::app::action::Action;
-use handscope::app::hand::HandState;
-use handscope::app::hand::slot::SlotId;
+use handscope::app::hands::Hand;
 use handscope::app::hands::action::HandsAction;
-use handscope::app::inputs::InputAction;
+use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
+use handscope::app::slot::SlotId;
 use handscope::hand::{Angle, Dof, Fault, register};
 use handscope::inputs::follow::FollowPhase;
 use handscope::inputs::mirror::MirrorScale;
@@ -27,7 +27,7 @@ fn two() -> Bench {
     bench
 }
 
-fn hand(bench: &Bench, at: usize) -> &HandState {
+fn hand(bench: &Bench, at: usize) -> &Hand {
     bench.state().hands.iter().nth(at).unwrap()
 }
 
@@ -55,15 +55,18 @@ fn lead(bench: &mut Bench, follower: usize, leader: usize) {
     watch(bench, follower, leader);
     bench.click_button(GRANT);
     bench.run(300);
-    assert_eq!(hand(bench, follower).outside_owner(), Some(Owner::Mirror));
-    assert!(hand(bench, follower).is_armed());
+    assert_eq!(
+        hand(bench, follower).connection.outside_owner(),
+        Some(Owner::Mirror)
+    );
+    assert!(hand(bench, follower).connection.is_armed());
 }
 
 fn arm(bench: &mut Bench, at: usize) {
     show(bench, at);
     bench.click("Arm the hand");
     bench.run(200);
-    assert!(hand(bench, at).is_armed());
+    assert!(hand(bench, at).connection.is_armed());
 }
 
 /// A person moves the index of this hand.
@@ -82,7 +85,7 @@ fn send_there(bench: &Bench, index: i16) {
 
 /// The index as this hand told it last.
 fn index(bench: &Bench, at: usize) -> i16 {
-    hand(bench, at).sample.angle.unwrap().value[Dof::Index].raw()
+    hand(bench, at).readings.sample.angle.unwrap().value[Dof::Index].raw()
 }
 
 /// Where the index was sent last.
@@ -98,7 +101,11 @@ fn both_rest(bench: &mut Bench) {
     bench.run(1000);
     for at in [0, 1] {
         let hand = hand(bench, at);
-        assert_eq!((hand.link.armed, hand.link.holder), (None, None), "{at}");
+        assert_eq!(
+            (hand.connection.status.armed, hand.connection.status.holder),
+            (None, None),
+            "{at}"
+        );
         assert!((index(bench, at) - before[at]).abs() <= 2, "{at}");
     }
 }
@@ -120,7 +127,7 @@ fn a_hand_is_led_only_once_a_person_lets_it_and_stays_within_the_limits() {
         (bench.addresses_at(SECOND).len(), index(&bench, 1)),
         (0, open)
     );
-    assert!(hand(&bench, 1).outside_owner().is_none());
+    assert!(hand(&bench, 1).connection.outside_owner().is_none());
     show(&mut bench, 1);
     bench.click_button(GRANT);
     let limits = bench.state().settings.follow;
@@ -138,13 +145,19 @@ fn a_hand_is_led_only_once_a_person_lets_it_and_stays_within_the_limits() {
     assert!(index(&bench, 1).abs_diff(600) <= 25, "{}", index(&bench, 1));
     assert!(!bench.texts_with("Another hand: 1 · sim:").is_empty());
     let leader = hand(&bench, 0);
-    assert_eq!(leader.link.holder.unwrap().owner, Owner::Person);
+    assert_eq!(
+        leader.connection.status.holder.unwrap().owner,
+        Owner::Person
+    );
     let to = sent(&bench, 1).unwrap();
     bench.click_button("Take back");
     bench.run(1500);
-    assert!(!hand(&bench, 1).is_armed());
+    assert!(!hand(&bench, 1).connection.is_armed());
     assert!(index(&bench, 1).abs_diff(to) <= 25);
-    assert!(hand(&bench, 0).is_armed(), "a person took the other back");
+    assert!(
+        hand(&bench, 0).connection.is_armed(),
+        "a person took the other back"
+    );
 }
 
 #[test]
@@ -173,10 +186,10 @@ fn with_one_hand_there_is_none_that_could_lead() {
     let own = slot(&bench, 0);
     let itself = InputAction::Mirror(Some((own, MirrorScale::WHOLE)));
     bench.act(Action::Input(itself));
-    bench.act(Action::Input(InputAction::GrantMirror));
+    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
     bench.run(300);
     let hand = hand(&bench, 0);
-    assert!(hand.inputs.mirror.is_none() && hand.outside_owner().is_none());
+    assert!(hand.inputs.mirror.is_none() && hand.connection.outside_owner().is_none());
 }
 
 #[test]
@@ -195,8 +208,14 @@ fn a_lost_leader_holds_the_hand_that_it_led() {
     bench.run(2000);
     assert!((bench.angle(Dof::Index) - held).abs() <= 25);
     let hand = hand(&bench, 0);
-    assert_eq!((hand.link.armed, hand.outside_owner()), (None, None));
-    assert_eq!(hand.link.disarmed, Some(Disarmed::Silent));
+    assert_eq!(
+        (
+            hand.connection.status.armed,
+            hand.connection.outside_owner()
+        ),
+        (None, None)
+    );
+    assert_eq!(hand.connection.status.disarmed, Some(Disarmed::Silent));
     show(&mut bench, 0);
     assert!(bench.is_disabled(Role::Button, GRANT));
 }
@@ -210,7 +229,7 @@ fn a_lost_follower_stops_a_leader_that_is_moved_here() {
     bench.run(400);
     bench.unplug_at(SECOND);
     let lost = bench.now();
-    bench.until(1500, |bench| !hand(bench, 0).is_armed());
+    bench.until(1500, |bench| !hand(bench, 0).connection.is_armed());
     let writes = bench.writes();
     let held = writes.iter().rev().find(|write| write.address == ANGLE_SET);
     assert!(held.unwrap().at > lost);
@@ -220,7 +239,7 @@ fn a_lost_follower_stops_a_leader_that_is_moved_here() {
     let mut told = bench.state().notices.iter();
     assert!(told.any(|told| told.what == NoticeKind::LeaderStopped));
     assert!(bench.angle(Dof::Index) > 100);
-    assert_eq!(hand(&bench, 0).link.holder, None);
+    assert_eq!(hand(&bench, 0).connection.status.holder, None);
 }
 
 #[test]
@@ -231,15 +250,18 @@ fn a_leader_that_nobody_here_moves_is_never_written_to() {
     bench.run(400);
     bench.click_button("STOP hand 2");
     bench.run(500);
-    assert!(!hand(&bench, 1).is_armed());
+    assert!(!hand(&bench, 1).connection.is_armed());
     lead(&mut bench, 1, 0);
     bench.unplug_at(SECOND);
-    bench.until(1500, |bench| !hand(bench, 1).is_armed());
+    bench.until(1500, |bench| !hand(bench, 1).connection.is_armed());
     bench.run(500);
     assert_eq!(bench.writes().len(), 1, "what the test wrote itself");
     let mut told = bench.state().notices.iter();
     assert!(told.all(|told| told.what != NoticeKind::LeaderStopped));
-    assert_eq!(hand(&bench, 0).link.state, LinkState::Monitoring);
+    assert_eq!(
+        hand(&bench, 0).connection.status.state,
+        LinkState::Monitoring
+    );
 }
 
 #[test]
@@ -252,7 +274,7 @@ fn a_stop_of_either_stops_both() {
         bench.run(300);
         bench.click_button(stops);
         bench.run(100);
-        let armed = [0, 1].map(|at| hand(&bench, at).is_armed());
+        let armed = [0, 1].map(|at| hand(&bench, at).connection.is_armed());
         assert_eq!(armed, [false; 2], "{stops}");
         both_rest(&mut bench);
         assert!(index(&bench, 0) > 100, "{stops}: on its way");
@@ -268,8 +290,8 @@ fn a_fault_of_the_one_that_follows_stops_the_one_that_leads() {
     bench.run(300);
     bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature));
     bench.run(300);
-    assert!(!hand(&bench, 0).is_armed() && !hand(&bench, 1).is_armed());
-    assert_eq!(hand(&bench, 1).link.holder, None);
+    assert!(!hand(&bench, 0).connection.is_armed() && !hand(&bench, 1).connection.is_armed());
+    assert_eq!(hand(&bench, 1).connection.status.holder, None);
 }
 
 #[test]
@@ -278,9 +300,9 @@ fn hands_lead_one_another_in_no_circle() {
     lead(&mut bench, 1, 0);
     watch(&mut bench, 0, 1);
     assert!(bench.is_disabled(Role::Button, GRANT));
-    bench.act(Action::Input(InputAction::GrantMirror));
+    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
     bench.run(300);
-    assert_eq!(hand(&bench, 0).outside_owner(), None);
+    assert_eq!(hand(&bench, 0).connection.outside_owner(), None);
     // Over a third one.
     bench.open_another(THIRD);
     lead(&mut bench, 2, 1);
@@ -291,10 +313,13 @@ fn hands_lead_one_another_in_no_circle() {
     bench.run(1000);
     assert!(!bench.texts_with(CIRCLE).is_empty(), "it says why");
     bench.point_away();
-    bench.act(Action::Input(InputAction::GrantMirror));
+    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
     bench.run(300);
     assert_eq!(
-        (hand(&bench, 0).outside_owner(), bench.writes().len()),
+        (
+            hand(&bench, 0).connection.outside_owner(),
+            bench.writes().len()
+        ),
         (None, 0)
     );
     // Once the one in between is let go, it may.
@@ -320,6 +345,9 @@ fn a_leader_that_is_left_leads_no_more() {
         bench.run(1500);
         let led = hand(&bench, 0);
         assert!(led.inputs.mirror.is_none(), "{removes}");
-        assert_eq!((led.link.armed, led.outside_owner()), (None, None));
+        assert_eq!(
+            (led.connection.status.armed, led.connection.outside_owner()),
+            (None, None)
+        );
     }
 }

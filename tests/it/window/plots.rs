@@ -61,7 +61,7 @@ fn a_note_is_kept_in_the_history() {
     bench.run(60);
     let now = bench.now().secs();
     let note = MarkKind::note("before the squeeze").unwrap();
-    let marks = bench.state().hand().history.marks(now - 2.0, now);
+    let marks = bench.state().hand().measured.history.marks(now - 2.0, now);
     assert_eq!(marks.filter(|mark| mark.kind == note).count(), 1);
 }
 
@@ -89,7 +89,7 @@ fn notes_are_listed_shown_by_a_click_and_deleted() {
     bench.click_button("Delete the note: before the squeeze");
     bench.run(200);
     assert_eq!(listed(&bench), None);
-    let history = &bench.state().hand().history;
+    let history = &bench.state().hand().measured.history;
     let mut marks = history.marks(0.0, bench.now().secs());
     assert!(!marks.any(|mark| matches!(mark.kind, MarkKind::Note(_))));
     assert_eq!(bench.writes(), []);

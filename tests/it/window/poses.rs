@@ -47,7 +47,7 @@ fn with_sequence() -> Bench {
     }
     bench.click("Arm the hand");
     bench.run(300);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
     bench
 }
 
@@ -159,7 +159,7 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
         let ended = bench.writes().len();
         bench.wait(8000);
         assert_eq!(bench.writes().len(), ended, "{want:?}");
-        assert!(!bench.state().hand().is_armed());
+        assert!(!bench.state().hand().connection.is_armed());
     }
 }
 

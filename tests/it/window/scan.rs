@@ -5,7 +5,7 @@ use crate::setup::window::{Bench, LARGE, Role};
 use crate::window::layout::check;
 use egui::vec2;
 use handscope::app::action::Action;
-use handscope::app::inputs::InputAction;
+use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::scan::ScanStage;
 use handscope::hand::kinematics::Side;
 use handscope::link::Owner;
@@ -44,9 +44,12 @@ fn a_click_finds_the_hand_and_a_click_connects_without_a_write() {
     bench.click(&format!("Connect: {URL}"));
     assert_eq!(bench.state().scan.stage, ScanStage::Cancelled);
     bench.until(1000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
-    assert_eq!(bench.state().hand().endpoint, Some(URL.parse().unwrap()));
+    assert_eq!(
+        bench.state().hand().connection.endpoint,
+        Some(URL.parse().unwrap())
+    );
     bench.run(200);
     assert!(bench.shows(&format!("Connected: {URL}")));
     assert!(bench.writes().is_empty());
@@ -116,7 +119,7 @@ fn the_port_of_the_connected_hand_is_left_alone_with_words() {
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());
     bench.click(&format!("Connect: {URL}"));
     bench.until(1000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
     });
     let dials = bench.dials();
     bench.click_button("Scan all ports");
@@ -124,7 +127,10 @@ fn the_port_of_the_connected_hand_is_left_alone_with_words() {
     bench.run(40);
     assert!(!bench.texts_with("Disconnect first to scan it").is_empty());
     assert_eq!(bench.dials(), dials);
-    assert_eq!(bench.state().hand().link.state, LinkState::Monitoring);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Monitoring
+    );
 }
 
 #[test]
@@ -254,7 +260,7 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
     told_until(&mut bench, (&other, &hand), is_open);
     bench.click("Connect: their hand");
     bench.run(100);
-    let endpoint = bench.state().hand().endpoint.clone();
+    let endpoint = bench.state().hand().connection.endpoint.clone();
     assert_eq!(endpoint, Some("tcp:127.0.0.1:6111".parse().unwrap()));
     assert!(bench.writes().is_empty());
     bench.run(2500);
@@ -297,9 +303,9 @@ fn a_hand_elsewhere_that_follows_on_dds_keeps_this_one_from_following_too() {
     told_until(&mut bench, (&writer, &hand), |bench| other(bench).is_some());
     assert_eq!(other(&bench).map(|card| card.name), Some("first".into()));
     assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
-    bench.act(Action::Input(InputAction::GrantDds));
+    bench.act(Action::Input(InputAction::Grant(InputSource::Dds)));
     bench.run(200);
-    assert_eq!(bench.state().hand().outside_owner(), None);
+    assert_eq!(bench.state().hand().connection.outside_owner(), None);
 }
 
 #[cfg(target_os = "linux")]

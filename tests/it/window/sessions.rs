@@ -5,7 +5,7 @@ use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::hands::action::HandsAction;
-use handscope::app::inputs::InputAction;
+use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
 use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
@@ -109,13 +109,13 @@ fn the_hand_of_a_replay_leads_none() {
     bench.run(100);
     assert!(!bench.shows("Leading hand"));
     let watch = InputAction::Mirror(Some((leader, MirrorScale::WHOLE)));
-    for action in [watch, InputAction::GrantMirror] {
+    for action in [watch, InputAction::Grant(InputSource::Mirror)] {
         bench.act(Action::Input(action));
         bench.run(300);
     }
     let live = bench.live_state();
     for hand in live.hands.iter() {
-        assert!(hand.inputs.mirror.is_none() && hand.outside_owner().is_none());
+        assert!(hand.inputs.mirror.is_none() && hand.connection.outside_owner().is_none());
     }
 }
 
@@ -138,12 +138,24 @@ fn a_stop_while_a_session_is_shown_holds_every_live_hand() {
             bench.click("Arm the hand");
             bench.run(200);
         }
-        assert!(bench.state().hands.iter().all(|hand| hand.is_armed()));
+        assert!(
+            bench
+                .state()
+                .hands
+                .iter()
+                .all(|hand| hand.connection.is_armed())
+        );
         replay(&mut bench, path);
         let before = [bench.addresses().len(), bench.addresses_at(OTHER).len()];
         bench.key(key);
         bench.run(400);
-        assert!(bench.live_state().hands.iter().all(|hand| !hand.is_armed()));
+        assert!(
+            bench
+                .live_state()
+                .hands
+                .iter()
+                .all(|hand| !hand.connection.is_armed())
+        );
         let written = [bench.addresses(), bench.addresses_at(OTHER)];
         for (written, before) in written.iter().zip(before) {
             assert!(
@@ -197,13 +209,13 @@ fn while_a_recording_is_shown_nothing_is_sent_and_stop_reaches_the_live_hand() {
     let path = ended(&mut bench);
     bench.click("Arm the hand");
     bench.run(200);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
     replay(&mut bench, path);
     assert!(bench.shows("RECORDED") && !bench.shows("Arm the hand"));
     let writes = bench.writes().len();
     for action in [
         Action::Arm,
-        Action::Preset(handscope::app::hand::Preset::Close),
+        Action::Preset(handscope::poses::Preset::Close),
         Action::ClearErrors,
         Action::FactoryReset,
         Action::CalibrateForce,
@@ -218,7 +230,7 @@ fn while_a_recording_is_shown_nothing_is_sent_and_stop_reaches_the_live_hand() {
     bench.click_button("Back to live");
     bench.run(100);
     assert!(bench.state().timeline.is_none());
-    assert!(!bench.state().hand().is_armed());
+    assert!(!bench.state().hand().connection.is_armed());
 }
 
 #[test]
@@ -240,7 +252,7 @@ fn time_goes_on_stops_steps_and_loops() {
     let stood = at(&bench);
     bench.run(500);
     assert_eq!(at(&bench), stood);
-    let angle = |bench: &Bench| bench.state().hand().sample.angle.unwrap().received;
+    let angle = |bench: &Bench| bench.state().hand().readings.sample.angle.unwrap().received;
     let before = angle(&bench);
     bench.click_button("Next reading");
     settle(&mut bench, |bench| at(bench) > stood);
@@ -321,7 +333,7 @@ fn faults_stops_and_arming_are_marks_of_the_session() {
     bench.show(View::Faults);
     seek(&mut bench, fault.plus(Duration::from_millis(100)));
     bench.run(60);
-    let active = |bench: &Bench| bench.state().hand().faults.active().count();
+    let active = |bench: &Bench| bench.state().hand().readings.faults.active().count();
     let then = active(&bench);
     seek(&mut bench, Moment::from_micros(fault.micros() - 100_000));
     assert!(active(&bench) < then, "{then}");
@@ -477,7 +489,7 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     let live = |bench: &mut Bench| {
         let state = bench.live_state();
         (
-            state.hand().endpoint.clone(),
+            state.hand().connection.endpoint.clone(),
             state.poses.library.clone(),
             state.trials.plan.clone(),
         )
@@ -777,10 +789,10 @@ fn a_hand_that_moves_is_asked_for_what_it_keeps_only_once_it_rests() {
     let (mut moved, mut asked) = (false, false);
     for _ in 0..400 {
         let hand = bench.state().hand();
-        moved |= hand.link.rest == Rest::Moving;
+        moved |= hand.connection.status.rest == Rest::Moving;
         let was_asked = asked;
         asked = hand.recording.as_ref().is_some_and(HandRecording::is_asked);
-        assert!(was_asked || !asked || hand.link.rest == Rest::Resting);
+        assert!(was_asked || !asked || hand.connection.status.rest == Rest::Resting);
         bench.wait(20);
     }
     assert!(moved, "it is looked at while it moves, too");
@@ -815,10 +827,10 @@ fn a_fault_is_replayed_from_two_seconds_before_while_its_session_is_recorded() {
     let path = recorded(&mut bench);
     bench.show(View::Faults);
     bench.run(60);
-    let fault = *bench.state().hand().faults.iter().next().unwrap();
+    let fault = *bench.state().hand().readings.faults.iter().next().unwrap();
     let joint = "Replay: ";
     let looped = replay_listed(&mut bench, joint, &path);
-    let mut faults = bench.live_state().hand().faults.iter();
+    let mut faults = bench.live_state().hand().readings.faults.iter();
     let before = |since: Moment| Moment::from_micros(since.micros() - 2_000_000);
     assert!(
         faults.any(|fault| before(fault.since) == looped.0),

@@ -25,7 +25,7 @@ const JOINTS: [&str; 6] = [
 fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.until(1000, |bench| {
-        bench.state().hand().link.state == LinkState::Monitoring
+        bench.state().hand().connection.status.state == LinkState::Monitoring
             && bench.reading("Thumb normal force") != "-"
     });
     bench.wait(1000);
@@ -43,7 +43,7 @@ fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() 
         assert!((handle - f64::from(shown)).abs() <= 3.0, "{joint} {handle}");
         assert!(bench.is_disabled(Role::Slider, &format!("{joint} angle target")));
     }
-    assert!(bench.state().hand().stats.state_hz > 50.0);
+    assert!(bench.state().hand().connection.stats.state_hz > 50.0);
     assert_eq!(bench.writes(), []);
 }
 

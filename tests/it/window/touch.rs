@@ -2,9 +2,9 @@
 
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::action::Action;
-use handscope::app::hand::Preset;
 use handscope::app::readings::tare::Source;
 use handscope::hand::Finger;
+use handscope::poses::Preset;
 use handscope::sim::{Scenario, SimConfig};
 
 fn gripping() -> Bench {
@@ -32,6 +32,7 @@ fn rest(bench: &Bench, finger: Finger) -> [u32; 8] {
     bench
         .state()
         .hand()
+        .readings
         .tare
         .zero(finger)
         .expect("it was read")
@@ -71,12 +72,12 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     bench.click("Tare all");
     bench.run(60);
     let is_kept = |finger| {
-        let rest = bench.state().hand().tare.zero(finger);
+        let rest = bench.state().hand().readings.tare.zero(finger);
         rest.is_some_and(|rest| rest.source == Source::Person)
     };
     assert!(Finger::ALL.into_iter().all(is_kept));
     for finger in Finger::ALL {
-        let now = bench.state().hand().sample.tactile[finger].expect("it was read");
+        let now = bench.state().hand().readings.sample.tactile[finger].expect("it was read");
         let apart = rest(&bench, finger)[0].abs_diff(now.value.raw[0]);
         assert!(apart < 20_000, "{finger:?}: {apart}");
     }
@@ -90,7 +91,7 @@ fn nothing_is_tared_under_load_and_it_is_said_why() {
     bench.click("Tare all");
     bench.run(60);
     assert_eq!(rest(&bench, Finger::Index), before);
-    assert!(!bench.state().hand().tare.can_undo());
+    assert!(!bench.state().hand().readings.tare.can_undo());
     assert_eq!(bench.texts_with("Not tared: ").len(), 1);
 }
 
@@ -108,24 +109,38 @@ fn a_hand_that_grips_when_it_is_connected_has_no_zero_until_it_lets_go() {
     bench.wait(6000);
     bench.unplug();
     bench.wait(1000);
-    let endpoint = bench.state().hand().endpoint.clone().expect("it is wanted");
+    let endpoint = bench
+        .state()
+        .hand()
+        .connection
+        .endpoint
+        .clone()
+        .expect("it is wanted");
     bench.act(Action::Disconnect);
     bench.run(100);
     bench.plug();
     bench.act(Action::Connect(endpoint));
     bench.wait(2000);
     let pressed = |bench: &Bench| {
-        let block = bench.state().hand().sample.tactile[Finger::Index];
+        let block = bench.state().hand().readings.sample.tactile[Finger::Index];
         block.expect("it was read").value.normal_n
     };
     assert!(pressed(&bench) > 0.3, "{}", pressed(&bench));
-    assert_eq!(bench.state().hand().tare.zero(Finger::Index), None);
+    assert_eq!(bench.state().hand().readings.tare.zero(Finger::Index), None);
     assert_eq!(bench.texts_with("No zero").len(), 1);
     bench.click("Arm the hand");
     bench.run(100);
     bench.click("Open all");
     bench.wait(8000);
-    assert!(bench.state().hand().tare.zero(Finger::Index).is_some());
+    assert!(
+        bench
+            .state()
+            .hand()
+            .readings
+            .tare
+            .zero(Finger::Index)
+            .is_some()
+    );
     assert!(bench.texts_with("No zero yet").is_empty());
 }
 

@@ -24,14 +24,14 @@ fn looking() -> Bench {
 #[test]
 fn nothing_is_decoded_until_somebody_looks_and_then_all_that_was_kept() {
     let mut bench = Bench::live();
-    assert!(bench.state().hand().traffic.frames().is_empty());
+    assert!(bench.state().hand().connection.traffic.frames().is_empty());
     bench.click("Traffic");
     bench.run(100);
-    let first = &bench.state().hand().traffic.frames()[0];
+    let first = &bench.state().hand().connection.traffic.frames()[0];
     assert_eq!(first.kind.name(), "opened");
-    let before = bench.state().hand().traffic.newest();
+    let before = bench.state().hand().connection.traffic.newest();
     bench.run(500);
-    assert!(bench.state().hand().traffic.newest() > before + 100);
+    assert!(bench.state().hand().connection.traffic.newest() > before + 100);
     assert!(
         rows_with(&bench, "<- Values ANGLE_ACT ") > 0,
         "{:?}",
@@ -48,10 +48,10 @@ fn a_paused_list_stands_still_says_how_many_came_and_goes_on() {
     bench.click("Pause the list");
     bench.run(100);
     let held = rows(&bench);
-    let newest = bench.state().hand().traffic.newest();
+    let newest = bench.state().hand().connection.traffic.newest();
     bench.run(500);
     assert_eq!(rows(&bench), held);
-    assert!(bench.state().hand().traffic.newest() > newest + 100);
+    assert!(bench.state().hand().connection.traffic.newest() > newest + 100);
     assert_eq!(bench.texts_with("came since").len(), 1);
     bench.click("Pause the list");
     bench.run(100);
@@ -175,12 +175,12 @@ fn what_the_list_shows_is_written_to_the_chosen_file() {
 #[test]
 fn a_cleared_list_shows_only_what_passes_afterwards() {
     let mut bench = looking();
-    let newest = bench.state().hand().traffic.newest();
+    let newest = bench.state().hand().connection.traffic.newest();
     bench.click("Clear the list");
     bench.run(60);
     let path_rows = rows(&bench).len();
     assert!(path_rows > 0 && path_rows < 30);
-    assert!(bench.state().hand().traffic.newest() > newest);
+    assert!(bench.state().hand().connection.traffic.newest() > newest);
     assert_eq!(rows_with(&bench, "Wire opened"), 0);
 }
 

@@ -208,7 +208,10 @@ fn over_temperature_is_said_to_stay_and_stays() {
     bench.click("Clear errors");
     bench.wait(500);
     assert_eq!(bench.addresses(), [ANGLE_SET, CLEAR_ERROR]);
-    assert_eq!(bench.state().hand().link.state, LinkState::Fault);
+    assert_eq!(
+        bench.state().hand().connection.status.state,
+        LinkState::Fault
+    );
     assert!(bench.shows(cannot), "the stall is gone, the heat is not");
     assert!(bench.is_disabled(Role::Button, "Clear errors"));
 }
@@ -286,7 +289,7 @@ fn another_controller_is_a_banner_disarms_and_goes_away_again() {
     let slow = [7, 0].repeat(6);
     bench.hand(|hand, now| hand.write(SPEED_SET, &slow, now).map(drop).unwrap());
     bench.until(2000, |bench| bench.shows("ANOTHER CONTROLLER"));
-    assert_eq!(bench.state().hand().link.armed, None);
+    assert_eq!(bench.state().hand().connection.status.armed, None);
     let told = bench.texts_with("another controller wrote SPEED_SET Little: 7");
     assert_eq!(told.len(), 1, "{told:?}");
     bench.until(7000, |bench| !bench.shows("ANOTHER CONTROLLER"));
@@ -305,7 +308,9 @@ fn saving() -> Bench {
     bench.until(2000, |bench| bench.state().hand().params.read_at.is_some());
     bench.run(200);
     bench.click("Save to flash");
-    bench.until(2000, |bench| bench.state().hand().link.line_left);
+    bench.until(2000, |bench| {
+        bench.state().hand().connection.status.line_left
+    });
     bench
 }
 
@@ -316,7 +321,9 @@ fn values_that_grow_old_because_the_hand_saves_are_greyed_and_no_warning() {
     assert!(bench.shows("The hand writes its flash. Leave it switched on."));
     assert_eq!(bench.texts_with("Age ").len(), 1);
     assert!(!bench.shows("OLD VALUES"));
-    bench.until(6000, |bench| !bench.state().hand().link.line_left);
+    bench.until(6000, |bench| {
+        !bench.state().hand().connection.status.line_left
+    });
     bench.run(200);
     assert!(bench.texts_with("Age ").is_empty(), "it is read again");
 }
@@ -326,5 +333,5 @@ fn a_link_that_is_lost_while_the_hand_saves_is_not_left_to_it_any_more() {
     let mut bench = saving();
     bench.unplug();
     bench.until(5000, |bench| bench.shows("LINK LOST"));
-    assert!(!bench.state().hand().link.line_left);
+    assert!(!bench.state().hand().connection.status.line_left);
 }

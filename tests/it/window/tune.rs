@@ -44,7 +44,7 @@ pub(crate) fn on_block() -> Bench {
 pub(crate) fn arm(bench: &mut Bench) {
     bench.click("Arm the hand");
     bench.run(300);
-    assert!(bench.state().hand().is_armed());
+    assert!(bench.state().hand().connection.is_armed());
 }
 
 /// A short series that runs.
@@ -59,7 +59,7 @@ fn running() -> Bench {
 }
 
 fn runs(bench: &Bench) -> bool {
-    bench.state().hand().runs_series()
+    bench.state().hand().series.is_some()
 }
 
 fn plan(bench: &Bench) -> &TrialPlan {
@@ -201,7 +201,7 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     }
     finish(&mut bench, 60_000);
     assert!(
-        !bench.state().hand().is_armed(),
+        !bench.state().hand().connection.is_armed(),
         "each series wants its own arming"
     );
     let session = last(&bench);
@@ -230,11 +230,15 @@ fn after_a_series_nothing_is_said_to_move_a_hand_that_came_to_rest() {
     bench.click("Start trials");
     bench.until(60_000, |bench| !runs(bench));
     let stands = |bench: &Bench| {
-        let status = bench.state().hand().sample.status.unwrap();
+        let status = bench.state().hand().readings.sample.status.unwrap();
         status.value.iter().all(|(_, status)| status.is_stopped())
     };
     bench.until(2000, stands);
-    assert_eq!(bench.state().hand().link.rest, Rest::Moving, "not yet");
+    assert_eq!(
+        bench.state().hand().connection.status.rest,
+        Rest::Moving,
+        "not yet"
+    );
     bench.run(20);
     assert_eq!(bench.texts_with("The hand moves"), [""; 0]);
 }
@@ -288,7 +292,7 @@ fn any_key_stops_it_and_does_nothing_else() {
         bench.key(key);
         finish(&mut bench, 1000);
         assert_eq!(ended_by(&bench), Abort::Person, "{key:?}");
-        assert!(!bench.state().hand().is_armed());
+        assert!(!bench.state().hand().connection.is_armed());
         assert!(bench.shows("Last series: Ended by a person."), "{key:?}");
     }
 }

@@ -1,8 +1,8 @@
 //! What the recorder notes between measurements: what a person did, and how a drive's status and faults changed.
 
-use crate::app::hand::joint::Preset;
-use crate::app::hand::sequence::Play;
 use crate::hand::{Angle, Dof, Faults, Force, Moment, Speed, Status};
+use crate::poses::Play;
+use crate::poses::Preset;
 use std::sync::Arc;
 
 /// Something a person did that was sent to the hand, or that ends what is sent.

@@ -2,15 +2,15 @@
 //! thread.
 
 use crate::app::env::Env;
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
+use crate::app::replay::player::{self, Opened, SessionPlayer};
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
 use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
-use crate::app::sessions::player::{self, Opened, SessionPlayer};
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::calendar::since_1970;
@@ -364,9 +364,9 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
 
 /// True while something goes on at a live hand that a person must see.
 fn is_busy(state: &State) -> bool {
-    let is_busy = |hand: &HandState| {
-        let asks = hand.procedure.is_some() || hand.params.question.is_some();
-        hand.runs_series() || asks
+    let is_busy = |hand: &Hand| {
+        let asks = hand.procedures.card.is_some() || hand.params.question.is_some();
+        hand.series.is_some() || asks
     };
     state.hands.iter().any(is_busy) || state.exhibit.is_some()
 }

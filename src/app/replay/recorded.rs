@@ -1,6 +1,6 @@
 //! The state of the window at a moment of a recorded session: everything is taken in as it was when it was heard.
 
-use crate::app::hand::HandState;
+use crate::app::hands::Hand;
 use crate::app::notices::Notices;
 use crate::hand::Moment;
 use crate::history::MarkKind;
@@ -26,14 +26,14 @@ const WHOLE: Duration = Duration::from_secs(60);
 /// A hand as it was, and what was told of it then.
 #[derive(Debug, Default)]
 pub(crate) struct Recorded {
-    pub(crate) hand: HandState,
+    pub(crate) hand: Hand,
     pub(crate) notices: Notices,
     pub(crate) tap: WireTap,
 }
 
 /// What recorded entries are taken into.
 pub(crate) struct Shown<'a> {
-    pub(crate) hand: &'a mut HandState,
+    pub(crate) hand: &'a mut Hand,
     pub(crate) notices: &'a mut Notices,
     pub(crate) tap: &'a WireTap,
 }
@@ -71,7 +71,6 @@ impl Recorded {
             shown.take(&entry);
             ControlFlow::Continue(())
         })?;
-        recorded.hand.now = at;
         Ok(recorded)
     }
 
@@ -92,9 +91,9 @@ impl Recorded {
         let endpoint: Option<Endpoint> = file.opening().hand.parse().ok();
         let mut recorded = Self::default();
         if let Some(endpoint) = &endpoint {
-            recorded.hand.traffic = Traffic::of(recorded.tap.clone(), endpoint);
+            recorded.hand.connection.traffic = Traffic::of(recorded.tap.clone(), endpoint);
         }
-        recorded.hand.endpoint = endpoint;
+        recorded.hand.connection.endpoint = endpoint;
         recorded
     }
 
@@ -107,12 +106,12 @@ impl Recorded {
             .overview()
             .rows_within(second(from), second(until).saturating_sub(1));
         for row in rows {
-            self.hand.history.overview(row);
+            self.hand.measured.history.overview(row);
         }
         let marks = file.overview().marks.iter();
         for mark in marks.filter(|mark| (from..until).contains(&mark.at)) {
             if let Some(kind) = mark_kind(mark.kind, &mark.words) {
-                self.hand.history.mark(mark.at, kind);
+                self.hand.measured.history.mark(mark.at, kind);
             }
         }
     }
@@ -122,9 +121,8 @@ impl Shown<'_> {
     /// Takes in one entry, at its own time.
     pub(crate) fn take(&mut self, entry: &Entry) {
         let at = entry.at();
-        self.hand.now = self.hand.now.max(at);
         match entry {
-            Entry::Heard(record) => self.hand.take(record, self.notices),
+            Entry::Heard(record) => self.hand.take(record, &mut self.notices.about(None), at),
             Entry::Wire(piece) => self.tap.record(piece.at, piece.kind, &piece.bytes),
             Entry::Link(report) => self.link(report),
             Entry::Event(event) => self.event(event),
@@ -134,10 +132,11 @@ impl Shown<'_> {
 
     fn link(&mut self, report: &LinkReport) {
         if let Ok(status) = serde_json::from_str(&report.status) {
-            self.hand.take_status(status, self.notices);
+            self.hand
+                .take_status(status, &mut self.notices.about(None), report.at);
         }
         if let Ok(figures) = serde_json::from_str(&report.figures) {
-            self.hand.stats = figures;
+            self.hand.connection.stats = figures;
         }
     }
 
@@ -147,7 +146,7 @@ impl Shown<'_> {
                 if let Some(kind) = MarkKind::note(&event.words) {
                     let at = event.at;
                     let mark = crate::history::Mark { at, kind };
-                    self.hand.history.remove_mark(&mark);
+                    self.hand.measured.history.remove_mark(&mark);
                 }
             }
             (EventKind::Parameters, _) => {
@@ -155,7 +154,7 @@ impl Shown<'_> {
                     self.hand.params.take_recorded(&file.params, event.at);
                 }
             }
-            (EventKind::Note, Some(kind)) => self.hand.history.mark(event.at, kind),
+            (EventKind::Note, Some(kind)) => self.hand.measured.history.mark(event.at, kind),
             _ => {}
         }
     }

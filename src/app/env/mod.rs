@@ -1,7 +1,12 @@
-//! What the program stands on.
+//! What the program stands on: its runtime and clock, how wires are opened, how files are asked for, and tasks beside the window.
 
-use crate::app::files::choose::ChooseFile;
-use crate::app::files::reveal::Reveal;
+pub mod choose;
+pub mod day_folder;
+pub mod reveal;
+pub(crate) mod running;
+
+use crate::app::env::choose::ChooseFile;
+use crate::app::env::reveal::Reveal;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
 use std::path::PathBuf;

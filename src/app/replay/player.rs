@@ -2,13 +2,13 @@
 
 use crate::app::action::Action;
 use crate::app::env::Env;
-use crate::app::hand::HandState;
 use crate::app::notices::NoticeKind;
+use crate::app::replay::beside;
+use crate::app::replay::recorded::{Recorded, Shown};
+use crate::app::sessions::BesideSession;
 use crate::app::sessions::about::{SessionAbout, SessionNote};
 use crate::app::sessions::action::SessionAction;
-use crate::app::sessions::beside::{self, BesideSession};
 use crate::app::sessions::item::SessionItem;
-use crate::app::sessions::replay::{Recorded, Shown};
 use crate::app::sessions::timeline::Timeline;
 use crate::app::state::State;
 use crate::hand::{Group, Moment};
@@ -238,7 +238,6 @@ impl SessionPlayer {
     /// Lets the views show this moment.
     fn show(&mut self, at: Moment) {
         self.state.now = at;
-        self.state.hands.shown_mut().now = at;
         if let Some(line) = self.line() {
             line.at = at;
         }
@@ -250,7 +249,7 @@ impl SessionPlayer {
         self.ticked = live.now;
         self.state.settings.clone_from(&live.settings);
         self.state.sessions.clone_from(&live.sessions);
-        let eyes = live.hands.iter().any(HandState::may_move);
+        let eyes = live.hands.iter().any(|hand| hand.connection.may_move());
         match BackgroundJob::take_from(&mut self.beside) {
             Some(Ok(beside)) => self.state.beside = Some(beside),
             Some(Err(refused)) => self.state.notices.push(self.state.now, refused),

@@ -1,11 +1,13 @@
 //! Begins an exhibition in place of the window, and ends it.
 
+use crate::app::ctx::Ctx;
 use crate::app::env::Env;
+use crate::app::exhibit::exhibit_file;
 use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition};
-use crate::app::files::exhibit_file;
-use crate::app::hand::HandState;
-use crate::app::notices::{NoticeKind, Notices};
+use crate::app::hands::Hand;
+use crate::app::notices::NoticeKind;
+use crate::app::program::hands;
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
@@ -21,23 +23,24 @@ pub(crate) struct ExhibitWork {
 impl ExhibitWork {
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub(crate) fn enter(&mut self, start: Exhibition, state: &mut State, env: &Env, now: Moment) {
-        self.leave(state, now);
+        self.leave(state, env, now);
         // A file that is still asked for would take the place of this exhibition, PIN and all.
         self.opening = None;
-        let State { hands, notices, .. } = state;
-        if hands.iter().filter(|hand| hand.open.is_some()).count() > 1 {
-            notices.push(now, NoticeKind::ExhibitWantsOneHand);
+        state.now = now;
+        let is_open = |hand: &&Hand| hand.connection.open.is_some();
+        if state.hands.iter().filter(is_open).count() > 1 {
+            state.notices.push(now, NoticeKind::ExhibitWantsOneHand);
             return;
         }
-        let hand = hands.shown_mut();
-        hand.now = now;
-        let is_busy = hand.runs_series() || hand.procedure.is_some() || hand.leaving.is_some();
-        if is_busy || hand.open.is_none() {
-            notices.push(now, NoticeKind::ExhibitNotBegun);
+        let hand = state.hands.shown();
+        if !hand.activity().lets_exhibit() || !is_open(&hand) {
+            state.notices.push(now, NoticeKind::ExhibitNotBegun);
             return;
         }
-        stop_or_disarm(hand, notices);
-        hand.take_over();
+        hands::with_shown(state, env, |hand, _, ctx| {
+            stop_or_disarm(hand, ctx);
+            hand.take_over();
+        });
         let language = state.settings.language;
         state.exhibit = ExhibitState::begin(start, state.hands.shown(), language, env);
         if let Some(exhibit) = &mut state.exhibit
@@ -72,20 +75,19 @@ impl ExhibitWork {
         let leaves = exhibit.act(action, now);
         let ends_program = exhibit.ends_program;
         if leaves {
-            self.leave(state, now);
+            self.leave(state, env, now);
         }
         leaves && ends_program
     }
 
-    fn leave(&mut self, state: &mut State, now: Moment) {
+    fn leave(&mut self, state: &mut State, env: &Env, now: Moment) {
         let Some(exhibit) = state.exhibit.take() else {
             return;
         };
         state.settings.language = exhibit.language;
         self.left = Some(exhibit.report);
-        let hand = state.hands.shown_mut();
-        hand.now = now;
-        stop_or_disarm(hand, &mut state.notices);
+        state.now = now;
+        hands::with_shown(state, env, |hand, _, ctx| stop_or_disarm(hand, ctx));
     }
 
     /// Lets the exhibition, its file and its report go on.
@@ -120,10 +122,10 @@ impl ExhibitWork {
 }
 
 /// Stops a hand that may move. One that rests is not armed later by what was asked before.
-fn stop_or_disarm(hand: &mut HandState, notices: &mut Notices) {
-    if hand.may_move() {
-        hand.stop(notices)
+fn stop_or_disarm(hand: &mut Hand, ctx: &mut Ctx<'_>) {
+    if hand.connection.may_move() {
+        hand.stop(ctx)
     } else {
-        hand.disarm()
+        hand.disarm(ctx.now)
     }
 }

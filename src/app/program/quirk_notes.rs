@@ -1,12 +1,12 @@
 //! Keeps the quirk sheet of the hand that answers now, off the window's thread, and says where it differs from the one of
 //! last time. Decides nothing about the hand.
 
+use crate::app::ctx::Ctx;
 use crate::app::env::Env;
-use crate::app::hand::HandState;
-use crate::app::hand::slot::SlotId;
-use crate::app::notices::{NoticeKind, Notices};
+use crate::app::hands::Hand;
+use crate::app::notices::NoticeKind;
 use crate::app::procedures::Procedure;
-use crate::hand::Moment;
+use crate::app::slot::SlotId;
 use crate::link::Quirks;
 use crate::link::quirks::book::{self, QuirkBook};
 use crate::params::place::WhichPlace;
@@ -46,26 +46,20 @@ impl QuirkNotes {
     }
 
     /// Notes a hand that is new or answers otherwise, and tells where it differs from last time.
-    pub(crate) fn tick(
-        &mut self,
-        hand: &mut HandState,
-        env: &Env,
-        notices: &mut Notices,
-        now: Moment,
-    ) {
+    pub(crate) fn tick(&mut self, hand: &mut Hand, ctx: &mut Ctx<'_>) {
         match BackgroundJob::take_from(&mut self.under_way) {
             None => {}
             Some(Err(error)) => {
                 let path = self.path.clone().unwrap_or_default();
-                notices.push(now, NoticeKind::not_saved(path, &error));
+                ctx.tell(NoticeKind::not_saved(path, &error));
             }
             Some(Ok((before, sheet))) => {
                 if let Some(differs) = self.difference(before.as_ref(), &sheet) {
-                    notices.push(now, differs);
+                    ctx.tell(differs);
                 }
             }
         }
-        if let Some(Procedure::Place(card)) = &hand.procedure
+        if let Some(Procedure::Place(card)) = &hand.procedures.card
             && let Some(Ok(report)) = card.stage.end()
             && let PlaceEnd::Kept { saved, .. } = &report.end
         {
@@ -73,16 +67,20 @@ impl QuirkNotes {
             self.own = Some((card.change.clone(), in_flash));
         }
         let quirks = self.quirks(hand);
-        let endpoint = hand.endpoint.as_ref().filter(|endpoint| !endpoint.is_sim());
+        let endpoint = hand
+            .connection
+            .endpoint
+            .as_ref()
+            .filter(|endpoint| !endpoint.is_sim());
         let new = endpoint.filter(|endpoint| {
             let noted = self.noted.get(&hand.label.slot);
-            hand.link.state.is_live()
+            hand.connection.status.state.is_live()
                 && noted.is_none_or(|noted| (&noted.0, noted.1) != (endpoint, quirks))
         });
         if let Some(endpoint) = new.filter(|_| self.under_way.is_none()).cloned() {
             let noted = (endpoint.clone(), quirks);
             self.noted.insert(hand.label.slot, noted);
-            self.note(endpoint, quirks, env);
+            self.note(endpoint, quirks, ctx.env);
         }
     }
 
@@ -102,12 +100,12 @@ impl QuirkNotes {
     }
 
     /// What the hand answers; after a change that this program made and saved, what it will answer once it is asked again.
-    fn quirks(&self, hand: &HandState) -> Quirks {
-        let mut quirks = hand.link.quirks;
+    fn quirks(&self, hand: &Hand) -> Quirks {
+        let mut quirks = hand.connection.status.quirks;
         let Some((change, true)) = &self.own else {
             return quirks;
         };
-        let is_there = hand.endpoint.as_ref().is_some_and(|hand| {
+        let is_there = hand.connection.endpoint.as_ref().is_some_and(|hand| {
             let places = [
                 change.places.endpoint(WhichPlace::Old),
                 change.places.endpoint(WhichPlace::New),

@@ -1,29 +1,51 @@
 //! What is heard of a link changes what is shown and told, and nothing else. No link is open here.
 
-use super::*;
-use crate::app::notices::Level;
-use crate::hand::{Angle, AngleReading, ArmEpoch, Faults, Timed};
-use crate::record::{ArmRefusal, Rest};
+use crate::app::ctx::Ctx;
+use crate::app::env::Env;
+use crate::app::env::choose::NoChoice;
+use crate::app::env::reveal::no_reveal;
+use crate::app::hand::controls::JointWish;
+use crate::app::hands::Hand;
+use crate::app::notices::{Level, NoticeKind, Notices};
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Dof, Faults, Group, Groups, HandSample, Moment, PerDof, Timed,
+};
+use crate::link::{Clock, LinkStatus, LinkTrouble};
+use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest};
+use crate::transport::SystemDial;
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
 
 struct Bench {
-    hand: HandState,
+    hand: Hand,
     notices: Notices,
     millis: u64,
+    env: Env,
+    _runtime: Runtime,
 }
 
 impl Bench {
     fn new() -> Self {
-        let mut hand = HandState {
-            endpoint: "rs485:/dev/ttyUSB0".parse().ok(),
-            ..HandState::default()
-        };
+        let mut hand = Hand::default();
+        hand.connection.endpoint = "rs485:/dev/ttyUSB0".parse().ok();
+        let runtime = Builder::new_current_thread().build().unwrap();
         hand.follow();
         Self {
             hand,
             notices: Notices::default(),
             millis: 1,
+            env: Env {
+                runtime: runtime.handle().clone(),
+                clock: Clock::start(),
+                dial: Arc::new(SystemDial),
+                wake: Arc::new(|| ()),
+                files: Arc::new(NoChoice),
+                reveal: no_reveal(),
+                settings_path: None,
+                documents: None,
+            },
+            _runtime: runtime,
         }
     }
 
@@ -34,6 +56,15 @@ impl Bench {
         bench
     }
 
+    fn stop(&mut self) {
+        let mut ctx = Ctx {
+            now: self.now(),
+            env: &self.env,
+            notices: self.notices.about(None),
+        };
+        self.hand.stop(&mut ctx);
+    }
+
     fn now(&self) -> Moment {
         Moment::from_micros(self.millis * 1000)
     }
@@ -41,8 +72,9 @@ impl Bench {
     /// The link says so, and nothing else of before.
     fn status(&mut self, status: LinkStatus) {
         self.millis += 10;
-        self.hand.now = self.now();
-        self.hand.take_status(status, &mut self.notices);
+        let now = self.now();
+        self.hand
+            .take_status(status, &mut self.notices.about(None), now);
         self.hand.follow();
     }
 
@@ -72,8 +104,8 @@ impl Bench {
         fresh.insert(group);
         let sample = Arc::new(sample);
         let record = Record::Reading { sample, fresh };
-        self.hand.now = self.now();
-        self.hand.take(&record, &mut self.notices);
+        let now = self.now();
+        self.hand.take(&record, &mut self.notices.about(None), now);
         self.hand.follow();
     }
 
@@ -86,13 +118,13 @@ impl Bench {
                 asked: at,
                 received: at,
             }),
-            ..self.hand.sample
+            ..self.hand.readings.sample
         };
         self.read(sample, Group::Angle);
     }
 
     fn target(&self, dof: Dof) -> Option<i16> {
-        self.hand.joints[dof].target.map(Angle::get)
+        self.hand.controls.joints[dof].target.map(Angle::get)
     }
 
     fn told(&self) -> Vec<NoticeKind> {
@@ -120,45 +152,46 @@ fn sliders_follow_the_hand_until_it_is_armed() {
 
 #[test]
 fn an_old_or_unknown_pose_cannot_be_armed() {
-    let mut bench = Bench::monitoring(400);
-    bench.hand.now = bench.now().plus(Duration::from_millis(300));
+    let bench = Bench::monitoring(400);
+    let later = bench.now().plus(Duration::from_millis(300));
     let unread = Some(ArmRefusal::NotRead);
-    assert_eq!(bench.hand.arm_refusal(), unread);
-    assert_eq!(bench.hand.pose_now(), None, "nor kept as a pose");
+    assert_eq!(bench.hand.arm_refusal(later), unread);
+    assert_eq!(bench.hand.pose_now(later), None, "nor kept as a pose");
     let nowhere = Bench::new();
-    assert_eq!(nowhere.hand.arm_refusal(), Some(ArmRefusal::Offline));
+    assert_eq!(
+        nowhere.hand.arm_refusal(nowhere.now()),
+        Some(ArmRefusal::Offline)
+    );
 }
 
 #[test]
 fn the_links_own_word_comes_later_and_arms_nothing_after_a_stop() {
     let mut bench = Bench::monitoring(400);
     bench.epoch(1);
-    assert!(bench.hand.is_armed());
-    let armed = bench.hand.link.clone();
-    bench.hand.now = bench.now();
-    bench.hand.stop(&mut bench.notices);
-    assert!(!bench.hand.is_armed(), "at once");
+    assert!(bench.hand.connection.is_armed());
+    let armed = bench.hand.connection.status.clone();
+    bench.stop();
+    assert!(!bench.hand.connection.is_armed(), "at once");
     // Until then it still says armed.
     bench.status(armed);
-    assert!(!bench.hand.is_armed() && bench.hand.link.armed.is_none());
+    assert!(!bench.hand.connection.is_armed() && bench.hand.connection.status.armed.is_none());
     assert_eq!(bench.target(Dof::Index), Some(400));
     bench.epoch(2);
-    assert!(bench.hand.is_armed(), "a later arming counts");
+    assert!(bench.hand.connection.is_armed(), "a later arming counts");
 }
 
 #[test]
 fn after_disarming_the_sliders_follow_again() {
     let mut bench = Bench::monitoring(400);
     bench.epoch(1);
-    bench.hand.target(Dof::Index, Angle::MAX);
+    bench.hand.wish(Dof::Index, JointWish::Target(Angle::MAX));
     bench.angles(410);
     assert_eq!(
         (bench.target(Dof::Index), bench.target(Dof::Ring)),
         (Some(1000), Some(400)),
         "where a person has them while it is armed"
     );
-    bench.hand.now = bench.now();
-    bench.hand.disarm();
+    bench.hand.disarm(bench.now());
     bench.state(LinkState::Monitoring);
     bench.angles(450);
     assert_eq!(bench.target(Dof::Index), Some(450));
@@ -168,7 +201,7 @@ fn after_disarming_the_sliders_follow_again() {
 fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
     let mut bench = Bench::monitoring(400);
     bench.epoch(1);
-    bench.hand.target(Dof::Index, Angle::MIN);
+    bench.hand.wish(Dof::Index, JointWish::Target(Angle::MIN));
     let trouble = LinkTrouble::Silent { silent: 5 };
     bench.status(LinkStatus {
         trouble: Some(trouble.clone()),
@@ -176,7 +209,10 @@ fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
         ..bench.in_state(LinkState::Offline)
     });
     assert_eq!(bench.target(Dof::Index), None);
-    assert!(bench.hand.sample.angle.is_some(), "kept, and shown as old");
+    assert!(
+        bench.hand.readings.sample.angle.is_some(),
+        "kept, and shown as old"
+    );
     let lost = NoticeKind::LinkLost(trouble);
     assert!(bench.told().contains(&lost));
     let disarmed = NoticeKind::Disarmed(Disarmed::LinkLost);
@@ -189,7 +225,7 @@ fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
     );
     bench.angles(700);
     assert_eq!(bench.target(Dof::Index), Some(700));
-    assert!(!bench.hand.is_armed());
+    assert!(!bench.hand.connection.is_armed());
     assert!(bench.told().contains(&NoticeKind::Reconnected));
 }
 
@@ -259,7 +295,7 @@ fn holds_and_faults_are_told() {
     };
     let sample = HandSample {
         faults: Some(faults),
-        ..bench.hand.sample
+        ..bench.hand.readings.sample
     };
     for _ in 0..3 {
         bench.read(sample, Group::Faults);
@@ -268,7 +304,7 @@ fn holds_and_faults_are_told() {
     let log = bench.notices.log();
     let told = log.filter(|notice| is_fault(&notice.what)).count();
     assert_eq!(told, 6, "once a joint");
-    assert_eq!(bench.hand.faults.unseen().count(), 6);
+    assert_eq!(bench.hand.readings.faults.unseen().count(), 6);
     assert!(
         !bench.told().iter().any(is_fault),
         "the list of faults asks for attention"
@@ -280,8 +316,7 @@ fn stop_without_a_live_link_says_that_nothing_was_sent() {
     for state in [LinkState::Offline, LinkState::Identifying] {
         let mut bench = Bench::new();
         bench.state(state);
-        bench.hand.now = bench.now();
-        bench.hand.stop(&mut bench.notices);
+        bench.stop();
         assert_eq!(bench.told(), [NoticeKind::StopNotSent], "{state:?}");
     }
 }
@@ -294,29 +329,28 @@ fn a_hand_that_was_moved_and_is_not_known_to_rest_is_stopped_before_it_is_left()
         (Rest::Unknown, true),
         (Rest::Resting, false),
     ] {
-        bench.hand.commanded = true;
+        bench.hand.connection.commanded = true;
         bench.status(LinkStatus {
             rest,
             ..bench.in_state(LinkState::Monitoring)
         });
-        assert_eq!(bench.hand.may_move(), may_move, "{rest:?}");
+        assert_eq!(bench.hand.connection.may_move(), may_move, "{rest:?}");
     }
 }
 
 #[test]
 fn a_hand_at_rest_that_was_only_watched_needs_no_stop_to_leave() {
     let mut bench = Bench::monitoring(400);
-    assert!(!bench.hand.may_move());
+    assert!(!bench.hand.connection.may_move());
     bench.epoch(1);
-    assert!(bench.hand.may_move());
+    assert!(bench.hand.connection.may_move());
     let told = bench.now();
-    bench.hand.now = told;
-    bench.hand.stop(&mut bench.notices);
-    assert!(!bench.hand.is_held(told));
+    bench.stop();
+    assert!(!bench.hand.connection.is_held(told));
     let rest = bench.now().plus(Duration::from_millis(1));
     bench.status(LinkStatus {
         hold: Hold::Confirmed { at: told, rest },
         ..bench.in_state(LinkState::Monitoring)
     });
-    assert!(bench.hand.is_held(told));
+    assert!(bench.hand.connection.is_held(told));
 }

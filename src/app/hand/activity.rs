@@ -1,0 +1,52 @@
+//! What goes on at a hand, and so who may move it now. The only place where that is decided.
+
+use crate::link::Owner;
+
+/// What goes on at a hand. Of several things it is the first of these.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Activity {
+    /// It was told to hold, and is left as soon as it rests.
+    Leaving,
+    /// A card is open: its place is changed, its parameters are reset, or its force sensors are calibrated.
+    Procedure,
+    /// A series of trials runs.
+    Series,
+    /// It follows another than this window, which a person let.
+    Following(Owner),
+    /// An entry of the library is played. A person takes the hand from it by moving it.
+    Playing,
+    Idle,
+}
+
+impl Activity {
+    /// Whether the person at this window may move an armed hand: joints, poses, sequences, gestures.
+    pub const fn lets_person_move(self) -> bool {
+        matches!(self, Self::Playing | Self::Idle)
+    }
+
+    /// Whether a person may arm the hand. One that follows is taken back by that.
+    pub const fn lets_arm(self) -> bool {
+        matches!(
+            self,
+            Self::Series | Self::Following(_) | Self::Playing | Self::Idle
+        )
+    }
+
+    /// Whether a person may let another than this window move it.
+    pub const fn lets_grant(self) -> bool {
+        matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
+    }
+
+    /// Whether nothing has the hand to itself, so that what it keeps may be read beside.
+    pub const fn lets_read_beside(self) -> bool {
+        matches!(
+            self,
+            Self::Leaving | Self::Following(_) | Self::Playing | Self::Idle
+        )
+    }
+
+    /// Whether an exhibition may begin.
+    pub const fn lets_exhibit(self) -> bool {
+        matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
+    }
+}

@@ -1,0 +1,460 @@
+//! One hand, composed: the parts own their state and know nothing of each other; what takes several of them is here.
+
+use crate::app::ctx::Ctx;
+use crate::app::env::Env;
+use crate::app::env::running::Running;
+use crate::app::hand::controls::JointWish;
+use crate::app::hand::open::Leaving;
+use crate::app::hand::status_news::Tell;
+use crate::app::hand::{Activity, Connection, Controls, HoldKey, SequenceRun};
+use crate::app::inputs::HandInputs;
+use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
+use crate::app::params::ParamsState;
+use crate::app::procedures::Procedures;
+use crate::app::readings::{Freshness, Measured, Readings};
+use crate::app::sessions::recording::HandRecording;
+use crate::app::settings::Settings;
+use crate::app::slot::{HandLabel, place_name};
+use crate::app::trials::work::start_refusal;
+use crate::app::trials::{SeriesRun, StartRefusal};
+use crate::hand::kinematics::Side;
+use crate::hand::{
+    Angle, ArmEpoch, Dof, Finger, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
+};
+use crate::history::MarkKind;
+use crate::link::session::motion::arm_refusal;
+use crate::link::{HoldToRun, LinkStatus, Owner, RequestError};
+use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
+use crate::record::{ArmRefusal, LinkState, Record};
+use crate::tasks::play::{self, PlayCommand, PlayStart};
+use crate::transport::Endpoint;
+use crate::trials::{Abort, TrialPlan};
+use std::time::Duration;
+use tokio::sync::mpsc;
+
+/// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
+/// which the link itself gives the alarm, and a little.
+pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
+/// Commands to a sequence that may wait: a person cannot press faster than a task takes them.
+const COMMANDS_MAX: usize = 16;
+
+/// Everything about one hand.
+#[derive(Debug, Default)]
+pub struct Hand {
+    /// Which of several, and what it is called.
+    pub label: HandLabel,
+    /// Left or right, as the person says: no register does.
+    pub side: Side,
+    pub connection: Connection,
+    pub readings: Readings,
+    pub measured: Measured,
+    pub controls: Controls,
+    /// The sequence that runs, or ran last.
+    pub sequence: Option<SequenceRun>,
+    /// The series of trials that runs.
+    pub series: Option<SeriesRun>,
+    /// What is done under a card.
+    pub procedures: Procedures,
+    /// What besides the window may move the hand, and who uses it.
+    pub inputs: HandInputs,
+    /// What the hand keeps, and what of it is to be changed.
+    pub params: ParamsState,
+    /// The session that is recorded of it.
+    pub recording: Option<HandRecording>,
+    /// The hand is being left: it was told to hold.
+    pub(crate) leaving: Option<Leaving>,
+    /// Its slot goes as soon as it is left.
+    pub(crate) is_removed: bool,
+}
+
+impl Hand {
+    /// What goes on, and so who may move it.
+    pub fn activity(&self) -> Activity {
+        if self.leaving.is_some() {
+            Activity::Leaving
+        } else if self.procedures.card.is_some() {
+            Activity::Procedure
+        } else if self.series.is_some() {
+            Activity::Series
+        } else if let Some(owner) = self.connection.outside_owner() {
+            Activity::Following(owner)
+        } else if self.sequence.as_ref().is_some_and(SequenceRun::is_running) {
+            Activity::Playing
+        } else {
+            Activity::Idle
+        }
+    }
+
+    /// Why a plan of trials cannot begin now, if it makes sense at all.
+    pub fn series_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
+        let armed = self.connection.status.armed;
+        let armed = armed.filter(|_| self.connection.is_armed());
+        start_refusal(plan, self.series.is_some(), armed, &self.controls.locked())
+    }
+
+    /// How fresh a value asked for at `asked` is now.
+    pub fn freshness(&self, asked: Option<Moment>, now: Moment) -> Freshness {
+        let is_live = self.connection.is_live();
+        self.readings.freshness(asked, is_live, now)
+    }
+
+    /// The same for a reading of a fingertip.
+    pub fn tip_freshness(&self, finger: Finger, now: Moment) -> Freshness {
+        let is_live = self.connection.is_live();
+        self.readings.tip_freshness(finger, is_live, now)
+    }
+
+    /// The pose that the hand has, if all six angles are known, live and fresh.
+    pub fn pose_now(&self, now: Moment) -> Option<PerDof<Angle>> {
+        self.readings.pose_now(self.connection.is_live(), now)
+    }
+
+    /// Takes its name and side from what is kept of it.
+    pub(crate) fn apply_settings(&mut self, settings: &Settings) {
+        let endpoint = self.connection.endpoint.as_ref();
+        self.side = settings.side_of(endpoint);
+        let name = endpoint.map(|endpoint| match settings.hand_name(endpoint) {
+            Some(name) => name.to_owned(),
+            None => place_name(endpoint),
+        });
+        let name = name.unwrap_or_default();
+        if *self.label.name != *name {
+            self.label.name = name.into();
+        }
+    }
+
+    /// Leaves the hand. One that may be moving is told to hold first and gets time to.
+    pub(crate) fn leave(&mut self, to: Option<Endpoint>, ctx: &mut Ctx<'_>) {
+        if let Some(leaving) = &mut self.leaving {
+            leaving.to = to;
+        } else if self.connection.may_move() {
+            self.stop(ctx);
+            let told = ctx.now;
+            self.leaving = Some(Leaving { to, told });
+        } else {
+            self.go(to, ctx);
+        }
+    }
+
+    /// Goes on once a hand that was told to hold rests, or had its time.
+    pub(crate) fn go_on_leaving(&mut self, ctx: &mut Ctx<'_>) {
+        let is_due = |leaving: &mut Leaving| {
+            let told = leaving.told;
+            ctx.now.since(told) >= REST_WITHIN || self.connection.is_held(told)
+        };
+        if let Some(leaving) = self.leaving.take_if(is_due) {
+            self.go(leaving.to, ctx);
+        }
+    }
+
+    /// Opens another hand, or none, at once. Nothing of the old one is taken for the new one's; what is done under a card goes along.
+    pub(crate) fn go(&mut self, to: Option<Endpoint>, ctx: &mut Ctx<'_>) {
+        self.measured.leave(&self.connection.name(), ctx.now);
+        // The old link goes first: a serial port has room for one.
+        self.connection = Connection::none(ctx.now);
+        if let Some(endpoint) = to {
+            // An id that was changed under a card makes no other hand.
+            let is_moved = self.procedures.card.is_some();
+            self.measured.begin(&endpoint, is_moved);
+            self.connection = Connection::open(endpoint, ctx.env, ctx.now);
+        }
+        self.measured.history.gap(ctx.now);
+        let before = std::mem::take(self);
+        *self = Self {
+            // Of the slot, whichever hand is in it.
+            label: before.label,
+            side: before.side,
+            is_removed: before.is_removed,
+            leaving: before.leaving,
+            procedures: before.procedures,
+            measured: before.measured,
+            controls: before.controls.at_next_connection(),
+            params: before.params.at_next_connection(),
+            // Of the connection.
+            connection: before.connection,
+            readings: Readings::default(),
+            sequence: None,
+            series: None,
+            inputs: HandInputs::default(),
+            recording: None,
+        };
+        let is_over =
+            |what: &NoticeKind| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_));
+        ctx.notices.withdraw(is_over);
+        self.follow();
+    }
+
+    /// Takes in what happened on the link.
+    pub(crate) fn take_news(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
+        if let Some((records, status)) = self.connection.heard() {
+            for record in &records {
+                self.take(record, notices, now);
+            }
+            self.take_status(status, notices, now);
+        }
+        self.follow();
+    }
+
+    /// Takes in one record. A reading is dated by itself, not by the frame that takes it in: a replay tells the same.
+    pub(crate) fn take(&mut self, record: &Record, notices: &mut HandNotices<'_>, now: Moment) {
+        match record {
+            Record::Reading { sample, fresh } => {
+                let at = sample.newest(*fresh).unwrap_or(now);
+                let faults = self.readings.take(sample, *fresh, at);
+                self.measured.take(sample, *fresh, at, &faults);
+                for entry in faults {
+                    let (dof, what) = (entry.dof, entry.what);
+                    notices.push(at, NoticeKind::Fault { dof, what });
+                }
+            }
+            Record::State {
+                at,
+                state: LinkState::Holding,
+            } => self.measured.history.mark(*at, MarkKind::Stop),
+            Record::Sent { at, write, .. } => self.measured.history.sent(*at, write),
+            Record::State { .. } | Record::Answered { .. } => {}
+            Record::ArmRefused { at, reason } => {
+                notices.push(*at, NoticeKind::ArmRefused(*reason));
+            }
+        }
+    }
+
+    /// Takes in the status of the link.
+    pub(crate) fn take_status(
+        &mut self,
+        status: LinkStatus,
+        notices: &mut HandNotices<'_>,
+        now: Moment,
+    ) {
+        let mut tell = Tell {
+            history: &mut self.measured.history,
+            notices,
+            now,
+        };
+        let news = tell.status(&mut self.connection, status);
+        if news.is_lost {
+            self.params.link_lost(now);
+        }
+        if news.is_armed {
+            self.controls.stand();
+        }
+    }
+
+    /// Sliders that no person holds stand at the actual angle.
+    pub(crate) fn follow(&mut self) {
+        let angles = self.connection.angles(&self.readings.sample);
+        self.controls.follow(angles, self.connection.is_armed());
+    }
+
+    /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
+    pub fn arm_refusal(&self, now: Moment) -> Option<ArmRefusal> {
+        let connection = &self.connection;
+        let saves = connection.is_live() && self.params.is_saving();
+        let busy = saves.then_some(ArmRefusal::HandBusy);
+        let refusal = || arm_refusal(connection.status.state, &self.readings.sample, now);
+        let is_let_go = !connection.is_armed() && self.controls.held.is_let_go(now);
+        let let_go = is_let_go.then_some(ArmRefusal::LetGo);
+        busy.or_else(refusal).or(let_go)
+    }
+
+    /// Asks the link to let setpoints pass, if the pose is known and nothing speaks against it.
+    pub(crate) fn arm(&mut self, ctx: &mut Ctx<'_>) {
+        if self.connection.is_armed() || !self.activity().lets_arm() {
+            return;
+        }
+        match self.arm_refusal(ctx.now) {
+            Some(reason) => ctx.tell(NoticeKind::ArmRefused(reason)),
+            None => self.connection.arm(self.controls.arm_request()),
+        }
+    }
+
+    /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
+    /// nothing could be sent.
+    pub(crate) fn stop(&mut self, ctx: &mut Ctx<'_>) {
+        if !self.connection.stop(ctx.now) {
+            ctx.tell(NoticeKind::StopNotSent);
+            self.measured.history.mark(ctx.now, MarkKind::StopNotSent);
+        }
+        if let Some(run) = &mut self.series {
+            run.end(Abort::Person);
+        }
+        self.controls.held.forget_press();
+        self.follow();
+    }
+
+    /// Lets no setpoint pass any more. The hand keeps what it was told.
+    pub(crate) fn disarm(&mut self, now: Moment) {
+        self.connection.disarm(now);
+        self.controls.held.forget_press();
+        self.follow();
+    }
+
+    /// What is done with the key that lets the hand move. Who presses is armed as soon as a stop before is confirmed.
+    pub(crate) fn hold_key(&mut self, key: HoldKey, ctx: &mut Ctx<'_>) {
+        let wants_to_arm = self.controls.held.take(key, ctx.now);
+        self.connection.hold_to_run(self.hold_to_run());
+        if !wants_to_arm || self.arm_refusal(ctx.now) == Some(ArmRefusal::Holding) {
+            return;
+        }
+        self.controls.held.forget_press();
+        // Who was let move the hand from outside arms by itself.
+        if self.connection.outside_owner().is_none() {
+            self.arm(ctx);
+        }
+    }
+
+    /// Whether the key has to be held may have been changed, and time goes on.
+    pub(crate) fn need_key(&mut self, is_needed: bool) {
+        self.controls.held.need(is_needed);
+        self.connection.hold_to_run(self.hold_to_run());
+    }
+
+    /// What has to be held now. A gamepad has a button of its own for that, and an exhibition is for strangers.
+    pub(crate) fn hold_to_run(&self) -> HoldToRun {
+        match self.connection.status.holder.map(|holder| holder.owner) {
+            Some(Owner::Gamepad | Owner::Exhibition) => HoldToRun::Off,
+            _ => self.controls.held.hold_to_run(),
+        }
+    }
+
+    /// The arming in which the person at this window may move the hand now.
+    pub(crate) fn own_epoch(&self) -> Option<ArmEpoch> {
+        let may_move = self.connection.is_armed() && self.activity().lets_person_move();
+        self.connection.status.armed.filter(|_| may_move)
+    }
+
+    /// What a person wants of a joint. Speed and force are kept where they cannot be sent.
+    pub(crate) fn wish(&mut self, dof: Dof, wish: JointWish) {
+        let wanted = self.controls.take(dof, wish, self.own_epoch());
+        if let JointWish::Lock(_) = wish {
+            self.follow();
+            if let Some(run) = &self.sequence {
+                run.command(PlayCommand::Lock(self.controls.locked()));
+            }
+        }
+        if let Some(setpoints) = wanted {
+            if let JointWish::Target(_) = wish {
+                self.take_over();
+            }
+            self.connection.send(&setpoints);
+        }
+    }
+
+    /// Sends the joints that are free and have a target; true if there are such. What moved the hand before does not any more.
+    pub(crate) fn go_to(&mut self, fill: impl FnOnce(&mut Setpoints)) -> bool {
+        let wanted = self.own_epoch().and_then(|epoch| {
+            let mut wanted = Setpoints::none(epoch);
+            fill(&mut wanted);
+            self.controls.free(&wanted)
+        });
+        let Some(setpoints) = wanted else {
+            return false;
+        };
+        self.take_over();
+        self.controls.show(&setpoints);
+        self.connection.send(&setpoints);
+        true
+    }
+
+    /// A person moves the hand: what moved it before does not any more.
+    pub(crate) fn take_over(&mut self) {
+        if let Some(run) = &mut self.sequence {
+            run.leave();
+        }
+        self.connection.take_over();
+    }
+
+    /// Starts what a person wants played; without arming, nothing. True if it was started.
+    pub(crate) fn play(&mut self, plan: PlayPlan, pace: PlayMode, env: &Env, now: Moment) -> bool {
+        let Some(epoch) = self.own_epoch() else {
+            return false;
+        };
+        let entry = plan.entry;
+        self.take_over();
+        let Some(open) = &mut self.connection.open else {
+            return false;
+        };
+        let start = PlayStart {
+            plan,
+            pace,
+            epoch,
+            lease: open.lend_lease(),
+            locked: self.controls.locked(),
+            seen: self.readings.sample,
+            clock: env.clock,
+        };
+        let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
+        let link = open.link.clone();
+        let task = Running::start(env, |steps| async move {
+            play::play(&link, start, wanted, |step| steps.tell(step)).await
+        });
+        self.sequence = Some(SequenceRun {
+            entry,
+            view: PlayView {
+                at: 0,
+                phase: PlayPhase::Moving { since: now },
+                late: 0,
+            },
+            commands: Some(commands),
+            task: Some(task),
+        });
+        true
+    }
+
+    /// Something of this window's was sent by a task.
+    pub(crate) fn sent(&mut self, setpoints: &Setpoints) {
+        self.connection.commanded = true;
+        if self.own_epoch().is_some() {
+            self.controls.show(setpoints);
+        }
+    }
+
+    /// Starts a gesture of the hand's own. It moves every joint, so none may be locked.
+    pub(crate) fn gesture(&mut self, gesture: Gesture, route: GestureRoute, ctx: &mut Ctx<'_>) {
+        let what = RequestKind::Gesture(gesture);
+        if !self.connection.is_armed() {
+            self.failed(what, RequestError::NotArmed, ctx);
+        } else if route == GestureRoute::Off {
+            ctx.tell(NoticeKind::GesturesOff);
+        } else if let Some((dof, _)) = self.controls.joints.iter().find(|(_, own)| own.locked) {
+            ctx.tell(NoticeKind::GestureWouldMoveLocked { dof });
+        } else {
+            self.take_over();
+            self.controls.gesture = Some(gesture);
+            if self.ask(what, HandCommand::Gesture(gesture, route), ctx) {
+                let number = MarkKind::Gesture(gesture.get());
+                self.measured.history.mark(ctx.now, number);
+                self.connection.commanded = true;
+                self.controls.let_go();
+            }
+        }
+    }
+
+    /// Writes a command; false, and told, if no hand is there to take it. The link holds the pose before errors are cleared.
+    pub(crate) fn ask(
+        &mut self,
+        what: RequestKind,
+        command: HandCommand,
+        ctx: &mut Ctx<'_>,
+    ) -> bool {
+        let asked = self.connection.ask(what, command, ctx.env);
+        asked.map_err(|error| self.failed(what, error, ctx)).is_ok()
+    }
+
+    /// Says how requests ended.
+    pub(crate) fn tick_requests(&mut self, ctx: &mut Ctx<'_>) {
+        for (what, end) in self.connection.ended_requests() {
+            match end {
+                Ok(()) => ctx.tell(NoticeKind::Acknowledged { what }),
+                Err(error) => self.failed(what, error, ctx),
+            }
+        }
+    }
+
+    fn failed(&mut self, what: RequestKind, error: RequestError, ctx: &mut Ctx<'_>) {
+        if matches!(what, RequestKind::Gesture(_)) {
+            self.controls.gesture = None;
+        }
+        ctx.tell(NoticeKind::RequestFailed { what, error });
+    }
+}

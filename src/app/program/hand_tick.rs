@@ -1,0 +1,174 @@
+//! What is done at each hand in each frame: news are taken in, and what was begun goes on.
+
+use crate::app::ctx::Ctx;
+use crate::app::hands::Hand;
+use crate::app::notices::NoticeKind;
+use crate::app::poses::PoseState;
+use crate::app::procedures::Procedure;
+use crate::app::program::inputs;
+use crate::app::program::taring;
+use crate::app::sessions::recording::{HandRecording, RecordingTarget};
+use crate::app::settings::Settings;
+use crate::app::trials::work::SeriesHand;
+use crate::app::trials::{SeriesRun, TrialsState};
+use crate::hand::Moment;
+use crate::record::EventKind;
+
+/// What all hands have in common.
+pub(super) struct Shared<'a> {
+    pub(super) settings: &'a mut Settings,
+    pub(super) trials: &'a mut TrialsState,
+    pub(super) poses: &'a PoseState,
+    /// False where nothing is recorded in this run, whatever the settings say.
+    pub(super) records: bool,
+}
+
+/// Lets one hand go on.
+pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
+    hand.take_news(&mut ctx.notices, ctx.now);
+    let sent = hand.sequence.as_mut().map(|run| run.news());
+    for setpoints in sent.into_iter().flatten() {
+        hand.sent(&setpoints);
+    }
+    inputs::tick(hand, shared.settings, shared.poses, ctx);
+    hand.need_key(shared.settings.hold_to_run);
+    hand.tick_requests(ctx);
+    hand.params.tick(&hand.connection, ctx);
+    tick_series(hand, shared.trials, ctx);
+    tick_procedure(hand, shared.settings, ctx);
+    if let Some(link) = hand.connection.link() {
+        link.read_first(shared.settings.read_first);
+    }
+    taring::offer(hand, shared.settings, ctx.now);
+    let name = hand.connection.name();
+    let measured = &mut hand.measured;
+    measured.recorder.tick(&measured.history, &name, ctx.now);
+    if shared.records {
+        tick_recording(hand, shared.settings, ctx);
+    }
+    hand.go_on_leaving(ctx);
+}
+
+/// Begins the series that is planned, in the arming of now. Without one nothing happens.
+pub(super) fn start_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &Ctx<'_>) {
+    let is_refused = hand.series_refusal(&trials.plan).is_some() || trials.plan.check().is_err();
+    // One series at a time: any key stops it, and it has the view to itself.
+    if is_refused || trials.running.is_some() {
+        return;
+    }
+    hand.take_over();
+    let connection = &mut hand.connection;
+    let (Some(epoch), Some(open)) = (connection.status.armed, &mut connection.open) else {
+        return;
+    };
+    let (link, lease) = (open.link.clone(), open.lend_lease());
+    hand.controls.let_go();
+    connection.commanded = true;
+    let at = SeriesHand {
+        link,
+        lease,
+        epoch,
+        seen: hand.readings.sample,
+        connection,
+    };
+    hand.series = Some(SeriesRun::begin(at, trials, ctx));
+}
+
+/// Takes in what the series did.
+fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
+    let Some(run) = &mut hand.series else { return };
+    let news = run.news(trials);
+    let epoch = run.epoch;
+    for (at, words) in news.begun {
+        record_event(hand, at, EventKind::Trial, words);
+    }
+    if let Some(told) = news.end {
+        ctx.tell(told);
+        hand.series = None;
+        // The task disarmed the hand, or stopped it.
+        if hand.connection.status.armed == Some(epoch) {
+            hand.disarm(ctx.now);
+        }
+    }
+}
+
+/// Takes in what the task under the card told, and goes where it has to look.
+fn tick_procedure(hand: &mut Hand, settings: &mut Settings, ctx: &mut Ctx<'_>) {
+    let sample = hand.readings.sample;
+    let is_over = hand
+        .procedures
+        .take_news(&sample, &mut hand.params, settings);
+    if let Some(request) = hand.procedures.wants_link() {
+        if hand.connection.endpoint.as_ref() != Some(&request.place) {
+            hand.go(Some(request.place), ctx);
+        }
+        if let Some(link) = hand.connection.link() {
+            let _told = request.opened.send(link.clone());
+        }
+    }
+    if is_over {
+        if !matches!(hand.procedures.card, Some(Procedure::Calibrate(_))) {
+            hand.params.link_lost(ctx.now);
+        }
+        hand.params.files = None;
+        let home = hand.procedures.home();
+        if home.is_some() && hand.connection.endpoint != home {
+            hand.go(home, ctx);
+        }
+    }
+}
+
+/// Begins or ends the recording of a hand as the settings say.
+fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
+    let Hand {
+        connection,
+        params,
+        recording,
+        ..
+    } = hand;
+    let wanted = settings.records(connection.is_simulated());
+    match (recording, connection.link()) {
+        (Some(recording), Some(link)) if wanted => {
+            for notice in recording.tick(ctx.now) {
+                ctx.notices.push(ctx.now, NoticeKind::Recording(notice));
+            }
+            recording.settings(settings, ctx.now);
+            // Half of a reading is no news.
+            if !params.is_busy() {
+                recording.params(&params.live_params(), ctx.now);
+            }
+            // It tells what the hand keeps: that is read once, as soon as the hand rests and nothing else goes on, unless a person
+            // looked at it before.
+            let may_read = params.write_refusal(&connection.status).is_none();
+            let link = link.clone();
+            if may_read
+                && hand.activity().lets_read_beside()
+                && let Some(recording) = &mut hand.recording
+            {
+                recording.ask_params(&link, ctx.env);
+            }
+        }
+        (Some(_), _) => hand.recording = None,
+        // A hand that never answers makes no file; what went over the wire before is still in the tap.
+        (None, Some(link)) if wanted && connection.is_live() => {
+            let folder = settings.sessions_folder(ctx.env.documents.as_deref());
+            let target = folder.zip(connection.endpoint.as_ref());
+            hand.recording = target.and_then(|(folder, endpoint)| {
+                let target = RecordingTarget {
+                    folder,
+                    endpoint,
+                    side: hand.side,
+                };
+                HandRecording::begin(&target, link.observe(), ctx.env)
+            });
+        }
+        (None, _) => {}
+    }
+}
+
+/// Notes in the recording of a hand that a person did something.
+pub(super) fn record_event(hand: &Hand, at: Moment, kind: EventKind, words: String) {
+    if let Some(recording) = &hand.recording {
+        recording.event(at, kind, words);
+    }
+}

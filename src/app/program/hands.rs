@@ -1,0 +1,212 @@
+//! Carries out what a person does with the list of hands. What is done to one hand touches no other.
+
+use crate::app::ctx::Ctx;
+use crate::app::env::Env;
+use crate::app::hand::HoldKey;
+use crate::app::hands::Hand;
+use crate::app::hands::action::HandsAction;
+use crate::app::notices::NoticeKind;
+use crate::app::settings::Settings;
+use crate::app::slot::SlotId;
+use crate::app::state::State;
+use crate::transport::Endpoint;
+
+/// Does what a person asked for.
+pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
+    match action {
+        HandsAction::Add => {
+            state.hands.add();
+            hand_is_shown(state);
+        }
+        HandsAction::Show(slot) => {
+            state.hands.show(slot);
+            hand_is_shown(state);
+        }
+        HandsAction::Remove(slot) => remove_hand(state, slot, env),
+        HandsAction::Name(slot, name) => {
+            let hand = state.hands.iter().find(|hand| hand.label.slot == slot);
+            if let Some(endpoint) = hand.and_then(|hand| hand.connection.endpoint.as_ref()) {
+                state.settings.name_hand(endpoint, &name);
+            }
+        }
+        HandsAction::StopOne(slot) => with_hand(state, slot, env, |hand, _, ctx| hand.stop(ctx)),
+        HandsAction::PosesForAll(on) => state.hands.set_poses_for_all(on),
+    }
+}
+
+/// A dry run began at the pose of the hand that was shown before.
+fn hand_is_shown(state: &mut State) {
+    state.poses.preview = None;
+    state.hands.shown_mut().apply_settings(&state.settings);
+}
+
+fn remove_hand(state: &mut State, slot: SlotId, env: &Env) {
+    if !state.hands.is_several() {
+        return;
+    }
+    with_hand(state, slot, env, |hand, _, ctx| {
+        hand.procedures.close();
+        hand.leave(None, ctx);
+        hand.is_removed = true;
+    });
+    drop_removed(state);
+}
+
+/// Takes away the slots of hands that were to go and are left by now.
+pub(super) fn drop_removed(state: &mut State) {
+    let is_gone = |hand: &&Hand| hand.is_removed && hand.connection.open.is_none();
+    let gone: Vec<SlotId> = state
+        .hands
+        .iter()
+        .filter(is_gone)
+        .map(|hand| hand.label.slot)
+        .collect();
+    for slot in gone {
+        let was_shown = state.hands.shown().label.slot == slot;
+        state.hands.remove(slot);
+        if was_shown {
+            hand_is_shown(state);
+        }
+    }
+    for hand in state
+        .hands
+        .iter_mut()
+        .filter(|hand| hand.connection.open.is_none())
+    {
+        // The last one stays.
+        hand.is_removed = false;
+    }
+}
+
+/// Holds every hand now. A slot without a hand has nothing to stop, unless there is nothing else.
+pub(super) fn stop_all(state: &mut State, env: &Env) {
+    let any = state.hands.iter().any(has_hand);
+    let shown = state.hands.shown().label.slot;
+    each_hand(state, env, |hand, ctx| {
+        if has_hand(hand) || !any && hand.label.slot == shown {
+            hand.stop(ctx);
+        }
+    });
+}
+
+/// The key that is held lets every hand move that is armed; its press arms the shown one alone.
+pub(super) fn hold_key(state: &mut State, key: HoldKey, env: &Env) {
+    let shown = state.hands.shown().label.slot;
+    each_hand(state, env, |hand, ctx| {
+        let key = match key {
+            HoldKey::Pressed if hand.label.slot != shown => HoldKey::Held,
+            key => key,
+        };
+        hand.hold_key(key, ctx);
+    });
+}
+
+/// Does this with the hand that is shown.
+pub(super) fn with_shown<T>(
+    state: &mut State,
+    env: &Env,
+    act: impl FnOnce(&mut Hand, &mut Settings, &mut Ctx<'_>) -> T,
+) -> T {
+    let State {
+        hands,
+        notices,
+        settings,
+        now,
+        ..
+    } = state;
+    let is_several = hands.is_several();
+    let hand = hands.shown_mut();
+    let mut ctx = Ctx {
+        now: *now,
+        env,
+        notices: notices.about(is_several.then_some(&hand.label)),
+    };
+    act(hand, settings, &mut ctx)
+}
+
+/// Does this with the hand of a slot, if there is one.
+pub(super) fn with_hand(
+    state: &mut State,
+    slot: SlotId,
+    env: &Env,
+    act: impl Fn(&mut Hand, &mut Settings, &mut Ctx<'_>),
+) {
+    let State {
+        hands,
+        notices,
+        settings,
+        now,
+        ..
+    } = state;
+    let is_several = hands.is_several();
+    if let Some(hand) = hands.get_mut(slot) {
+        let mut ctx = Ctx {
+            now: *now,
+            env,
+            notices: notices.about(is_several.then_some(&hand.label)),
+        };
+        act(hand, settings, &mut ctx);
+    }
+}
+
+/// Does this with each hand.
+pub(super) fn each_hand(
+    state: &mut State,
+    env: &Env,
+    mut act: impl FnMut(&mut Hand, &mut Ctx<'_>),
+) {
+    let State {
+        hands,
+        notices,
+        now,
+        ..
+    } = state;
+    let is_several = hands.is_several();
+    for hand in hands.iter_mut() {
+        let mut ctx = Ctx {
+            now: *now,
+            env,
+            notices: notices.about(is_several.then_some(&hand.label)),
+        };
+        act(hand, &mut ctx);
+    }
+}
+
+/// True if a slot, other than the one it is for, has this hand or the port that leads to it; the person is told.
+pub(super) fn is_open_elsewhere(
+    state: &mut State,
+    endpoint: &Endpoint,
+    own: Option<SlotId>,
+) -> bool {
+    let hands = state.hands.iter();
+    let mut others = hands.filter(|hand| Some(hand.label.slot) != own);
+    let Some(other) = others.find(|hand| leads_to(hand, endpoint)) else {
+        return false;
+    };
+    let told = NoticeKind::OpenElsewhere {
+        endpoint: endpoint.to_string(),
+        hand: other.label.name.to_string(),
+    };
+    state.notices.push(state.now, told);
+    true
+}
+
+fn has_hand(hand: &Hand) -> bool {
+    hand.connection.endpoint.is_some()
+}
+
+/// True if this endpoint leads to this hand, or through its port: a serial port has room for one.
+fn leads_to(hand: &Hand, endpoint: &Endpoint) -> bool {
+    let connection = &hand.connection;
+    let going = hand.leaving.as_ref();
+    let going = going.and_then(|leaving| leaving.to.as_ref());
+    let mut own = connection.endpoint.iter().chain(going);
+    own.any(|own| {
+        let moved = connection.status.moved_to.as_deref();
+        let is_port = endpoint.port().is_some_and(|port| {
+            own.port() == Some(port) || own.port().is_some() && moved == Some(port)
+        });
+        let is_same = !own.is_sim() && own.place_and_id() == endpoint.place_and_id();
+        own == endpoint || is_port || is_same
+    })
+}

@@ -1,0 +1,136 @@
+//! What besides the window may move a hand: opened, granted, taken back, and what came of it.
+
+use crate::app::ctx::Ctx;
+use crate::app::env::Env;
+use crate::app::hands::Hand;
+use crate::app::inputs::{FollowRun, InputAction, InputSource};
+use crate::app::notices::NoticeKind;
+use crate::app::poses::PoseState;
+use crate::app::program::leading;
+use crate::app::settings::Settings;
+use crate::app::state::State;
+use crate::hand::Moment;
+use crate::inputs::pad::file;
+use crate::record::{ArmRefusal, Disarmed};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms};
+use crate::transport::dds::DdsPlace;
+
+/// Does what a person asked for at the shown hand.
+pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
+    let (may_be_led, now) = (leading::may_be_led(state), state.now);
+    let State {
+        hands, settings, ..
+    } = state;
+    let hand = hands.shown_mut();
+    let (side, connection) = (hand.side, &hand.connection);
+    match action {
+        InputAction::Listen(place) => hand.inputs.listen(place, connection, side, env),
+        InputAction::ReadPad(on) => hand.inputs.read_pad(on, connection, settings, env),
+        InputAction::Share(place) => hand.inputs.share(place, connection, settings, env),
+        InputAction::Show(place) => hand.inputs.show_viewers(place, connection, side, env),
+        InputAction::JoinDds(interface) => {
+            let card = hand.inputs.fleet_card(&hand.label.name, side, settings);
+            let domain = 0;
+            let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
+            // What a person set here is the most that a message may ask for.
+            let allowed = hand.controls.arm_request();
+            hand.inputs.join_dds(place, allowed, connection, env);
+        }
+        InputAction::Mirror(wanted) => leading::watch_hand(state, wanted, env),
+        InputAction::Grant(InputSource::Mirror) if !may_be_led => {}
+        InputAction::Grant(source) => follow(hand, source, settings, (env, now)),
+        InputAction::GrantClient(client) => {
+            let gateway = hand.inputs.gateway.as_ref();
+            if let Some(gateway) = gateway.filter(|_| hand.activity().lets_grant()) {
+                gateway.grant(client);
+            }
+        }
+        InputAction::TakeBack => connection.end_outside(Disarmed::Person),
+        InputAction::Limit(limits) => settings.follow = limits.within(),
+        InputAction::Map(map) => {
+            settings.pad_map = Some(file::write(&map));
+            // What is held has to be pressed anew.
+            if hand.inputs.pad.is_some() {
+                hand.inputs.read_pad(true, connection, settings, env);
+            }
+        }
+    }
+}
+
+/// Lets this source move the hand; what moved it before does not any more.
+fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now): (&Env, Moment)) {
+    let Some(offered) = hand.inputs.offered(source, now) else {
+        return;
+    };
+    let refusal = hand.arm_refusal(now);
+    let is_refused = refusal.is_some_and(|refusal| refusal != ArmRefusal::LetGo);
+    if is_refused || !hand.activity().lets_grant() {
+        return;
+    }
+    if let Some(run) = &mut hand.sequence {
+        run.leave();
+    }
+    let terms = terms(hand, settings);
+    let Some(link) = hand.connection.link() else {
+        return;
+    };
+    let lease = link.grant(offered.owner);
+    let start = |terms| FollowStart {
+        lease,
+        terms,
+        arm: hand.controls.arm_request(),
+        seen: hand.readings.sample,
+        clock: env.clock,
+    };
+    let run = FollowRun::begin(offered, link.clone(), start, (terms, env));
+    hand.inputs.follow = Some(run);
+}
+
+fn terms(hand: &Hand, settings: &Settings) -> FollowTerms {
+    FollowTerms {
+        limits: settings.follow,
+        locked: hand.controls.locked(),
+        hold: hand.hold_to_run(),
+    }
+}
+
+/// Takes in what inputs and clients did.
+pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx: &mut Ctx<'_>) {
+    let terms = terms(hand, settings);
+    let inputs = &mut hand.inputs;
+    if let Some(pad) = &inputs.pad {
+        pad.set_poses(poses.on_pad(&settings.pad_map(), &settings.hidden_poses));
+    }
+    inputs.look();
+    if let Some(joined) = &inputs.dds {
+        joined
+            .shared
+            .say(inputs.fleet_card(&hand.label.name, hand.side, settings));
+    }
+    if inputs.follows_dds() && inputs.other_follows_dds() {
+        // Each hears of the other, and both stop.
+        hand.connection.end_outside(Disarmed::Stop);
+    }
+    let Some(run) = &mut inputs.follow else {
+        return;
+    };
+    let (views, end) = run.task.news();
+    let owner = run.owner;
+    run.terms
+        .send_if_modified(|told| std::mem::replace(told, terms) != terms);
+    if let Some((_, view)) = views.into_iter().last() {
+        run.view = Some(view);
+        hand.connection.commanded |= view.sent.iter().any(|(_, to)| to.is_some());
+        hand.controls.show_angles(view.sent);
+    }
+    if let Some(outcome) = end {
+        inputs.follow = None;
+        if outcome.leader_stopped {
+            ctx.tell(NoticeKind::LeaderStopped);
+        }
+        if matches!(outcome.end, FollowEnd::Silent | FollowEnd::Gone) {
+            ctx.tell(NoticeKind::SourceSilent(owner));
+        }
+        hand.follow();
+    }
+}

@@ -1,0 +1,46 @@
+//! One hand of the window that leads another: which one is watched, who may lead, and what a stop of it means.
+
+use crate::app::env::Env;
+use crate::app::inputs::mirror::HandMirror;
+use crate::app::slot::SlotId;
+use crate::app::state::State;
+use crate::inputs::mirror::MirrorScale;
+use crate::record::{Disarmed, LinkState};
+
+/// The shown hand watches another one, or none any more. Nothing moves by that; a hand that was led until now is stopped.
+pub(super) fn watch_hand(state: &mut State, wanted: Option<(SlotId, MirrorScale)>, env: &Env) {
+    let _entered = env.runtime.enter();
+    let own = state.hand().label.slot;
+    let mirror = wanted.and_then(|(leader, scale)| {
+        let mut others = state.hands.iter().filter(|hand| hand.label.slot != own);
+        let link = others
+            .find(|hand| hand.label.slot == leader)?
+            .connection
+            .link()?;
+        Some(HandMirror::open((leader, link), scale))
+    });
+    let hand = state.hand_mut();
+    hand.inputs.mirror = mirror.filter(|_| hand.connection.open.is_some());
+}
+
+/// Whether the hand that is watched may lead the shown one: unless that one leads it.
+pub(super) fn may_be_led(state: &State) -> bool {
+    let shown = state.hands.shown();
+    let mirror = shown.inputs.mirror.as_ref();
+    mirror.is_some_and(|mirror| !state.hands.is_circle(mirror.leader, shown.label.slot))
+}
+
+/// Stops a hand whose leader is told to stop: it would still go to where that one is.
+pub(super) fn stop_mirrored(state: &mut State) {
+    let stopping = state.hands.iter().filter(|hand| {
+        let let_go = hand.connection.status.disarmed == Some(Disarmed::Released);
+        hand.connection.status.state == LinkState::Holding && !let_go
+    });
+    let stopping: Vec<SlotId> = stopping.map(|hand| hand.label.slot).collect();
+    for hand in state.hands.iter() {
+        let leader = hand.inputs.leader();
+        if leader.is_some_and(|leader| stopping.contains(&leader)) {
+            hand.connection.end_outside(Disarmed::Stop);
+        }
+    }
+}
