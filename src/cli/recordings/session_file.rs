@@ -125,7 +125,12 @@ pub(crate) fn lost(damage: &Damage) -> Option<String> {
         } else {
             ("pieces", "are")
         };
-        format!("{chunks} {noun} {verb} damaged and left out")
+        let fate = if messages == 0 && gaps.is_empty() {
+            ", but no message is missing by its number"
+        } else {
+            " and left out"
+        };
+        format!("{chunks} {noun} {verb} damaged{fate}")
     });
     let bytes = (bytes > 0).then(|| format!("{bytes} bytes hold no record"));
     let messages = (messages > 0).then(|| format!("{messages} messages are missing"));

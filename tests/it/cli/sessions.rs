@@ -264,6 +264,29 @@ fn damage_costs_a_piece_and_is_told() {
 }
 
 #[test]
+fn a_damaged_piece_is_called_left_out_only_if_messages_are_missing() {
+    let recorded = record("1.5");
+    let file = recorded.path("session.mcap");
+    let bytes = std::fs::read(&file).unwrap();
+    let mut opened = std::fs::File::open(&file).unwrap();
+    let found = handscope::record::file::walk::walk(&mut opened).unwrap();
+    let mut words = Vec::new();
+    for chunk in &found.chunks {
+        // In its length: the next one is looked for, and its messages may be found all the same.
+        let place = usize::try_from(chunk.place.offset).unwrap() + 1;
+        let mut bytes = bytes.clone();
+        bytes[place] ^= 0x10;
+        std::fs::write(&file, &bytes).unwrap();
+        let info = recorded.info("session.mcap");
+        let told = run(&["info", text(&file)]).ok().out;
+        let misses = info["missing_messages"].as_u64().unwrap() > 0;
+        assert_eq!(told.contains("left out"), misses, "{info} {told}");
+        words.push(misses);
+    }
+    assert!(words.contains(&false), "none was found whole");
+}
+
+#[test]
 fn a_csv_has_the_columns_of_the_plots_and_a_line_for_each_moment() {
     let recorded = record("1.2");
     recorded.export(&["--csv"], "all.csv").ok();
