@@ -8,7 +8,7 @@ use crate::params::danger::worse;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Verdict, Written};
-use crate::tasks::hand::{Hand, REACHED_WITHIN, answers, once_at_rest};
+use crate::tasks::hand::{REACHED_WITHIN, TaskHand, answers, once_at_rest};
 use crate::tasks::save::back_up;
 use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
@@ -63,7 +63,7 @@ impl Applied {
 ///
 /// # Errors
 /// [`TaskError`]: then nothing was written.
-pub async fn apply<H: Hand>(
+pub async fn apply<H: TaskHand>(
     hand: &H,
     task: &Apply,
     mut tell: impl FnMut(ParamStep),
@@ -107,7 +107,7 @@ pub async fn apply<H: Hand>(
 
 /// Writes all settings of a plan. What did not go out because a person armed meanwhile does not go out for the next group
 /// either.
-async fn write<H: Hand>(
+async fn write<H: TaskHand>(
     hand: &H,
     plan: &WritePlan,
     before: &Params,
@@ -127,7 +127,7 @@ async fn write<H: Hand>(
 }
 
 /// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
-async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
+async fn write_one<H: TaskHand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
     let not_sent = |written: &Written| match written.verdict {
         Verdict::NotSent(why) => Some(why),
         _ => None,
@@ -150,7 +150,7 @@ async fn write_one<H: Hand>(hand: &H, setting: Setting) -> Result<Written, Reque
 }
 
 /// Puts back what changed or may have; true if the hand holds what it held before. What it holds then stands in the rows.
-async fn undo<H: Hand>(hand: &H, rows: &mut [RowOutcome]) -> bool {
+async fn undo<H: TaskHand>(hand: &H, rows: &mut [RowOutcome]) -> bool {
     let wanted = changes::undo_of(rows);
     if wanted.is_empty() {
         return true;

@@ -3,7 +3,7 @@
 use crate::hand::{Dof, Finger, ForceReading, HandSample, Moment, PerDof};
 use crate::link::{Clock, LinkStatus, RequestError};
 use crate::record::{Calibrated, LinkState, Record, Rest};
-use crate::tasks::hand::Hand;
+use crate::tasks::hand::TaskHand;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
@@ -175,7 +175,7 @@ pub struct CalibrateReport {
 }
 
 /// Calibrates, and measures the new offsets where it ended well.
-pub async fn calibrate<H: Hand>(
+pub async fn calibrate<H: TaskHand>(
     hand: &H,
     clock: Clock,
     mut tell: impl FnMut(CalibrateStep),

@@ -8,7 +8,7 @@ use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, Owner};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Disarmed, Record};
-use crate::tasks::hand::Hand;
+use crate::tasks::hand::TaskHand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -62,7 +62,7 @@ pub enum ExhibitStep {
 }
 
 /// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before a person arms.
-pub async fn exhibit<H: Hand>(
+pub async fn exhibit<H: TaskHand>(
     hand: &H,
     start: ExhibitStart,
     mut wishes: mpsc::Receiver<ExhibitWish>,
@@ -145,7 +145,7 @@ struct ExhibitTask<'a, H> {
     drawn: Arc<PageDrawn>,
 }
 
-impl<H: Hand> ExhibitTask<'_, H> {
+impl<H: TaskHand> ExhibitTask<'_, H> {
     fn obey_all(&mut self) {
         loop {
             let status = self.hand.status();

@@ -10,7 +10,7 @@ use crate::inputs::follow::{
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LeaseRefusal};
 use crate::record::{Disarmed, Record, WriteCause};
-use crate::tasks::hand::Hand;
+use crate::tasks::hand::TaskHand;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
@@ -80,7 +80,7 @@ pub enum FollowEnd {
 }
 
 /// Follows until the source or the lease ends.
-pub async fn follow<H: Hand>(
+pub async fn follow<H: TaskHand>(
     hand: &H,
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
@@ -152,7 +152,7 @@ struct FollowRun<'a, H> {
     limited: Option<(ArmEpoch, OfferLimits)>,
 }
 
-impl<H: Hand> FollowRun<'_, H> {
+impl<H: TaskHand> FollowRun<'_, H> {
     fn take(&mut self, mut offer: Offer) {
         let locked = self.start.terms.borrow().locked;
         for (dof, aim) in offer.aims.iter_mut() {

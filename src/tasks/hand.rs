@@ -20,7 +20,7 @@ pub(crate) const AGAIN_AFTER: Duration = Duration::from_millis(200);
 const LOOK_EACH: Duration = Duration::from_millis(10);
 
 /// One hand on an open link. The fake of tests is the other one who is this.
-pub trait Hand: Clone + Send + Sync + 'static {
+pub trait TaskHand: Clone + Send + Sync + 'static {
     /// Where the link stands.
     fn status(&self) -> LinkStatus;
     /// Everything that happens from now on.
@@ -67,7 +67,7 @@ pub trait Hand: Clone + Send + Sync + 'static {
     fn read_at(&self, rates: PollRates);
 }
 
-impl Hand for LinkHandle {
+impl TaskHand for LinkHandle {
     fn status(&self) -> LinkStatus {
         Self::status(self)
     }
@@ -133,13 +133,13 @@ impl Hand for LinkHandle {
 /// Goes where a hand may be. A port has room for one link, so the one of before is given up.
 pub trait Reach: Send {
     /// What it reaches.
-    type Link: Hand;
+    type Link: TaskHand;
     /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
     fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Link>> + Send;
 }
 
 /// Waits until the hand answers; false if it does not in time.
-pub async fn answers<H: Hand>(hand: &H, within: Duration) -> bool {
+pub async fn answers<H: TaskHand>(hand: &H, within: Duration) -> bool {
     let until = Instant::now() + within;
     while !hand.status().state.is_live() {
         if Instant::now() >= until {
@@ -151,7 +151,7 @@ pub async fn answers<H: Hand>(hand: &H, within: Duration) -> bool {
 }
 
 /// Waits for a while until a hand that answers is known to rest and nobody moves it; false if it does not come to that.
-pub(crate) async fn rests<H: Hand>(hand: &H) -> bool {
+pub(crate) async fn rests<H: TaskHand>(hand: &H) -> bool {
     let until = Instant::now() + RESTS_WITHIN;
     loop {
         let status = hand.status();

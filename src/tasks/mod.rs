@@ -17,7 +17,7 @@ pub mod series;
 #[cfg(test)]
 mod tests;
 
-pub use crate::tasks::hand::{Hand, Reach};
+pub use crate::tasks::hand::{Reach, TaskHand};
 
 use crate::hand::Span;
 use crate::link::RequestError;

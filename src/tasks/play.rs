@@ -7,7 +7,7 @@ use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Pla
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
 use crate::record::{LinkState, Record};
-use crate::tasks::hand::Hand;
+use crate::tasks::hand::TaskHand;
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::timeout;
@@ -59,7 +59,7 @@ pub enum PlayStep {
 }
 
 /// Plays. Ends with the reason.
-pub async fn play<H: Hand>(
+pub async fn play<H: TaskHand>(
     hand: &H,
     start: PlayStart,
     mut commands: mpsc::Receiver<PlayCommand>,
@@ -126,7 +126,7 @@ struct Playing<'a, H> {
     clock: Clock,
 }
 
-impl<H: Hand> Playing<'_, H> {
+impl<H: TaskHand> Playing<'_, H> {
     fn obey(&mut self, command: PlayCommand, tell: &mut impl FnMut(PlayStep)) {
         match command {
             PlayCommand::Pause => {

@@ -8,7 +8,7 @@ use crate::params::values::Params;
 use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
-use crate::tasks::hand::{Hand, once_at_rest};
+use crate::tasks::hand::{TaskHand, once_at_rest};
 use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
@@ -46,7 +46,7 @@ pub struct SaveReport {
 ///
 /// # Errors
 /// [`TaskError`]: then no SAVE went out.
-pub async fn save<H: Hand>(
+pub async fn save<H: TaskHand>(
     hand: &H,
     task: &Save,
     mut tell: impl FnMut(ParamStep),
@@ -89,7 +89,7 @@ pub(crate) async fn back_up(
 }
 
 /// Notes the attempt, sends SAVE, and notes the result; why that could not be noted, if it could not.
-pub(crate) async fn save_noted<H: Hand>(
+pub(crate) async fn save_noted<H: TaskHand>(
     hand: &H,
     backups: &Backups,
     params: &Params,

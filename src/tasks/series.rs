@@ -4,7 +4,7 @@
 use crate::hand::{ArmEpoch, HandSample, PerDof, Speed};
 use crate::link::{Clock, Lease, LinkStatus, PollRates, Records};
 use crate::record::{Hold, Record};
-use crate::tasks::hand::Hand;
+use crate::tasks::hand::TaskHand;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::{PlanError, TrialPlan};
 use crate::trials::series::{SeriesOrder, SeriesView, TrialSeries};
@@ -75,7 +75,7 @@ pub struct SeriesStart {
 ///
 /// # Errors
 /// [`PlanError`]: the plan makes no sense, and nothing was sent.
-pub async fn series<H: Hand>(
+pub async fn series<H: TaskHand>(
     hand: &H,
     start: SeriesStart,
     ended: impl Future<Output = Abort>,
@@ -145,7 +145,7 @@ fn tell_news(
 }
 
 /// Holds, and waits for what feedback says of it.
-pub async fn hold<H: Hand>(hand: &H, records: &mut Records) -> Stop {
+pub async fn hold<H: TaskHand>(hand: &H, records: &mut Records) -> Stop {
     hand.stop();
     let begun = Instant::now();
     while begun.elapsed() < REST_WITHIN {

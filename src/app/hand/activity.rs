@@ -50,3 +50,31 @@ impl Activity {
         matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_activity_lets_others_do_what_stands_here_and_nothing_else() {
+        let follows = Activity::Following(Owner::Gamepad);
+        // Person moves, arms, grants; what the hand keeps is read; an exhibition begins.
+        for (activity, lets) in [
+            (Activity::Leaving, [false, false, false, true, false]),
+            (Activity::Procedure, [false, false, false, false, false]),
+            (Activity::Series, [false, true, false, false, false]),
+            (follows, [false, true, true, true, true]),
+            (Activity::Playing, [true, true, true, true, true]),
+            (Activity::Idle, [true, true, true, true, true]),
+        ] {
+            let own = [
+                activity.lets_person_move(),
+                activity.lets_arm(),
+                activity.lets_grant(),
+                activity.lets_read_beside(),
+                activity.lets_exhibit(),
+            ];
+            assert_eq!(own, lets, "{activity:?}");
+        }
+    }
+}

@@ -182,3 +182,61 @@ impl Controls {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EPOCH: ArmEpoch = ArmEpoch(1);
+
+    #[test]
+    fn a_wish_goes_out_only_in_an_arming_and_only_for_a_joint_that_is_not_locked() {
+        let wishes = [
+            JointWish::Target(Angle::MIN),
+            JointWish::Force(Force::MAX),
+            JointWish::Speed(Speed::MAX),
+            JointWish::Lock(false),
+        ];
+        for wish in wishes {
+            let mut controls = Controls::default();
+            assert!(controls.take(Dof::Index, wish, None).is_none(), "{wish:?}");
+            assert_eq!(
+                controls.joints[Dof::Index].target,
+                None,
+                "no wish to move is kept"
+            );
+            controls.take(Dof::Index, JointWish::Lock(true), Some(EPOCH));
+            let sent = controls.take(Dof::Index, wish, Some(EPOCH));
+            let frees = matches!(wish, JointWish::Lock(false));
+            assert_eq!(sent.is_some(), frees, "{wish:?} of a locked joint");
+        }
+    }
+
+    #[test]
+    fn speed_and_force_that_were_changed_while_locked_go_out_when_it_is_free() {
+        let mut controls = Controls::default();
+        controls.take(Dof::Ring, JointWish::Lock(true), Some(EPOCH));
+        controls.take(Dof::Ring, JointWish::Force(Force::MAX), Some(EPOCH));
+        let sent = controls.take(Dof::Ring, JointWish::Lock(false), Some(EPOCH));
+        let sent = sent.unwrap();
+        assert_eq!(sent.force[Dof::Ring], Some(Force::MAX));
+        assert_eq!(sent.speed[Dof::Ring], Some(Speed::GENTLE));
+        assert!(sent.angle.iter().all(|(_, target)| target.is_none()));
+    }
+
+    #[test]
+    fn of_a_pose_the_locked_joints_are_left_out() {
+        let mut controls = Controls::default();
+        controls.take(Dof::Little, JointWish::Lock(true), None);
+        let mut pose = Setpoints::none(EPOCH);
+        pose.angle = PerDof::splat(Some(Target::Go(Angle::MAX)));
+        let sent = controls.free(&pose).unwrap();
+        let going = sent.angle.iter().filter(|(_, target)| target.is_some());
+        assert_eq!(going.count(), 5);
+        controls.joints = controls.joints.map(|joint| JointControl {
+            locked: true,
+            ..joint
+        });
+        assert_eq!(controls.free(&pose), None);
+    }
+}

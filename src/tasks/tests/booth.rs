@@ -12,7 +12,7 @@ use crate::link::{
 };
 use crate::record::{Calibrated, Disarmed, LinkState, Record, Reset, Rest, Saved, Written};
 use crate::sim::drive::{Drive, DriveGoal, DriveSettings, position_of};
-use crate::tasks::Hand;
+use crate::tasks::TaskHand;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -344,7 +344,7 @@ impl BoothFacts {
     }
 }
 
-impl Hand for BoothHand {
+impl TaskHand for BoothHand {
     fn status(&self) -> LinkStatus {
         self.facts().status.clone()
     }

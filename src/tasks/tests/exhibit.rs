@@ -121,7 +121,7 @@ impl Booth {
     }
 
     fn stop(&self) {
-        use crate::tasks::Hand as _;
+        use crate::tasks::TaskHand as _;
         self.hand.facts().person_armed = false;
         self.hand.stop();
         self.wish(ExhibitWish::Stop);

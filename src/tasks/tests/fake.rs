@@ -15,7 +15,7 @@ use crate::params::values::{Params, decoded, span_of};
 use crate::record::{
     Calibrated, Disarmed, Hold, LinkState, NotSent, Record, Reset, Rest, Saved, Verdict, Written,
 };
-use crate::tasks::{Hand, Reach};
+use crate::tasks::{Reach, TaskHand};
 use crate::transport::Endpoint;
 use std::sync::{Arc, Mutex, MutexGuard};
 use tokio::sync::broadcast;
@@ -255,7 +255,7 @@ impl FakeHand {
     }
 }
 
-impl Hand for FakeHand {
+impl TaskHand for FakeHand {
     fn status(&self) -> LinkStatus {
         self.facts().status.clone()
     }

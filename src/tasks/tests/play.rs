@@ -5,7 +5,7 @@ use crate::link::Owner;
 use crate::poses::library::{EntryId, PoseId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::LinkState;
-use crate::tasks::Hand;
+use crate::tasks::TaskHand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::sync::{Arc, Mutex};

@@ -8,7 +8,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
 use crate::tasks::Consent;
-use crate::tasks::Hand;
+use crate::tasks::TaskHand;
 use crate::tasks::apply::{Apply, Otherwise, apply};
 use crate::tasks::calibrate::{Check, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, change_place};

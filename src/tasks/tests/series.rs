@@ -3,7 +3,7 @@
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
 use crate::link::{Owner, PollRates};
 use crate::record::LinkState;
-use crate::tasks::Hand;
+use crate::tasks::TaskHand;
 use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, series};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::limits::Abort;
