@@ -44,6 +44,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         - scene
             .state()
             .hand()
+            .measured
             .history
             .first_secs()
             .unwrap_or_default();
@@ -74,7 +75,7 @@ fn recorded(report: &mut Report) -> Result<(), Failure> {
         scene.run(FRAME_EACH);
     }
     let reads = |scene: &Scene| {
-        let stats = &scene.state().hand().stats;
+        let stats = &scene.state().hand().connection.stats;
         count(stats.state_reads + stats.tactile_reads)
     };
     let (before, begun) = (scenes.each_ref().map(reads), Instant::now());
@@ -109,7 +110,7 @@ fn beside(
     [ours_10_s, _, ours_1_h]: [f64; 3],
 ) -> Result<(), Failure> {
     for (seconds, shown, ours) in [(10.0, "10 s", ours_10_s), (3600.0, "1 h", ours_1_h)] {
-        let theirs = plain::median_ms(&state.hand().history, seconds, state.now.secs());
+        let theirs = plain::median_ms(&state.hand().measured.history, seconds, state.now.secs());
         let what = format!("egui_plot alone, the same lines of {shown}: median");
         report.row(&what, theirs, "ms cpu", Aim::None)?;
         let what = format!("  the whole window with plots of {shown} to that");
@@ -124,13 +125,13 @@ fn dead(report: &mut Report) -> Result<(), Failure> {
     let mut scene = Scene::open(Time::Real, server.endpoint.clone())?;
     // Until the plots are full.
     scene.run(Duration::from_secs(10));
-    if !scene.state().hand().link.state.is_live() {
+    if !scene.state().hand().connection.status.state.is_live() {
         return Err("the served hand does not become live".into());
     }
     let [live, ..] = measure(&mut scene);
     drop(server);
     scene.run(DEAD_AFTER);
-    if scene.state().hand().link.state.is_live() {
+    if scene.state().hand().connection.status.state.is_live() {
         return Err("the link lives on without its hand".into());
     }
     let [dead, ..] = measure(&mut scene);

@@ -107,7 +107,9 @@ pub(crate) fn child(endpoints: &[String]) -> Result<(), Failure> {
 
 fn reads(scene: &Scene) -> Vec<f64> {
     let hands = scene.state().hands.iter();
-    hands.map(|hand| count(hand.stats.state_reads)).collect()
+    hands
+        .map(|hand| count(hand.connection.stats.state_reads))
+        .collect()
 }
 
 /// Draws as the window does; processor milliseconds of each frame's parts.

@@ -22,9 +22,10 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     };
     let mut scene = Scene::open(Time::Real, hand)?;
     rest(&mut scene, WARM);
-    let before = scene.state().hand().stats.state_reads;
+    let before = scene.state().hand().connection.stats.state_reads;
     let [frames, cpu, faults] = measure(&mut scene);
-    let data = count(scene.state().hand().stats.state_reads - before) / LENGTH.as_secs_f64();
+    let data =
+        count(scene.state().hand().connection.stats.state_reads - before) / LENGTH.as_secs_f64();
     report.row("states a second, live link at rest", data, "1/s", Aim::None)?;
     report.row("  frames a second", frames, "1/s", Aim::AtMost(data))?;
     report.row("  CPU of all threads", cpu, "% core", Aim::AtMost(9.0))?;

@@ -47,8 +47,11 @@ fn once() -> Result<(Duration, Duration), Failure> {
         let state = scene.state();
         let touched = Finger::ALL
             .iter()
-            .all(|finger| state.hand().sample.tactile[*finger].is_some());
-        if state.hand().link.state.is_live() && state.hand().sample.angle.is_some() && touched {
+            .all(|finger| state.hand().readings.sample.tactile[*finger].is_some());
+        if state.hand().connection.status.state.is_live()
+            && state.hand().readings.sample.angle.is_some()
+            && touched
+        {
             return Ok((first, begun.elapsed()));
         }
         scene.pass(FRAME_EACH);

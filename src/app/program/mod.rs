@@ -182,6 +182,7 @@ impl App {
         self.carry_out(action);
     }
 
+    #[expect(clippy::too_many_lines, reason = "one list of all actions")]
     fn carry_out(&mut self, action: Action) {
         let (state, env) = (&mut self.state, &self.env);
         match action {
@@ -345,8 +346,7 @@ impl App {
 
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: Exhibition, now: Moment) {
-        self.exhibit
-            .enter(start, &mut &mut self.state, &self.env, now);
+        self.exhibit.enter(start, &mut self.state, &self.env, now);
     }
 
     /// A frame was drawn: whoever stands before it can see and press STOP. An exhibition goes on only while this is called.

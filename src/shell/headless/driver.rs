@@ -347,7 +347,7 @@ impl Driver {
             self.act(wish);
             self.run_for(ARM_WITHIN);
         }
-        self.until(GRASPS_WITHIN, |state| !state.hand().series.is_some());
+        self.until(GRASPS_WITHIN, |state| state.hand().series.is_none());
     }
 
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is

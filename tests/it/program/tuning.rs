@@ -61,7 +61,7 @@ async fn a_plan_that_makes_no_sense_sends_nothing() {
     bench.act(Action::Trial(TrialAction::Plan(Box::new(senseless))));
     start(&mut bench);
     bench.run(300).await;
-    assert!(!bench.hand().series.is_some());
+    assert!(bench.hand().series.is_none());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
@@ -118,7 +118,7 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
 
 fn check_ended(bench: &Bench, why: Abort) {
     let trials = &bench.state().trials;
-    assert!(!bench.hand().series.is_some() && !bench.hand().connection.is_armed());
+    assert!(bench.hand().series.is_none() && !bench.hand().connection.is_armed());
     let [session] = &trials.sessions[..] else {
         panic!("{why:?}");
     };

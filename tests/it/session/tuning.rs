@@ -165,7 +165,7 @@ fn tried(person: &mut Person) -> bool {
     person.press("Start trials");
     assert!(person.state().hand().series.is_some());
     person.until("the end of the series", |state| {
-        !state.hand().series.is_some()
+        state.hand().series.is_none()
     });
     person.until("disarming", |state| !state.hand().connection.is_armed());
     let last = person.state().trials.sessions.last().unwrap();

@@ -19,11 +19,10 @@ fn timed<T>(value: T, asked: Moment) -> Option<Timed<T>> {
 }
 
 pub(crate) fn empty() -> State {
-    let state = State {
+    State {
         now: Moment::from_micros(60_000_000),
         ..State::default()
-    };
-    state
+    }
 }
 
 pub(crate) fn tactile(i: u32) -> TactileBlock {

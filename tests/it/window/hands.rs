@@ -543,7 +543,7 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     bench.act(Action::Trial(TrialAction::Start));
     bench.run(100);
     assert!(
-        !bench.state().hand().series.is_some(),
+        bench.state().hand().series.is_none(),
         "one series at a time"
     );
     bench.key(Key::F7);
