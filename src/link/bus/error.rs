@@ -1,5 +1,6 @@
 //! Why a request has no good end, and what a bus counted. Shared by the protocols; nothing is retried here.
 
+use crate::hand::Refusal;
 use crate::transport::{Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use std::io;
@@ -17,7 +18,7 @@ pub(crate) enum BusError {
     /// No reply in time.
     Timeout { after: Duration },
     /// The hand said no.
-    Refused { reason: String },
+    Refused { reason: Refusal },
     /// A reply of another length than was asked for.
     WrongLength { got: usize, want: usize },
     /// This protocol cannot carry so much.

@@ -6,7 +6,7 @@ use crate::codec::modbus::{
 };
 use crate::codec::modbus::{group_bytes, words_per_group};
 use crate::hand::register::BytePacking;
-use crate::hand::{RegisterWrite, Span};
+use crate::hand::{ModbusException, RegisterWrite, Span};
 
 use crate::link::bus::error::{BusError, Bytes, lost};
 use crate::transport::TransportError;
@@ -119,7 +119,7 @@ pub(crate) fn outcome(
     match called {
         Ok(Ok(response)) => Ok(response),
         Ok(Err(exception)) => Err(BusError::Refused {
-            reason: exception.to_string(),
+            reason: ModbusException::of(exception.into()).into(),
         }),
         Err(Error::Protocol(error)) => Err(BusError::Lost(TransportError::Io {
             place: place(),

@@ -165,7 +165,8 @@ fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport)
             .note(now_at),
         PlaceEnd::NotTaken { reason } => {
             let card = card.warning(cards::OVER_NOT_TAKEN);
-            reason.iter().cloned().fold(card, Card::note)
+            let reason = reason.map(|reason| errors::reason(look, reason));
+            reason.into_iter().fold(card, Card::note)
         }
         PlaceEnd::Back => card.words(cards::OVER_BACK).note(now_at),
         PlaceEnd::NotBack(place) => {
@@ -254,7 +255,9 @@ fn reset_over(look: Look, card: Card, places: &PlacePair, report: &ResetReport) 
     let card = match &report.end {
         ResetEnd::NotSent(_) => return card.warning(cards::RESET_NOT_SENT),
         ResetEnd::Refused { reason } => {
-            return card.warning(cards::RESET_REFUSED).note(reason.clone());
+            return card
+                .warning(cards::RESET_REFUSED)
+                .note(errors::reason(look, *reason));
         }
         ResetEnd::Found {
             at, left, proof, ..

@@ -205,7 +205,7 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
         RowVerdict::Refused { reason } => format!(
             "{}: {} ({} {})",
             say(NOT_TAKEN),
-            errors::reason(look, reason),
+            errors::reason(look, *reason),
             say(WANTED),
             end.wanted
         ),
@@ -285,7 +285,7 @@ pub(crate) fn saved(look: Look, saved: &Saved) -> String {
             )
         }
         Saved::Refused { reason } => {
-            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, reason))
+            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, *reason))
         }
         Saved::NotSent(why) => {
             format!("{} {}", say(SAVE_NOT_SENT), not_sent(look, *why))

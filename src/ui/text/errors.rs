@@ -3,7 +3,7 @@
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
-use crate::hand::OutOfRange;
+use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
@@ -110,6 +110,21 @@ chinese! {
         RequestError::Ambiguous { address, wait_s } => "地址 {address} 可能还有迟到的应答：请在 {wait_s} 秒后重试。";
         RequestError::LinkLost => "连接断开：不确定灵巧手是否已执行。";
         RequestError::OutOfRange(OutOfRange { what, got, min, max }) => "{what} 的值 {got} 超出手册范围：{min} 至 {max}。";
+    }
+
+    fn reason_zh(&Refusal) {
+        Refusal::Exception(ModbusException::IllegalFunction) => "不支持此功能码";
+        Refusal::Exception(ModbusException::IllegalAddress) => "没有此地址";
+        Refusal::Exception(ModbusException::IllegalValue) => "不接受此值";
+        Refusal::Exception(ModbusException::Failure) => "设备故障";
+        Refusal::Exception(ModbusException::Acknowledge) => "已接受，仍在处理";
+        Refusal::Exception(ModbusException::Busy) => "设备忙";
+        Refusal::Exception(ModbusException::MemoryParity) => "存储器校验错误";
+        Refusal::Exception(ModbusException::NoPath) => "网关没有通路";
+        Refusal::Exception(ModbusException::NoAnswer) => "网关的目标设备没有应答";
+        Refusal::Exception(ModbusException::Other(code)) => "异常码 {code}";
+        Refusal::PackingUnknown => "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入";
+        Refusal::PackingUnsafe => "本手的单字节不是低字节在前，写入是否安全尚不清楚";
     }
 
     fn endpoint_zh(&EndpointError) {
@@ -339,39 +354,12 @@ pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     }
 }
 
-/// The protocol's word for a refusal.
-pub(crate) fn reason(look: Look, reason: &str) -> String {
+/// Why the hand, or the rule against unsafe writes, said no.
+pub(crate) fn reason(look: Look, reason: Refusal) -> String {
     match look.language {
-        Language::En => reason.to_owned(),
-        Language::Zh => reason_zh(reason),
+        Language::En => reason.to_string(),
+        Language::Zh => reason_zh(&reason),
     }
-}
-
-fn reason_zh(reason: &str) -> String {
-    let known = [
-        ("Illegal function", "不支持此功能码"),
-        ("Illegal data address", "没有此地址"),
-        ("Illegal data value", "不接受此值"),
-        ("Server device failure", "设备故障"),
-        ("Acknowledge", "已接受，仍在处理"),
-        ("Server device busy", "设备忙"),
-        ("Memory parity error", "存储器校验错误"),
-        ("Gateway path unavailable", "网关没有通路"),
-        (
-            "Gateway target device failed to respond",
-            "网关的目标设备没有应答",
-        ),
-        (
-            "it is not known how this hand",
-            "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入",
-        ),
-        (
-            "this hand does not put single bytes",
-            "本手的单字节不是低字节在前，写入是否安全尚不清楚",
-        ),
-    ];
-    let zh = known.iter().find(|(en, _)| reason.starts_with(en));
-    zh.map_or_else(|| system_zh(reason), |(_, zh)| (*zh).to_owned())
 }
 
 #[cfg(test)]
@@ -501,12 +489,10 @@ mod tests {
     }
 
     fn requests() -> Vec<RequestError> {
-        let refused = |reason: &str| RequestError::Refused {
-            address: 1000,
-            reason: reason.into(),
-        };
+        let address = 1000;
+        let refused = |reason| RequestError::Refused { address, reason };
         let range = crate::hand::Angle::new(2000).unwrap_err();
-        vec![
+        let mut all = vec![
             RequestError::NotConnected,
             RequestError::NotArmed,
             RequestError::NotOwner(LeaseRefusal::Taken(Owner::Gamepad)),
@@ -526,9 +512,8 @@ mod tests {
                 address: 1000,
                 after_ms: 60,
             },
-            refused("Illegal data address"),
-            refused("Illegal data value"),
-            refused("this hand does not put single bytes into words low byte first"),
+            refused(Refusal::PackingUnknown),
+            refused(Refusal::PackingUnsafe),
             RequestError::WrongLength {
                 address: 1000,
                 got: 1,
@@ -540,7 +525,9 @@ mod tests {
             },
             RequestError::LinkLost,
             RequestError::OutOfRange(range),
-        ]
+        ];
+        all.extend((0..=11).map(|code| refused(ModbusException::of(code).into())));
+        all
     }
 
     #[test]
@@ -712,7 +699,7 @@ mod tests {
             },
             ScanHint::Refuses {
                 endpoint: endpoint(),
-                reason: "Illegal data address".into(),
+                reason: ModbusException::IllegalAddress.into(),
             },
             ScanHint::OtherTalk {
                 endpoint: endpoint(),
