@@ -9,7 +9,7 @@ use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
 use crate::tasks::hand::{Hand, once_at_rest};
-use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
+use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
@@ -122,7 +122,5 @@ pub(crate) async fn save_noted<H: Hand>(
 }
 
 fn no_backup(error: io::Error) -> TaskError {
-    TaskError::NoBackup {
-        message: error.to_string(),
-    }
+    TaskError::NoBackup(BackupError::System(error.into()))
 }

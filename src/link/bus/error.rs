@@ -1,6 +1,7 @@
 //! Why a request has no good end, and what a bus counted. Shared by the protocols; nothing is retried here.
 
 use crate::hand::Refusal;
+use crate::system::SystemError;
 use crate::transport::{Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use std::io;
@@ -66,7 +67,7 @@ pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
     } else {
         TransportError::Io {
             place,
-            message: error.to_string(),
+            failure: SystemError::from(error).into(),
         }
     })
 }

@@ -9,7 +9,7 @@ use crate::hand::register::BytePacking;
 use crate::hand::{ModbusException, RegisterWrite, Span};
 
 use crate::link::bus::error::{BusError, Bytes, lost};
-use crate::transport::TransportError;
+use crate::transport::{TransportError, WireFailure};
 use std::borrow::Cow;
 use tokio_modbus::{Error, ExceptionCode, Request, Response};
 
@@ -123,7 +123,7 @@ pub(crate) fn outcome(
         }),
         Err(Error::Protocol(error)) => Err(BusError::Lost(TransportError::Io {
             place: place(),
-            message: error.to_string(),
+            failure: WireFailure::Protocol(error.to_string()),
         })),
         // Where the other side closes, the library passes on whatever error the system had last.
         Err(Error::Transport(_)) if closed => {

@@ -39,7 +39,9 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
 /// Nothing was written: why.
 fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
     let card = match error {
-        TaskError::NoBackup { message } => card.warning(cards::NO_BACKUP).note(message.clone()),
+        TaskError::NoBackup(why) => card
+            .warning(cards::NO_BACKUP)
+            .note(errors::backup(look, why)),
         TaskError::NotRead { .. } => {
             let why = errors::task(look, error);
             card.warning(cards::NO_BACKUP).note(why)

@@ -244,10 +244,7 @@ fn not_sent(look: Look, why: NotSent) -> String {
 pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
         SaveEnd::Told(told) => saved(look, told),
-        SaveEnd::NoBackup { message } => {
-            let message = errors::system(look, message);
-            look.told(SAVE_NO_BACKUP, message)
-        }
+        SaveEnd::NoBackup(why) => look.told(SAVE_NO_BACKUP, errors::backup(look, why)),
         SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
         SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(
