@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
+//! | 0 | [`system`] | what the operating system said, as a value |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
 //! | 1 | [`record`] | what happened at a hand, as typed values; session files, written by a thread of its own and read back; the formats of others |
@@ -70,6 +71,7 @@ pub mod share;
 pub mod shell;
 pub mod sim;
 pub mod store;
+pub mod system;
 pub mod tasks;
 pub mod transport;
 pub mod trials;

@@ -3,7 +3,9 @@
 use crate::link::Clock;
 use crate::sim::serve::{SharedHand, rs485};
 use crate::sim::{Scenario, SimConfig, SimHand};
-use crate::transport::{BoxedWire, Dial, Endpoint, PortFound, SystemDial, TransportError, pair};
+use crate::transport::{
+    BoxedWire, Dial, Endpoint, PortFound, SystemDial, TransportError, WireFailure, pair,
+};
 use futures::future::BoxFuture;
 use std::sync::{Mutex, PoisonError};
 
@@ -51,7 +53,7 @@ impl SimDial {
                 .parse()
                 .map_err(|error: crate::sim::UnknownScenario| TransportError::Io {
                     place: "sim:".into(),
-                    message: error.to_string(),
+                    failure: WireFailure::NoScenario(error.to_string()),
                 })?;
         let mut all = self.built.lock().unwrap_or_else(PoisonError::into_inner);
         let mut known = all.iter();

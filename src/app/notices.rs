@@ -8,6 +8,7 @@ use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed, SetpointConflict};
 use crate::store::FileError;
+use crate::system::SystemError;
 use crate::trials::Abort;
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -197,15 +198,13 @@ pub enum NoticeKind {
     NotDeleted {
         /// The file.
         path: PathBuf,
-        /// The system's words.
-        message: String,
+        error: SystemError,
     },
     /// A file could not be shown in the system's file manager.
     NotRevealed {
         /// The file.
         path: PathBuf,
-        /// The system's words.
-        message: String,
+        error: SystemError,
     },
     /// No place was chosen for a file: the dialog was cancelled, or this desktop has none.
     NoFileChosen,
@@ -236,8 +235,8 @@ impl NoticeKind {
 
     /// A session could not be deleted.
     pub(crate) fn not_deleted(path: PathBuf, error: &std::io::Error) -> Self {
-        let message = error.to_string();
-        Self::NotDeleted { path, message }
+        let error = error.into();
+        Self::NotDeleted { path, error }
     }
 
     /// How much it matters.

@@ -1,6 +1,8 @@
 //! What a Modbus message says once its envelope is off, both sides, and how long it is (manual 2.4, 2.5). RTU and TCP
 //! put their own envelope around it.
 
+use crate::hand::ModbusException;
+
 /// Most bytes of memory in one message: 125 words (manual 2.5.1).
 const BYTES_MAX: u8 = 250;
 /// Most bytes that one write carries: 123 words, by the standard.
@@ -64,29 +66,10 @@ pub enum Pdu<'a> {
     },
 }
 
-/// Why a server does not do what it was asked, as the standard numbers it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ModbusException {
-    /// It does not know this function.
-    IllegalFunction = 1,
-    /// Nothing of the kind may be done at this address.
-    IllegalAddress = 2,
-    /// A value or a count out of its range.
-    IllegalValue = 3,
-    /// It tried, and failed.
-    Failure = 4,
-    /// It is at the disposal of somebody else, or has too much to do.
-    Busy = 6,
-    /// A gateway that has no way to the device now.
-    NoPath = 10,
-    /// A gateway whose device does not answer.
-    NoAnswer = 11,
-}
-
 impl ModbusException {
     /// The message that says so, in answer to this function.
     pub const fn reply(self, function: u8) -> [u8; 2] {
-        [function | 0x80, self as u8]
+        [function | 0x80, self.code()]
     }
 }
 

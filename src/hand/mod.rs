@@ -14,6 +14,7 @@ pub mod kinematics;
 pub mod moment;
 pub mod quantity;
 pub mod reading;
+pub mod refusal;
 pub mod register;
 pub mod sample;
 pub mod setpoints;
@@ -32,6 +33,7 @@ pub use quantity::{Quantity, QuantityRow, Touch};
 pub use reading::{
     AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
 };
+pub use refusal::{ModbusException, Refusal};
 pub use register::{REGISTERS, Register, Span};
 pub use sample::{Group, Groups, HandSample, Reply};
 pub use setpoints::{ArmEpoch, Setpoints};

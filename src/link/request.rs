@@ -1,6 +1,6 @@
 //! What may be asked of a link, each with the place its answer goes to, and how asking can fail.
 
-use crate::hand::{HandCommand, OutOfRange, Setting, Span};
+use crate::hand::{HandCommand, OutOfRange, Refusal, Setting, Span};
 use crate::link::lease::{Lease, LeaseRefusal};
 use crate::record::{Calibrated, NotSent, Reset, Saved, Written};
 use tokio::sync::oneshot;
@@ -100,8 +100,8 @@ pub enum RequestError {
     Refused {
         /// First byte.
         address: u16,
-        /// The protocol's word for it.
-        reason: String,
+        /// Why.
+        reason: Refusal,
     },
     /// The hand answered something that does not fit the request.
     #[error("the hand answered {got} bytes to a request for {want} at address {address}")]

@@ -208,14 +208,26 @@ impl Backups {
     /// # Errors
     /// What the system says, or what is wrong with the note. The SAVE is then noted as of unknown result.
     pub fn note_result(&self, saved: &Saved) -> io::Result<()> {
-        let path = self.attempt_path();
-        let mut file = file::load(&path).map_err(io::Error::other)?;
-        file.verdict = saved_name(saved).into();
-        let text = file.to_toml();
+        let text = self.attempt_with(saved_name(saved))?;
         if matches!(saved, Saved::Confirmed | Saved::ReadBack) {
             replace_keeping_last(&self.saved_path(), &text)?;
         }
-        replace_keeping_last(&path, &text)
+        replace_keeping_last(&self.attempt_path(), &text)
+    }
+
+    /// Notes that the SAVE that was noted last was not carried out.
+    ///
+    /// # Errors
+    /// As [`Self::note_result`].
+    pub fn note_not_done(&self) -> io::Result<()> {
+        let text = self.attempt_with("refused")?;
+        replace_keeping_last(&self.attempt_path(), &text)
+    }
+
+    fn attempt_with(&self, verdict: &str) -> io::Result<String> {
+        let mut file = file::load(&self.attempt_path()).map_err(io::Error::other)?;
+        file.verdict = verdict.into();
+        Ok(file.to_toml())
     }
 
     /// The hand was returned to its factory parameters: earlier saves are no longer in flash.

@@ -1,6 +1,6 @@
 //! From wanted values to writes, and from the results of writes to a verdict on each row. Sends nothing.
 
-use crate::hand::{Dof, Force, HandId, PerDof, SerialSpeed, Setting, Speed};
+use crate::hand::{Dof, Force, HandId, PerDof, Refusal, SerialSpeed, Setting, Speed};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded};
 use crate::record::{Doubt, NotSent, Verdict, Written};
@@ -21,10 +21,7 @@ pub enum RowVerdict {
     /// Read back as written.
     Applied,
     /// Refused by the hand, or by the rule against unsafe writes.
-    Refused {
-        /// The reason, in the protocol's terms.
-        reason: String,
-    },
+    Refused { reason: Refusal },
     /// Not refused, but the hand kept its old value.
     Dropped,
     /// The hand holds a third value, neither the written nor the old one.
@@ -142,9 +139,7 @@ fn judged(
     match (verdict, holds) {
         (Verdict::NotSent(why), _) => RowVerdict::NotSent(*why),
         (_, Some(holds)) if holds == wanted => RowVerdict::Applied,
-        (Verdict::Refused { reason }, _) => RowVerdict::Refused {
-            reason: reason.clone(),
-        },
+        (Verdict::Refused { reason }, _) => RowVerdict::Refused { reason: *reason },
         (Verdict::Unverified { why }, _) => RowVerdict::Unverified(*why),
         (_, None) => RowVerdict::Unverified(Doubt::NotReadBack),
         (_, Some(_)) if holds == before => RowVerdict::Dropped,

@@ -1,6 +1,6 @@
 //! What a hand is found by: its id, serial speed and address, and where it is found after a change of one.
 
-use crate::hand::{HandId, SerialSpeed, Setting};
+use crate::hand::{HandId, Refusal, SerialSpeed, Setting};
 use crate::params::rows::{ParamId, Value};
 use crate::transport::Endpoint;
 
@@ -29,10 +29,7 @@ pub enum Moved {
     /// Another hand answers at the new place. Nothing was written.
     Occupied,
     /// The hand said no, and is where it was.
-    Refused {
-        /// The protocol's word for it.
-        reason: String,
-    },
+    Refused { reason: Refusal },
     /// The hand answers at the new place.
     There,
     /// The hand answers at the old place and holds the new value: it acts at a SAVE or at the next power-up.

@@ -2,7 +2,7 @@
 
 use crate::hand::command::WRITE_LEN_MAX;
 use crate::hand::register::ANGLE_SET;
-use crate::hand::{Angle, PerDof, RegisterWrite, Span};
+use crate::hand::{Angle, PerDof, Refusal, RegisterWrite, Span};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
@@ -92,7 +92,7 @@ pub enum WriteFate {
     Acknowledged,
     /// The hand said no.
     Refused {
-        /// The protocol's word for it.
+        /// Its words, as recordings keep them; older programs may have used others.
         reason: String,
     },
     /// No usable answer: whether the hand acted is not known.
@@ -139,10 +139,7 @@ pub enum Verdict {
     /// Read back as written: in effect, acknowledged or not. Not in flash before a SAVE.
     Applied,
     /// The hand, or the rule against unsafe writes, said no, and the hand holds something else.
-    Refused {
-        /// The protocol's word for it.
-        reason: String,
-    },
+    Refused { reason: Refusal },
     /// The hand did not say no, and holds something else: dropped, or taken as another value.
     Differs,
     /// What the hand holds is not known.
@@ -180,10 +177,7 @@ pub enum Saved {
     /// Whether anything was written to flash is not known.
     Unknown { why: SaveDoubt },
     /// The hand, or the rule against unsafe writes, said no.
-    Refused {
-        /// The protocol's word for it.
-        reason: String,
-    },
+    Refused { reason: Refusal },
     /// SAVE was not sent.
     NotSent(NotSent),
 }
@@ -222,8 +216,7 @@ pub enum Reset {
     Acknowledged,
     /// The hand, or the rule against unsafe writes, said no.
     Refused {
-        /// The protocol's word for it.
-        reason: String,
+        reason: Refusal,
     },
     /// No acknowledgement came: it may have acted, and the hand may be elsewhere now.
     Unanswered,
@@ -239,8 +232,7 @@ pub enum Calibrated {
     Quiet,
     /// The hand said no.
     Refused {
-        /// The protocol's word for it.
-        reason: String,
+        reason: Refusal,
     },
     /// Whether the sensors were calibrated is not known.
     Unknown {

@@ -25,6 +25,7 @@ use crate::params::changes::RowOutcome;
 use crate::params::danger::Danger;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
+use crate::system::SystemError;
 
 /// Why a task ended before it wrote anything to the hand.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,14 +46,22 @@ pub enum TaskError {
     #[error("not confirmed")]
     NotMeant(Risks),
     /// The backup, or the note that goes before a SAVE, could not be written.
-    #[error("cannot make a backup, nothing was written to the hand: {message}")]
-    NoBackup {
-        /// The system's words.
-        message: String,
-    },
+    #[error("cannot make a backup, nothing was written to the hand: {0}")]
+    NoBackup(BackupError),
     /// The link could not take the request.
     #[error(transparent)]
     NotAsked(#[from] RequestError),
+}
+
+/// Why there is no backup.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum BackupError {
+    /// This program keeps no files, so it has no place for any.
+    #[error("there is no folder for backups")]
+    NoFolder,
+    /// The system did not write it.
+    #[error(transparent)]
+    System(#[from] SystemError),
 }
 
 /// What the tasks tell that read, apply and save parameters.

@@ -1,7 +1,7 @@
 //! A change of what a hand is found by, so that nobody is left with a hand they cannot reach: backup, look whether the new place
 //! is free, write, look at both places, let a person keep it or take it back, and save it if they want.
 
-use crate::hand::Moment;
+use crate::hand::{Moment, Refusal};
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::place::{Moved, PlacePair, WhichPlace, setting};
@@ -75,8 +75,8 @@ pub enum PlaceEnd {
     Occupied,
     /// The hand said no, or did not take it, and is where it was.
     NotTaken {
-        /// The protocol's word for it, if the hand said no.
-        reason: Option<String>,
+        /// Why, if the hand said no.
+        reason: Option<Refusal>,
     },
     /// It was taken back: the hand is as it was before.
     Back,
@@ -162,7 +162,7 @@ pub async fn change_place<R: Reach>(
         }
         Some(Moved::Stayed) => PlaceEnd::NotTaken { reason: None },
         Some(Moved::Refused { reason }) => PlaceEnd::NotTaken {
-            reason: Some(reason.clone()),
+            reason: Some(*reason),
         },
         Some(Moved::There) => run.decide(WhichPlace::New, params, decisions).await,
         Some(Moved::Waits) => run.decide(WhichPlace::Old, params, decisions).await,

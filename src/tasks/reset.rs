@@ -1,5 +1,6 @@
 //! Back to the factory's parameters, with a backup first, and where the hand answers then (manual 2.6.5).
 
+use crate::hand::Refusal;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::place::{PlacePair, WhichPlace, factory_place};
@@ -35,8 +36,8 @@ pub enum ResetEnd {
     NotSent(Option<NotSent>),
     /// The hand said no.
     Refused {
-        /// The protocol's word for it.
-        reason: String,
+        /// Why.
+        reason: Refusal,
     },
     /// A hand answers there.
     Found {

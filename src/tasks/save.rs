@@ -9,7 +9,7 @@ use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
 use crate::tasks::hand::{TaskHand, once_at_rest};
-use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
+use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
@@ -105,28 +105,22 @@ pub(crate) async fn save_noted<H: TaskHand>(
         _ => None,
     };
     let ended = once_at_rest(|| hand.save(), not_sent).await;
-    // What was not sent must not be noted as of unknown result.
-    let noted = match &ended {
-        Ok(saved) => saved.clone(),
-        Err(RequestError::LinkLost) => Saved::Unknown {
+    let result = match ended {
+        Err(RequestError::LinkLost) => Ok(Saved::Unknown {
             why: SaveDoubt::LinkLost,
-        },
-        Err(error) => Saved::Refused {
-            reason: error.to_string(),
-        },
+        }),
+        other => other,
     };
-    let (noting, result) = (backups.clone(), noted.clone());
-    let not_noted = on_thread(move || noting.note_result(&result)).await.err();
-    match ended {
-        Ok(_) | Err(RequestError::LinkLost) => {
-            Ok((noted, not_noted.map(|error| error.to_string())))
-        }
-        Err(error) => Err(error.into()),
-    }
+    let (noting, noted) = (backups.clone(), result.clone().ok());
+    let not_noted = on_thread(move || match noted {
+        Some(saved) => noting.note_result(&saved),
+        // What was not sent must not be noted as of unknown result.
+        None => noting.note_not_done(),
+    });
+    let not_noted = not_noted.await.err();
+    Ok((result?, not_noted.map(|error| error.to_string())))
 }
 
 fn no_backup(error: io::Error) -> TaskError {
-    TaskError::NoBackup {
-        message: error.to_string(),
-    }
+    TaskError::NoBackup(BackupError::System(error.into()))
 }

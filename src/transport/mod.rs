@@ -32,4 +32,4 @@ pub use pipe::{Pipe, pair};
 #[cfg(unix)]
 pub use pty::PtyLink;
 pub use serial::ports;
-pub use wire::{BoxedWire, Dial, TransportError, Wire};
+pub use wire::{BoxedWire, Dial, TransportError, Wire, WireFailure};

@@ -1,6 +1,7 @@
 //! A pseudo-terminal with a link to it, so that other programs can open the simulated hand like a serial port. Knows no protocol.
 
 #[cfg(target_os = "linux")]
+use crate::system::SystemError;
 use crate::transport::openers::Openers;
 use crate::transport::permission::remedy;
 use crate::transport::wire::TransportError;
@@ -181,7 +182,7 @@ fn link_error(link_path: &Path, error: &io::Error) -> TransportError {
         },
         _ => TransportError::Io {
             place,
-            message: error.to_string(),
+            failure: SystemError::from(error).into(),
         },
     }
 }

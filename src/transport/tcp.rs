@@ -1,5 +1,6 @@
 //! TCP connections with a deadline. What is said over them is not known here.
 
+use crate::system::SystemError;
 use crate::transport::wire::TransportError;
 use std::io;
 use std::time::Duration;
@@ -44,7 +45,7 @@ fn refused(place: &str, error: &io::Error) -> TransportError {
         io::ErrorKind::TimedOut => silent(place.into()),
         _ => TransportError::Io {
             place: place.into(),
-            message: error.to_string(),
+            failure: SystemError::from(error).into(),
         },
     }
 }

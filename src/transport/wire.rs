@@ -1,5 +1,6 @@
 //! What every wire is: a stream of bytes both ways, and how one is opened. No hand, no protocol.
 
+use crate::system::SystemError;
 use crate::transport::endpoint::Endpoint;
 use crate::transport::found::PortFound;
 use crate::transport::permission::Remedy;
@@ -191,12 +192,66 @@ pub enum TransportError {
         /// Bits a second.
         bitrate: u32,
     },
-    /// Anything else the system said.
-    #[error("{place} failed: {message}")]
+    /// Anything else that failed.
+    #[error("{place} failed: {failure}")]
     Io {
         /// Port or address.
         place: String,
-        /// The system's words.
-        message: String,
+        /// What failed.
+        #[serde(rename = "message")]
+        failure: WireFailure,
     },
+}
+
+/// What failed at a wire where [`TransportError`] knows no advice. In JSON and in recordings it is only its words.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum WireFailure {
+    /// The system's error.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// The other side did not keep to the protocol, in the library's words.
+    #[error("{0}")]
+    Protocol(String),
+    /// The built-in hand has no such scenario, in its own words.
+    #[error("{0}")]
+    NoScenario(String),
+    /// The CAN adapter says that it could not open its channel.
+    #[error("the CAN adapter could not go on the bus")]
+    OffBus,
+    /// Read back from JSON or a recording: the words that stand there.
+    #[error("{0}")]
+    Recorded(String),
+}
+
+impl From<WireFailure> for String {
+    fn from(failure: WireFailure) -> Self {
+        failure.to_string()
+    }
+}
+
+impl From<String> for WireFailure {
+    fn from(words: String) -> Self {
+        Self::Recorded(words)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_is_its_words_in_json() {
+        let told = |failure| TransportError::Io {
+            place: "/dev/x".into(),
+            failure,
+        };
+        let denied = SystemError::from(std::io::Error::from_raw_os_error(13));
+        let words = denied.to_string();
+        let json = serde_json::to_value(told(denied.into())).unwrap();
+        let expected = serde_json::json!({"Io": {"place": "/dev/x", "message": words}});
+        assert_eq!(json, expected);
+        let read: TransportError = serde_json::from_value(json).unwrap();
+        assert_eq!(read, told(WireFailure::Recorded(words)));
+    }
 }

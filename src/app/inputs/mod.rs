@@ -19,6 +19,7 @@ use crate::share::dds::{DdsTold, SharedOnDds};
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
+use crate::system::SystemError;
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
 use crate::transport::dds::DdsError;
 use std::io;
@@ -79,8 +80,8 @@ pub enum InputKind {
 /// Why something was not opened.
 #[derive(Debug)]
 pub enum OpenRefusal {
-    /// The system's words for it.
-    System(String),
+    /// The system's error.
+    System(SystemError),
     /// Gamepads are not read.
     Pad(PadTrouble),
     /// DDS does not come up.
@@ -89,7 +90,7 @@ pub enum OpenRefusal {
 
 impl From<io::Error> for OpenRefusal {
     fn from(error: io::Error) -> Self {
-        Self::System(error.to_string())
+        Self::System(error.into())
     }
 }
 

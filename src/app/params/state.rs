@@ -16,7 +16,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
 use crate::store::{BackgroundJob, FileError};
-use crate::tasks::ParamStep;
+use crate::tasks::{BackupError, ParamStep};
 use crate::transport::Endpoint;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -69,10 +69,7 @@ pub enum SaveEnd {
     /// With this result from the hand, or without one.
     Told(Saved),
     /// The backup or the record could not be written: no SAVE was sent.
-    NoBackup {
-        /// The system's words.
-        message: String,
-    },
+    NoBackup(BackupError),
     /// The hand was gone: no SAVE was sent.
     NotAsked(RequestError),
     /// What was staged did not all come into force: no SAVE was sent.

@@ -322,7 +322,7 @@ impl ParamsState {
                 None => SaveEnd::Told(report.saved),
                 Some(message) => SaveEnd::NotNoted(report.saved, message),
             },
-            Err(TaskError::NoBackup { message }) => SaveEnd::NoBackup { message },
+            Err(TaskError::NoBackup(why)) => SaveEnd::NoBackup(why),
             Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
             Err(error) => return self.refused(WriteRequest::Save, error),
         };

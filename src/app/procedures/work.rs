@@ -16,10 +16,10 @@ use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
 use crate::params::place::{PlacePair, new_place, setting};
 use crate::params::rows::{ParamId, Value};
-use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, PlaceStep, change_place};
 use crate::tasks::reset::{self, ResetStep, reset};
+use crate::tasks::{BackupError, TaskError};
 use crate::transport::Endpoint;
 use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
@@ -129,9 +129,7 @@ impl Procedures {
         let folder = env.settings_path.as_deref().map(folder_beside);
         let backups = |hand: &Endpoint| match &folder {
             Some(folder) => Ok(Backups::new(folder, hand)),
-            None => Err(TaskError::NoBackup {
-                message: "there is no folder for backups".into(),
-            }),
+            None => Err(TaskError::NoBackup(BackupError::NoFolder)),
         };
         let (requests, requested) = mpsc::unbounded_channel();
         let mut reach = Asking {

@@ -39,8 +39,8 @@ pub(crate) fn reveal(path: PathBuf, env: &Env) -> BackgroundJob<Result<(), Notic
     });
     let shown = async move {
         shown.await.map_err(|error| {
-            let message = error.to_string();
-            NoticeKind::NotRevealed { path, message }
+            let error = error.into();
+            NoticeKind::NotRevealed { path, error }
         })
     };
     BackgroundJob::start(&env.runtime, &env.wake, shown)

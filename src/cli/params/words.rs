@@ -100,7 +100,7 @@ pub(crate) fn warn(meant: &Risks) {
 /// One row that was to be written.
 pub(crate) fn outcome_json(end: &RowOutcome) -> Json {
     let reason = match &end.verdict {
-        RowVerdict::Refused { reason } => Some(reason.clone()),
+        RowVerdict::Refused { reason } => Some(reason.to_string()),
         RowVerdict::Unverified(why) => Some(why.to_string()),
         RowVerdict::NotSent(why) => Some(why.to_string()),
         _ => None,

@@ -109,7 +109,7 @@ pub(crate) fn spawn(
     });
     started
         .map(drop)
-        .map_err(|error| PadTrouble::NoThread(error.to_string()))
+        .map_err(|error| PadTrouble::NoThread(error.into()))
 }
 
 /// The gamepads that are there.
@@ -289,7 +289,7 @@ impl OpenedPad {
 fn event_files(folder: &Path) -> Result<BTreeSet<PathBuf>, PadTrouble> {
     let trouble = |error: io::Error| PadTrouble::NoFolder {
         folder: folder.to_owned(),
-        why: error.to_string(),
+        why: error.into(),
     };
     let mut files = BTreeSet::new();
     for entry in fs::read_dir(folder).map_err(trouble)? {

@@ -3,6 +3,7 @@
 use crate::hand::Moment;
 use crate::inputs::pad::control::kernel_code;
 use crate::inputs::pad::facts::PadFacts;
+use crate::system::SystemError;
 use crate::transport::Remedy;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -97,7 +98,7 @@ pub enum PadTrouble {
     NoFolder {
         folder: PathBuf,
         /// What the system says.
-        why: String,
+        why: SystemError,
     },
     /// Devices that might be gamepads may not be opened.
     #[error(
@@ -115,7 +116,7 @@ pub enum PadTrouble {
     },
     /// The thread that reads them did not start.
     #[error("gamepads cannot be read: {0}")]
-    NoThread(String),
+    NoThread(SystemError),
 }
 
 fn others(count: usize) -> String {

@@ -5,7 +5,7 @@ use crate::codec::can::{CanFrame, CanRecord, RECORD_LEN, from_record, to_record}
 use crate::codec::slcan::{AnswerDecoder, SlcanAnswer, SlcanCommand, bitrate_code, encode_command};
 use crate::codec::usbcan::{self, PacketContent, PacketDecoder};
 use crate::link::bus::error::{BusError, lost};
-use crate::transport::{BoxedWire, Endpoint, TransportError};
+use crate::transport::{BoxedWire, Endpoint, TransportError, WireFailure};
 use arrayvec::ArrayVec;
 use futures::FutureExt as _;
 use std::collections::VecDeque;
@@ -104,7 +104,7 @@ impl CanPort {
         if self.tell(&SlcanCommand::Open).await? {
             return Err(BusError::Lost(TransportError::Io {
                 place: self.place.clone(),
-                message: "the CAN adapter could not go on the bus".into(),
+                failure: WireFailure::OffBus,
             }));
         }
         self.inbox.clear();

@@ -1,5 +1,7 @@
 //! Why a request has no good end, and what a bus counted. Shared by the protocols; nothing is retried here.
 
+use crate::hand::Refusal;
+use crate::system::SystemError;
 use crate::transport::{Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use std::io;
@@ -17,7 +19,7 @@ pub(crate) enum BusError {
     /// No reply in time.
     Timeout { after: Duration },
     /// The hand said no.
-    Refused { reason: String },
+    Refused { reason: Refusal },
     /// A reply of another length than was asked for.
     WrongLength { got: usize, want: usize },
     /// This protocol cannot carry so much.
@@ -65,7 +67,7 @@ pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
     } else {
         TransportError::Io {
             place,
-            message: error.to_string(),
+            failure: SystemError::from(error).into(),
         }
     })
 }

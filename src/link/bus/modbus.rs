@@ -6,10 +6,10 @@ use crate::codec::modbus::{
 };
 use crate::codec::modbus::{group_bytes, words_per_group};
 use crate::hand::register::BytePacking;
-use crate::hand::{RegisterWrite, Span};
+use crate::hand::{ModbusException, RegisterWrite, Span};
 
 use crate::link::bus::error::{BusError, Bytes, lost};
-use crate::transport::TransportError;
+use crate::transport::{TransportError, WireFailure};
 use std::borrow::Cow;
 use tokio_modbus::{Error, ExceptionCode, Request, Response};
 
@@ -119,11 +119,11 @@ pub(crate) fn outcome(
     match called {
         Ok(Ok(response)) => Ok(response),
         Ok(Err(exception)) => Err(BusError::Refused {
-            reason: exception.to_string(),
+            reason: ModbusException::of(exception.into()).into(),
         }),
         Err(Error::Protocol(error)) => Err(BusError::Lost(TransportError::Io {
             place: place(),
-            message: error.to_string(),
+            failure: WireFailure::Protocol(error.to_string()),
         })),
         // Where the other side closes, the library passes on whatever error the system had last.
         Err(Error::Transport(_)) if closed => {

@@ -3,7 +3,7 @@
 
 use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
-use crate::hand::{RegisterWrite, Span};
+use crate::hand::{Refusal, RegisterWrite, Span};
 use crate::link::bus::error::BusError;
 use crate::transport::Endpoint;
 use arrayvec::ArrayVec;
@@ -88,16 +88,12 @@ impl WordUse {
         let reason = match (self.chosen, self.found) {
             (None | Some(BytePacking::LowFirst), Some(BytePacking::LowFirst))
             | (Some(BytePacking::LowFirst), None) => return Ok(()),
-            (None, None) => {
-                "it is not known how this hand puts single bytes into words; 'packing=low' in its address (in the window: Modbus bytes, Connection) says that it is low byte first"
-            }
-            _ => {
-                "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"
-            }
+            (None, None) => Refusal::PackingUnknown,
+            (None, Some(BytePacking::OnePerWord | BytePacking::HighFirst))
+            | (Some(BytePacking::OnePerWord | BytePacking::HighFirst), _)
+            | (Some(BytePacking::LowFirst), Some(_)) => Refusal::PackingUnsafe,
         };
-        Err(BusError::Refused {
-            reason: reason.into(),
-        })
+        Err(BusError::Refused { reason })
     }
 }
 

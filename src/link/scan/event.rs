@@ -1,5 +1,6 @@
 //! What a scan tells while it runs. Plain values; decides nothing.
 
+use crate::hand::Refusal;
 use crate::transport::{Endpoint, TransportError, UsbFound};
 use std::fmt;
 use std::time::Duration;
@@ -32,7 +33,7 @@ pub enum ScanHint {
         /// How it was asked.
         endpoint: Endpoint,
         /// Its reason.
-        reason: String,
+        reason: Refusal,
     },
     /// Replies that nobody here asked for.
     OtherTalk {

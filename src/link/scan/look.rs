@@ -1,6 +1,7 @@
 //! Looks at one place: opens it, asks one id after another for its HAND_ID, and closes it. Reads that one register and
 //! writes nothing.
 
+use crate::hand::Refusal;
 use crate::hand::register::HAND_ID;
 use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, BusError};
@@ -48,7 +49,7 @@ enum ProbeAnswer {
     },
     Silence,
     OtherId(u8),
-    Refused(String),
+    Refused(Refusal),
     /// The wire could not be opened.
     Shut(TransportError),
     /// The wire broke.
@@ -59,7 +60,7 @@ enum ProbeAnswer {
 #[derive(Default)]
 struct Noticed {
     other: Option<(Endpoint, u8)>,
-    refused: Option<(Endpoint, String)>,
+    refused: Option<(Endpoint, Refusal)>,
     foreign: Option<Endpoint>,
     garbled: Vec<u32>,
     bytes: usize,

@@ -171,7 +171,7 @@ pub(crate) fn request_error(error: &BusError, span: Span) -> RequestError {
         }
         BusError::Refused { reason } => RequestError::Refused {
             address,
-            reason: reason.clone(),
+            reason: *reason,
         },
         BusError::WrongLength { got, want } => RequestError::WrongLength {
             address,

@@ -2,7 +2,7 @@
 //! Pure: moments and frames come in, the next step and a verdict go out.
 
 use crate::codec::rs485::SaveResult;
-use crate::hand::Moment;
+use crate::hand::{Moment, Refusal};
 use crate::link::bus::ResultFrame;
 use crate::record::{SaveDoubt, Saved};
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub(crate) const CLAIMED_FOR: Duration = Duration::from_secs(6);
 pub(crate) enum Ack {
     Acknowledged,
     Unanswered,
-    Refused { reason: String },
+    Refused { reason: Refusal },
 }
 
 /// What is to be done now.
@@ -80,8 +80,7 @@ impl SaveWatch {
             return;
         };
         if let Ack::Refused { reason } = &ack {
-            let reason = reason.clone();
-            open.end.get_or_insert(Saved::Refused { reason });
+            open.end.get_or_insert(Saved::Refused { reason: *reason });
         }
         open.ack = ack;
     }

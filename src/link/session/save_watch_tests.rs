@@ -1,7 +1,7 @@
 //! Every interleaving of two SAVEs, their frames, a stop and a lost link on a small model: what is said is true.
 
 use crate::codec::rs485::SaveResult;
-use crate::hand::Moment;
+use crate::hand::{ModbusException, Moment, Refusal};
 use crate::link::bus::ResultFrame;
 use crate::link::session::save_watch::{Ack, Next, SaveWatch};
 use crate::record::{SaveDoubt, Saved};
@@ -209,9 +209,7 @@ fn without_a_result_frame_the_parameters_are_read_back_and_no_frame_counts() {
     }
     let mut watch = SaveWatch::default();
     watch.send(at(0), ResultFrame::None);
-    let reason = String::from("no");
-    watch.written(Ack::Refused {
-        reason: reason.clone(),
-    });
+    let reason = Refusal::Exception(ModbusException::Failure);
+    watch.written(Ack::Refused { reason });
     assert_eq!(watch.next(at(0)), Next::Done(Saved::Refused { reason }));
 }

@@ -494,7 +494,7 @@ fn fate(written: &Result<(), BusError>) -> WriteFate {
     match written {
         Ok(()) => WriteFate::Acknowledged,
         Err(BusError::Refused { reason }) => WriteFate::Refused {
-            reason: reason.clone(),
+            reason: reason.to_string(),
         },
         Err(_) => WriteFate::Unanswered,
     }

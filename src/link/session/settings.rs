@@ -2,7 +2,7 @@
 //! passes before each exchange. What a late frame means is decided in `save_watch`.
 
 use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
-use crate::hand::{Moment, Setting, Span, Trigger};
+use crate::hand::{Moment, Refusal, Setting, Span, Trigger};
 use crate::link::bus::{Bus, BusError, ResultFrame};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
@@ -228,7 +228,7 @@ impl Session {
         &mut self,
         bus: &mut dyn Bus,
         setting: Setting,
-    ) -> Result<(Option<String>, bool), WireEnd> {
+    ) -> Result<(Option<Refusal>, bool), WireEnd> {
         let (mut refused, mut is_unanswered) = (None, false);
         for write in setting.writes() {
             self.give_way(bus).await?;
@@ -237,7 +237,7 @@ impl Session {
             };
             match &error {
                 BusError::Refused { reason } => {
-                    refused.get_or_insert_with(|| reason.clone());
+                    refused.get_or_insert(*reason);
                 }
                 _ => is_unanswered = true,
             }
@@ -267,9 +267,7 @@ impl Session {
         let sent = self.trigger(bus, Trigger::Save).await;
         self.saving.written(match &sent {
             Ok(()) => Ack::Acknowledged,
-            Err(BusError::Refused { reason }) => Ack::Refused {
-                reason: reason.clone(),
-            },
+            Err(BusError::Refused { reason }) => Ack::Refused { reason: *reason },
             Err(_) => Ack::Unanswered,
         });
         // A hand that writes its flash may be mute: that is no silence to be counted.

@@ -13,6 +13,7 @@ use crate::record::file::walk::{
 };
 use crate::record::file::writer::OVERVIEW;
 use crate::record::{Entry, EventKind};
+use crate::system::SystemError;
 use mcap::records::{Record as McapRecord, op};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -40,11 +41,8 @@ const LIBRARY: &str = "handscope ";
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The system could not read it.
-    #[error("it cannot be read: {message}")]
-    Unreadable {
-        /// What the system says.
-        message: String,
-    },
+    #[error("it cannot be read: {error}")]
+    Unreadable { error: SystemError },
     /// A folder, a device, a pipe.
     #[error("it is no file, but a folder or a device")]
     NotAFile,
@@ -64,7 +62,7 @@ pub enum OpenError {
 impl From<io::Error> for OpenError {
     fn from(error: io::Error) -> Self {
         Self::Unreadable {
-            message: error.to_string(),
+            error: error.into(),
         }
     }
 }

@@ -1,11 +1,10 @@
 //! What a client of the gateway may write: targets, and what belongs to moving. All else is refused here, whoever asks; nothing
 //! that outlasts the power or leads away from the hand can be expressed. Pure.
 
-use crate::codec::pdu::ModbusException;
 use crate::hand::register::{ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_NO_SET, SPEED_SET};
 use crate::hand::{
-    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, OutOfRange, PerDof, Register, Speed,
-    Target,
+    Angle, Dof, Force, Gesture, GestureRoute, HandCommand, ModbusException, OutOfRange, PerDof,
+    Register, Speed, Target,
 };
 
 /// The command that words written at this address mean.

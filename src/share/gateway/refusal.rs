@@ -1,9 +1,8 @@
 //! Why a gateway does not do what a client asks, in words for a person and as a Modbus exception.
 
-use crate::codec::pdu::ModbusException;
+use crate::hand::{ModbusException, Refusal};
 use crate::link::RequestError;
 use crate::record::ArmRefusal;
-use tokio_modbus::ExceptionCode;
 
 /// Why a write of a client was not done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -62,7 +61,7 @@ pub(crate) fn exception(error: &RequestError) -> ModbusException {
         RequestError::LinkLost | RequestError::Timeout { .. } | RequestError::Ambiguous { .. } => {
             ModbusException::NoAnswer
         }
-        RequestError::Refused { reason, .. } => refused(reason),
+        RequestError::Refused { reason, .. } => refused(*reason),
         RequestError::NotArmed
         | RequestError::NotOwner(_)
         | RequestError::NotNow(_)
@@ -72,13 +71,12 @@ pub(crate) fn exception(error: &RequestError) -> ModbusException {
     }
 }
 
-/// The hand's own refusal, where it came as an exception.
-fn refused(reason: &str) -> ModbusException {
-    use ModbusException::{Busy, Failure, IllegalAddress, IllegalFunction, IllegalValue};
-    let all = [IllegalFunction, IllegalAddress, IllegalValue, Failure, Busy];
-    let mut all = all.into_iter();
-    let is_it = |own: &ModbusException| ExceptionCode::new(*own as u8).to_string() == reason;
-    all.find(is_it).unwrap_or(Failure)
+/// The hand's own exception passes as it is. What the rule against unsafe writes keeps back has no code of its own.
+const fn refused(reason: Refusal) -> ModbusException {
+    match reason {
+        Refusal::Exception(own) => own,
+        Refusal::PackingUnknown | Refusal::PackingUnsafe => ModbusException::Failure,
+    }
 }
 
 #[cfg(test)]
@@ -86,24 +84,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hands_own_exception_reaches_the_client() {
-        for (code, told) in [
-            (
-                ExceptionCode::IllegalDataAddress,
-                ModbusException::IllegalAddress,
-            ),
-            (
-                ExceptionCode::IllegalDataValue,
-                ModbusException::IllegalValue,
-            ),
-            (ExceptionCode::ServerDeviceBusy, ModbusException::Busy),
-            (ExceptionCode::MemoryParityError, ModbusException::Failure),
-        ] {
-            let error = RequestError::Refused {
-                address: 1000,
-                reason: code.to_string(),
-            };
-            assert_eq!(exception(&error), told);
+    fn a_hands_own_exception_reaches_the_client_with_its_code() {
+        let told = |reason| {
+            let address = 1000;
+            exception(&RequestError::Refused { address, reason }).reply(3)
+        };
+        for code in [1, 2, 3, 4, 5, 6, 8, 10, 11, 7, 0xC8] {
+            let own = Refusal::Exception(ModbusException::of(code));
+            assert_eq!(told(own), [0x83, code]);
+        }
+        for rule in [Refusal::PackingUnknown, Refusal::PackingUnsafe] {
+            assert_eq!(told(rule), [0x83, 4], "{rule}");
         }
     }
 }

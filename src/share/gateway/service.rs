@@ -2,8 +2,8 @@
 
 use crate::codec::mbap::Adu;
 use crate::codec::modbus::READ_WORDS_MAX;
-use crate::codec::pdu::{self, ModbusException, ModbusRole, Pdu};
-use crate::hand::Span;
+use crate::codec::pdu::{self, ModbusRole, Pdu};
+use crate::hand::{ModbusException, Span};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{ClientId, Row};
 use crate::share::gateway::leases::ClientLeases;

@@ -1,5 +1,6 @@
 //! Every order of losses, power cuts and answers in a change of place, on a hand of three facts: what is said in the end was seen.
 
+use crate::hand::ModbusException;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::place::{Moved, PlacePair, WhichPlace};
@@ -146,7 +147,7 @@ impl World {
                 let not_connected = Fate::Fails(RequestError::NotConnected);
                 let refused = Fate::Fails(RequestError::Refused {
                     address,
-                    reason: "no".into(),
+                    reason: ModbusException::Failure.into(),
                 });
                 [
                     Fate::Answered,
@@ -479,7 +480,7 @@ async fn moved(
         if refused {
             Fate::Fails(RequestError::Refused {
                 address: 1000,
-                reason: "no".into(),
+                reason: ModbusException::Failure.into(),
             })
         } else {
             Fate::Unheard
@@ -522,7 +523,7 @@ async fn moved(
 
 #[tokio::test(start_paused = true)]
 async fn every_end_of_a_change_is_told_as_it_is_and_nothing_is_written_twice() {
-    let reason = String::from("no");
+    let reason = ModbusException::Failure.into();
     for (before, refused, after, expected, writes) in [
         (Some(NEW), false, &[][..], Moved::Occupied, 0),
         (None, false, &[(Some(NEW), None)], Moved::There, 1),

@@ -1,6 +1,6 @@
 //! Reading, applying, saving and resetting: what is asked in which order, and what is said of what was lost.
 
-use crate::hand::{Dof, Setting, Span};
+use crate::hand::{Dof, ModbusException, Setting, Span};
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::changes::{RowOutcome, undo_of};
@@ -135,7 +135,7 @@ async fn apply_reads_first_writes_what_differs_and_undo_puts_it_back() {
 #[tokio::test(start_paused = true)]
 async fn a_row_that_was_not_taken_shows_what_the_hand_holds() {
     let refused = Verdict::Refused {
-        reason: "0x04".into(),
+        reason: ModbusException::Failure.into(),
     };
     for (fate, holds, name) in [
         (Fate::Verdict(refused), 100, "refused"),
@@ -174,7 +174,7 @@ async fn what_could_not_be_verified_is_read_once_more_and_else_not_known() {
         }
         Asked::Read(span) if is_written => Fate::Fails(RequestError::Refused {
             address: span.address,
-            reason: "no".into(),
+            reason: ModbusException::Failure.into(),
         }),
         _ => Fate::Answered,
     });
@@ -191,7 +191,7 @@ async fn nothing_is_written_on_the_strength_of_a_row_that_cannot_be_read() {
     hand.script(|asked| match asked {
         Asked::Read(span) if *span == SPANS[2] => Fate::Fails(RequestError::Refused {
             address: span.address,
-            reason: "no".into(),
+            reason: ModbusException::Failure.into(),
         }),
         _ => Fate::Answered,
     });

@@ -1,5 +1,6 @@
 //! Linux's CAN sockets as a wire: each 16 bytes are one `struct can_frame`. What frames mean is not known here.
 
+use crate::system::SystemError;
 use crate::transport::wire::TransportError;
 use socketcan::tokio::CanSocket;
 use socketcan::{CanAddr, CanFilter, SocketOptions as _};
@@ -114,7 +115,7 @@ fn can_error(interface: &str, error: &io::Error) -> TransportError {
         Some(ENOBUFS) => TransportError::QueueFull { place },
         _ => TransportError::Io {
             place,
-            message: error.to_string(),
+            failure: SystemError::from(error).into(),
         },
     }
 }

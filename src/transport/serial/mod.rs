@@ -5,6 +5,7 @@ pub mod port_facts;
 pub mod sysfs;
 pub mod timer;
 
+use crate::system::SystemError;
 use crate::transport::endpoint::SerialLine;
 
 use crate::transport::found::{PortFound, UsbFound};
@@ -87,7 +88,7 @@ fn refuse_what_is_no_port(place: &str) -> Result<(), TransportError> {
         Err(error) => Err(match error.kind() {
             NotFound => TransportError::Missing { place: place() },
             PermissionDenied => denied(place()),
-            _ => io_error(&place(), &error.to_string()),
+            _ => io_error(&place(), error.into()),
         }),
     }
 }
@@ -134,7 +135,18 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
         {
             TransportError::NotAPort { place: text() }
         }
-        _ => io_error(place, &error.description),
+        kind => io_error(
+            place,
+            SystemError {
+                kind: match kind {
+                    ErrorKind::Io(kind) => kind,
+                    ErrorKind::InvalidInput => std::io::ErrorKind::InvalidInput,
+                    ErrorKind::NoDevice | ErrorKind::Unknown => std::io::ErrorKind::Other,
+                },
+                code: None,
+                words: error.description.clone(),
+            },
+        ),
     }
 }
 
@@ -145,10 +157,10 @@ fn denied(place: String) -> TransportError {
     }
 }
 
-fn io_error(place: &str, message: &str) -> TransportError {
+fn io_error(place: &str, error: SystemError) -> TransportError {
     TransportError::Io {
         place: place.into(),
-        message: message.into(),
+        failure: error.into(),
     }
 }
 
@@ -220,7 +232,14 @@ mod tests {
         );
         assert_eq!(
             of(ErrorKind::Unknown, "Input/output error"),
-            io_error("/dev/x", "Input/output error")
+            io_error(
+                "/dev/x",
+                SystemError {
+                    kind: std::io::ErrorKind::Other,
+                    code: None,
+                    words: "Input/output error".into(),
+                }
+            )
         );
     }
 }

@@ -44,7 +44,7 @@ fn over(look: Look, card: Card, before: Option<Offsets>, report: &CalibrateRepor
         Ok(Calibrated::Finished) => card.words(cards::CALIBRATED),
         Ok(Calibrated::Quiet) => card.words(cards::CALIBRATED_QUIET),
         Ok(Calibrated::Refused { reason }) => {
-            card.warning((cards::CALIBRATED_REFUSED, errors::reason(look, reason)))
+            card.warning((cards::CALIBRATED_REFUSED, errors::reason(look, *reason)))
         }
         Ok(Calibrated::Unknown { .. }) => card.warning(cards::CALIBRATED_UNKNOWN),
         Ok(Calibrated::NotSent(_)) | Err(_) => card.warning(cards::CALIBRATED_NOT_SENT),

@@ -39,7 +39,9 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
 /// Nothing was written: why.
 fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
     let card = match error {
-        TaskError::NoBackup { message } => card.warning(cards::NO_BACKUP).note(message.clone()),
+        TaskError::NoBackup(why) => card
+            .warning(cards::NO_BACKUP)
+            .note(errors::backup(look, why)),
         TaskError::NotRead { .. } => {
             let why = errors::task(look, error);
             card.warning(cards::NO_BACKUP).note(why)
@@ -165,7 +167,8 @@ fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport)
             .note(now_at),
         PlaceEnd::NotTaken { reason } => {
             let card = card.warning(cards::OVER_NOT_TAKEN);
-            reason.iter().cloned().fold(card, Card::note)
+            let reason = reason.map(|reason| errors::reason(look, reason));
+            reason.into_iter().fold(card, Card::note)
         }
         PlaceEnd::Back => card.words(cards::OVER_BACK).note(now_at),
         PlaceEnd::NotBack(place) => {
@@ -254,7 +257,9 @@ fn reset_over(look: Look, card: Card, places: &PlacePair, report: &ResetReport) 
     let card = match &report.end {
         ResetEnd::NotSent(_) => return card.warning(cards::RESET_NOT_SENT),
         ResetEnd::Refused { reason } => {
-            return card.warning(cards::RESET_REFUSED).note(reason.clone());
+            return card
+                .warning(cards::RESET_REFUSED)
+                .note(errors::reason(look, *reason));
         }
         ResetEnd::Found {
             at, left, proof, ..

@@ -205,7 +205,7 @@ pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
         RowVerdict::Refused { reason } => format!(
             "{}: {} ({} {})",
             say(NOT_TAKEN),
-            errors::reason(look, reason),
+            errors::reason(look, *reason),
             say(WANTED),
             end.wanted
         ),
@@ -244,10 +244,7 @@ fn not_sent(look: Look, why: NotSent) -> String {
 pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
         SaveEnd::Told(told) => saved(look, told),
-        SaveEnd::NoBackup { message } => {
-            let message = errors::system(look, message);
-            look.told(SAVE_NO_BACKUP, message)
-        }
+        SaveEnd::NoBackup(why) => look.told(SAVE_NO_BACKUP, errors::backup(look, why)),
         SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
         SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
         SaveEnd::NotNoted(told, message) => format!(
@@ -285,7 +282,7 @@ pub(crate) fn saved(look: Look, saved: &Saved) -> String {
             )
         }
         Saved::Refused { reason } => {
-            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, reason))
+            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, *reason))
         }
         Saved::NotSent(why) => {
             format!("{} {}", say(SAVE_NOT_SENT), not_sent(look, *why))

@@ -3,20 +3,22 @@
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
-use crate::hand::OutOfRange;
+use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
 use crate::record::NotSent;
 use crate::share::gateway::WriteRefusal;
 use crate::store::{FileCause, FileError};
-use crate::tasks::TaskError;
+use crate::system::SystemError;
+use crate::tasks::{BackupError, TaskError};
 use crate::transport::dds::DdsError;
 use crate::transport::endpoint::error::{EndpointError, Want};
-use crate::transport::{Remedy, TransportError};
+use crate::transport::{Remedy, TransportError, WireFailure};
 use crate::ui::style::{Look, format};
 use crate::ui::text::inputs;
 use std::fmt::Display;
+use std::io::ErrorKind;
 
 /// The error's own words in English; else what `zh` makes of it.
 fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
@@ -61,7 +63,7 @@ chinese! {
         TransportError::Unsupported { kind } => "{kind}: 不经过本机的线路：请指定端口、地址或接口。";
         TransportError::LinuxOnly => "can: 连接需要 Linux：请在此使用 slcan: 适配器。";
         TransportError::BitrateRefused { place, bitrate } => "{place} 上的 CAN 适配器不支持 {bitrate} bit/s：请选择其他波特率。";
-        TransportError::Io { place: at, message } => "{} 出错：{}。", place(at), system_zh(message);
+        TransportError::Io { place: at, failure } => "{} 出错：{}。", place(at), failure_zh(failure);
         TransportError::NoInterface { place } => "没有 CAN 接口 {place}：请插入适配器；可用 'ip link show type can' 查看现有接口。";
         TransportError::NotCan { place } => "{place} 不是 CAN 接口：请从 'ip link show type can' 列出的接口中选择，例如 can0。";
         TransportError::InterfaceDown { place } => "CAN 接口 {place} 未启用：请运行 'sudo ip link set {place} up type can bitrate 1000000'。";
@@ -69,6 +71,14 @@ chinese! {
         TransportError::QueueFull { place } => "{place} 无法发送，数据仍在队列中：CAN 总线上没有设备应答；请检查线缆、终端电阻、波特率与灵巧手电源。";
         TransportError::BusOff { place } => "{place} 因错误过多已离开 CAN 总线：请检查波特率、线缆与终端电阻，然后运行 'sudo ip link set {place} down' 并重新启用。";
         TransportError::ErrorPassive { place } => "{place} 错误较多且没有应答：波特率可能不对，或 CAN 总线上没有其他设备；请检查波特率、线缆、终端电阻与灵巧手电源。";
+    }
+
+    fn failure_zh(&WireFailure) {
+        WireFailure::System(error) => "{}", system_error_zh(error);
+        WireFailure::Protocol(words) => "应答不符合此协议：“{words}”";
+        WireFailure::NoScenario(_) => "没有此场景";
+        WireFailure::OffBus => "适配器无法接入总线";
+        WireFailure::Recorded(words) => "系统信息为“{words}”";
     }
 
     fn remedy_zh(&Remedy) {
@@ -112,6 +122,21 @@ chinese! {
         RequestError::OutOfRange(OutOfRange { what, got, min, max }) => "{what} 的值 {got} 超出手册范围：{min} 至 {max}。";
     }
 
+    fn reason_zh(&Refusal) {
+        Refusal::Exception(ModbusException::IllegalFunction) => "不支持此功能码";
+        Refusal::Exception(ModbusException::IllegalAddress) => "没有此地址";
+        Refusal::Exception(ModbusException::IllegalValue) => "不接受此值";
+        Refusal::Exception(ModbusException::Failure) => "设备故障";
+        Refusal::Exception(ModbusException::Acknowledge) => "已接受，仍在处理";
+        Refusal::Exception(ModbusException::Busy) => "设备忙";
+        Refusal::Exception(ModbusException::MemoryParity) => "存储器校验错误";
+        Refusal::Exception(ModbusException::NoPath) => "网关没有通路";
+        Refusal::Exception(ModbusException::NoAnswer) => "网关的目标设备没有应答";
+        Refusal::Exception(ModbusException::Other(code)) => "异常码 {code}";
+        Refusal::PackingUnknown => "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入";
+        Refusal::PackingUnsafe => "本手的单字节不是低字节在前，写入是否安全尚不清楚";
+    }
+
     fn endpoint_zh(&EndpointError) {
         EndpointError::Place { example, .. } => "缺少端口或地址：例如 {}。", bare(example);
         EndpointError::Kind { text } => "{text} 没有说明连接方式。";
@@ -146,8 +171,13 @@ chinese! {
         TaskError::NotRead { id, why } => "无法读取 {}：{}", id.name(), request_zh(why);
         TaskError::NotReached => "灵巧手没有应答。";
         TaskError::NotMeant(_) => "没有确认要这样做。";
-        TaskError::NoBackup { message } => "无法备份，未向灵巧手写入任何内容：{}。", system_zh(message);
+        TaskError::NoBackup(why) => "无法备份，未向灵巧手写入任何内容：{}。", backup_zh(why);
         TaskError::NotAsked(error) => "{}", request_zh(error);
+    }
+
+    fn backup_zh(&BackupError) {
+        BackupError::NoFolder => "没有备份文件夹";
+        BackupError::System(error) => "{}", system_error_zh(error);
     }
 
     fn write_refusal_zh(&WriteRefusal) {
@@ -163,14 +193,14 @@ chinese! {
 
     fn pad_zh(&PadTrouble) {
         PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄。";
-        PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_zh(why);
+        PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_error_zh(why);
         PadTrouble::MayNotOpen { path, remedy, .. } => "没有打开 {} 的权限：{}。", path.display(), remedy_zh(remedy);
-        PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_zh(why);
+        PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_error_zh(why);
     }
 
     fn dds_zh(&DdsError) {
         DdsError::NoInterface { name } => "本机没有带 IPv4 地址的网络接口 {name}：可用 'ip address' 查看。";
-        DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_zh(&error.to_string());
+        DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_error_zh(&error.into());
         DdsError::Library { error } => "DDS 未能启动：“{error}”。";
     }
 
@@ -259,7 +289,68 @@ pub(crate) fn file(look: Look, error: &FileError) -> String {
     })
 }
 
-/// What the system said of a file or a device.
+/// Why there is no backup.
+pub(crate) fn backup(look: Look, error: &BackupError) -> String {
+    match look.language {
+        Language::En => error.to_string(),
+        Language::Zh => backup_zh(error),
+    }
+}
+
+/// What the system said.
+pub(crate) fn system_error(look: Look, error: &SystemError) -> String {
+    match look.language {
+        Language::En => error.to_string(),
+        Language::Zh => system_error_zh(error),
+    }
+}
+
+fn system_error_zh(error: &SystemError) -> String {
+    let by_code = error.code.and_then(system_code_zh);
+    match (by_code.or_else(|| system_kind_zh(error.kind)), error.code) {
+        (Some(zh), _) => zh.to_owned(),
+        (None, Some(code)) => format!("系统错误 {code}"),
+        (None, None) => format!("系统信息为“{}”", error.words),
+    }
+}
+
+/// What has no kind of its own in the standard library, or shares one: by the numbers of Unix.
+const fn system_code_zh(code: i32) -> Option<&'static str> {
+    if !cfg!(unix) {
+        return None;
+    }
+    Some(match code {
+        1 => "不允许此操作",
+        5 => "读写出错",
+        6 | 19 => "设备不存在",
+        23 | 24 => "打开的文件过多",
+        _ => return None,
+    })
+}
+
+const fn system_kind_zh(kind: ErrorKind) -> Option<&'static str> {
+    Some(match kind {
+        ErrorKind::AddrInUse => "地址已被占用",
+        ErrorKind::AddrNotAvailable => "本机没有此地址",
+        ErrorKind::PermissionDenied => "权限不足",
+        ErrorKind::NotFound => "文件或文件夹不存在",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "磁盘空间不足",
+        ErrorKind::ReadOnlyFilesystem => "文件系统只读",
+        ErrorKind::IsADirectory => "这是文件夹，不是文件",
+        ErrorKind::NotADirectory => "路径中有一项不是文件夹",
+        ErrorKind::AlreadyExists => "文件已存在",
+        ErrorKind::InvalidFilename => "文件名过长",
+        ErrorKind::ResourceBusy => "设备被占用",
+        ErrorKind::NetworkUnreachable => "网络不可达",
+        ErrorKind::HostUnreachable => "无法到达主机",
+        ErrorKind::ConnectionReset => "连接被对方重置",
+        ErrorKind::FileTooLarge => "文件过大",
+        // The library's list is open.
+        _ => return None,
+    })
+}
+
+/// What the system or a reader said of a file, where only its words are left.
 pub(crate) fn system(look: Look, message: &str) -> String {
     match look.language {
         Language::En => message.to_owned(),
@@ -268,9 +359,7 @@ pub(crate) fn system(look: Look, message: &str) -> String {
 }
 
 /// Words of systems and of the readers of files, as they stand somewhere in a message.
-const SYSTEM: [(&str, &str); 29] = [
-    ("Address already in use", "地址已被占用"),
-    ("Cannot assign requested address", "本机没有此地址"),
+const SYSTEM: [(&str, &str); 19] = [
     ("Permission denied", "权限不足"),
     ("Access is denied", "权限不足"),
     ("Operation not permitted", "不允许此操作"),
@@ -284,16 +373,8 @@ const SYSTEM: [(&str, &str); 29] = [
     ("File exists", "文件已存在"),
     ("File name too long", "文件名过长"),
     ("Input/output error", "读写出错"),
-    ("No such device", "设备不存在"),
-    ("resource busy", "设备被占用"),
     ("Too many open files", "打开的文件过多"),
-    ("Network is unreachable", "网络不可达"),
-    ("No route to host", "无法到达主机"),
-    ("Connection reset", "连接被对方重置"),
     ("valid UTF-8", "不是文本文件"),
-    ("is not a scenario", "没有此场景"),
-    ("could not go on the bus", "适配器无法接入总线"),
-    ("no folder for backups", "没有备份文件夹"),
     ("is not a table of samples", "不是采样表"),
     ("too large", "文件过大"),
     ("has more than", "文件过大"),
@@ -333,45 +414,18 @@ pub(crate) fn dds(look: Look, error: &DdsError) -> String {
 /// Why something was not opened at the place that a person named.
 pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     match refusal {
-        OpenRefusal::System(message) => look.fill(inputs::NOT_OPENED, &[&system(look, message)]),
+        OpenRefusal::System(error) => look.fill(inputs::NOT_OPENED, &[&system_error(look, error)]),
         OpenRefusal::Pad(trouble) => pad(look, trouble),
         OpenRefusal::Dds(error) => dds(look, error),
     }
 }
 
-/// The protocol's word for a refusal.
-pub(crate) fn reason(look: Look, reason: &str) -> String {
+/// Why the hand, or the rule against unsafe writes, said no.
+pub(crate) fn reason(look: Look, reason: Refusal) -> String {
     match look.language {
-        Language::En => reason.to_owned(),
-        Language::Zh => reason_zh(reason),
+        Language::En => reason.to_string(),
+        Language::Zh => reason_zh(&reason),
     }
-}
-
-fn reason_zh(reason: &str) -> String {
-    let known = [
-        ("Illegal function", "不支持此功能码"),
-        ("Illegal data address", "没有此地址"),
-        ("Illegal data value", "不接受此值"),
-        ("Server device failure", "设备故障"),
-        ("Acknowledge", "已接受，仍在处理"),
-        ("Server device busy", "设备忙"),
-        ("Memory parity error", "存储器校验错误"),
-        ("Gateway path unavailable", "网关没有通路"),
-        (
-            "Gateway target device failed to respond",
-            "网关的目标设备没有应答",
-        ),
-        (
-            "it is not known how this hand",
-            "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入",
-        ),
-        (
-            "this hand does not put single bytes",
-            "本手的单字节不是低字节在前，写入是否安全尚不清楚",
-        ),
-    ];
-    let zh = known.iter().find(|(en, _)| reason.starts_with(en));
-    zh.map_or_else(|| system_zh(reason), |(_, zh)| (*zh).to_owned())
 }
 
 #[cfg(test)]
@@ -433,11 +487,15 @@ mod tests {
         }
     }
 
+    fn system(code: i32) -> SystemError {
+        std::io::Error::from_raw_os_error(code).into()
+    }
+
     fn transports() -> Vec<TransportError> {
         let place = || PLACE.to_owned();
-        let io = |message: String| TransportError::Io {
+        let io = |failure| TransportError::Io {
             place: place(),
-            message,
+            failure,
         };
         let mut all = vec![
             TransportError::Missing { place: place() },
@@ -478,12 +536,13 @@ mod tests {
                 place: place(),
                 bitrate: 500_000,
             },
-            io("the CAN adapter could not go on the bus".into()),
-            io("'party' is not a scenario: choose idle".into()),
+            io(WireFailure::OffBus),
+            io(WireFailure::NoScenario(
+                "'party' is not a scenario: choose idle".into(),
+            )),
         ];
         all.extend(
-            [2, 5, 13, 17, 20, 21, 24, 28, 30, 101, 113, 150]
-                .map(|code| io(std::io::Error::from_raw_os_error(code).to_string())),
+            [2, 5, 13, 17, 20, 21, 24, 28, 30, 101, 113, 150].map(|code| io(system(code).into())),
         );
         all.extend(
             [
@@ -501,12 +560,10 @@ mod tests {
     }
 
     fn requests() -> Vec<RequestError> {
-        let refused = |reason: &str| RequestError::Refused {
-            address: 1000,
-            reason: reason.into(),
-        };
+        let address = 1000;
+        let refused = |reason| RequestError::Refused { address, reason };
         let range = crate::hand::Angle::new(2000).unwrap_err();
-        vec![
+        let mut all = vec![
             RequestError::NotConnected,
             RequestError::NotArmed,
             RequestError::NotOwner(LeaseRefusal::Taken(Owner::Gamepad)),
@@ -526,9 +583,8 @@ mod tests {
                 address: 1000,
                 after_ms: 60,
             },
-            refused("Illegal data address"),
-            refused("Illegal data value"),
-            refused("this hand does not put single bytes into words low byte first"),
+            refused(Refusal::PackingUnknown),
+            refused(Refusal::PackingUnsafe),
             RequestError::WrongLength {
                 address: 1000,
                 got: 1,
@@ -540,7 +596,9 @@ mod tests {
             },
             RequestError::LinkLost,
             RequestError::OutOfRange(range),
-        ]
+        ];
+        all.extend((0..=11).map(|code| refused(ModbusException::of(code).into())));
+        all
     }
 
     #[test]
@@ -582,9 +640,8 @@ mod tests {
             },
             TaskError::NotReached,
             TaskError::NotMeant(Risks::default()),
-            TaskError::NoBackup {
-                message: "there is no folder for backups".into(),
-            },
+            TaskError::NoBackup(BackupError::NoFolder),
+            TaskError::NoBackup(BackupError::System(system(28))),
             TaskError::NotAsked(RequestError::NotArmed),
         ];
         let tasks = include_str!("../../tasks/mod.rs");
@@ -668,19 +725,18 @@ mod tests {
         check(&all, (source, "WriteRefusal"), |refusal| {
             write_refusal(chinese(), refusal)
         });
-        let message = |code| std::io::Error::from_raw_os_error(code).to_string();
         let all = [
             PadTrouble::LinuxOnly,
             PadTrouble::NoFolder {
                 folder: "/dev/input".into(),
-                why: message(2),
+                why: system(2),
             },
             PadTrouble::MayNotOpen {
                 path: "/dev/input/event3".into(),
                 count: 1,
                 remedy: Remedy::JoinGroup("input".into()),
             },
-            PadTrouble::NoThread(message(11)),
+            PadTrouble::NoThread(system(11)),
         ];
         let source = include_str!("../../inputs/pad/report.rs");
         check(&all, (source, "PadTrouble"), |trouble| {
@@ -688,7 +744,7 @@ mod tests {
         });
         let name = || "eth9".to_owned();
         let all = [
-            OpenRefusal::System(message(98)),
+            OpenRefusal::System(system(98)),
             OpenRefusal::Pad(PadTrouble::LinuxOnly),
             OpenRefusal::Dds(DdsError::NoInterface { name: name() }),
             OpenRefusal::Dds(DdsError::System {
@@ -712,7 +768,7 @@ mod tests {
             },
             ScanHint::Refuses {
                 endpoint: endpoint(),
-                reason: "Illegal data address".into(),
+                reason: ModbusException::IllegalAddress.into(),
             },
             ScanHint::OtherTalk {
                 endpoint: endpoint(),

@@ -180,11 +180,13 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotSaved { path, message } => {
             of(window::NOT_SAVED, path, &errors::system(look, message))
         }
-        NoticeKind::NotDeleted { path, message } => {
-            of(sessions::NOT_DELETED, path, &errors::system(look, message))
-        }
-        NoticeKind::NotRevealed { path, message } => {
-            let why = errors::system(look, message);
+        NoticeKind::NotDeleted { path, error } => of(
+            sessions::NOT_DELETED,
+            path,
+            &errors::system_error(look, error),
+        ),
+        NoticeKind::NotRevealed { path, error } => {
+            let why = errors::system_error(look, error);
             look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
         }
         NoticeKind::SessionRefused { path, why } => look.fill(
@@ -227,7 +229,7 @@ fn recording(look: Look, notice: &RecorderNotice) -> String {
 /// Why a recorded session was not opened.
 fn not_opened(look: Look, why: &OpenError) -> String {
     let words = match why {
-        OpenError::Unreadable { message } => return errors::system(look, message),
+        OpenError::Unreadable { error } => return errors::system_error(look, error),
         OpenError::NotAFile => sessions::NOT_A_FILE,
         OpenError::NotMcap => sessions::NOT_MCAP,
         OpenError::Foreign => sessions::FOREIGN,

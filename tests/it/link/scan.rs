@@ -11,7 +11,7 @@ use handscope::link::scan::{
 use handscope::sim::serve::{can, rs485, slcan};
 use handscope::sim::{SharedHand, SimHands};
 use handscope::transport::{
-    BoxedWire, Dial, Endpoint, Pipe, PortFound, Remedy, TransportError, UsbFound, pair,
+    BoxedWire, Dial, Endpoint, Pipe, PortFound, Remedy, TransportError, UsbFound, WireFailure, pair,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -414,7 +414,7 @@ async fn what_cannot_be_opened_is_told_once_and_the_scan_goes_on() {
         },
         TransportError::Io {
             place: "/dev/d".into(),
-            message: "no such speed".into(),
+            failure: WireFailure::Recorded("no such speed".into()),
         },
     ];
     let mut there: Vec<_> = ["/dev/a", "/dev/b", "/dev/c", "/dev/d"]

@@ -5,7 +5,7 @@ use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::line::{Dialled, IP, Line, Trouble, some_save_answer};
 use crate::setup::link::{self, ask, pass};
 use handscope::hand::{Dof, HandId, PerDof, SerialSpeed, Setting, Speed};
-use handscope::hand::{Force, Span, register};
+use handscope::hand::{Force, Refusal, Span, register};
 use handscope::link::RequestError;
 use handscope::params::backups::Backups;
 use handscope::params::values::Params;
@@ -102,7 +102,7 @@ async fn what_a_hand_drops_clamps_or_refuses_is_told_with_what_it_holds() {
             match written.verdict {
                 Verdict::Refused { reason } => {
                     assert!(has_no && defaults == DefaultsWrite::Exception);
-                    assert!(!reason.is_empty());
+                    assert!(matches!(reason, Refusal::Exception(_)), "{reason}");
                 }
                 Verdict::Differs => assert!(!has_no || defaults != DefaultsWrite::Exception),
                 other => panic!("{wire} {defaults:?} {other:?}"),

@@ -1,0 +1,115 @@
+//! Why a hand does not do what it is asked: its own exception (manual 2.4, 2.5), or the rule against unsafe writes.
+
+/// Why a Modbus server does not do what it was asked, as the standard numbers it. Unknown codes are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum ModbusException {
+    /// 1: it does not know this function.
+    #[error("Illegal function")]
+    IllegalFunction,
+    /// 2: nothing of the kind may be done at this address.
+    #[error("Illegal data address")]
+    IllegalAddress,
+    /// 3: a value or a count out of its range.
+    #[error("Illegal data value")]
+    IllegalValue,
+    /// 4: it tried, and failed.
+    #[error("Server device failure")]
+    Failure,
+    /// 5: accepted, and not done yet.
+    #[error("Acknowledge")]
+    Acknowledge,
+    /// 6: it is at the disposal of somebody else, or has too much to do.
+    #[error("Server device busy")]
+    Busy,
+    /// 8: its memory does not pass a parity check.
+    #[error("Memory parity error")]
+    MemoryParity,
+    /// 10: a gateway that has no way to the device now.
+    #[error("Gateway path unavailable")]
+    NoPath,
+    /// 11: a gateway whose device does not answer.
+    #[error("Gateway target device failed to respond")]
+    NoAnswer,
+    /// A code that the standard does not define; see [`Self::of`].
+    #[error("Custom")]
+    Other(u8),
+}
+
+impl ModbusException {
+    /// The exception with this code.
+    pub const fn of(code: u8) -> Self {
+        match code {
+            1 => Self::IllegalFunction,
+            2 => Self::IllegalAddress,
+            3 => Self::IllegalValue,
+            4 => Self::Failure,
+            5 => Self::Acknowledge,
+            6 => Self::Busy,
+            8 => Self::MemoryParity,
+            10 => Self::NoPath,
+            11 => Self::NoAnswer,
+            other => Self::Other(other),
+        }
+    }
+
+    /// Its code.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::IllegalFunction => 1,
+            Self::IllegalAddress => 2,
+            Self::IllegalValue => 3,
+            Self::Failure => 4,
+            Self::Acknowledge => 5,
+            Self::Busy => 6,
+            Self::MemoryParity => 8,
+            Self::NoPath => 10,
+            Self::NoAnswer => 11,
+            Self::Other(code) => code,
+        }
+    }
+}
+
+/// Why the hand, or the rule against unsafe writes, said no.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum Refusal {
+    /// The hand's own exception. Only Modbus has any.
+    #[error(transparent)]
+    Exception(#[from] ModbusException),
+    /// Nothing was sent: how single bytes stand in the words of this hand is not known.
+    #[error(
+        "it is not known how this hand puts single bytes into words; 'packing=low' in its address (in the window: Modbus bytes, Connection) says that it is low byte first"
+    )]
+    PackingUnknown,
+    /// Nothing was sent: the write of a single byte could change its neighbour.
+    #[error(
+        "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"
+    )]
+    PackingUnsafe,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_is_kept_and_known_ones_have_words() {
+        for code in 0..=u8::MAX {
+            let words = match code {
+                1 => "Illegal function",
+                2 => "Illegal data address",
+                3 => "Illegal data value",
+                4 => "Server device failure",
+                5 => "Acknowledge",
+                6 => "Server device busy",
+                8 => "Memory parity error",
+                10 => "Gateway path unavailable",
+                11 => "Gateway target device failed to respond",
+                _ => "Custom",
+            };
+            let exception = ModbusException::of(code);
+            assert_eq!(exception.code(), code);
+            assert_eq!(exception.to_string(), words);
+            assert_eq!(Refusal::from(exception).to_string(), words);
+        }
+    }
+}
