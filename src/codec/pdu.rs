@@ -66,11 +66,9 @@ pub enum Pdu<'a> {
     },
 }
 
-impl ModbusException {
-    /// The message that says so, in answer to this function.
-    pub const fn reply(self, function: u8) -> [u8; 2] {
-        [function | 0x80, self.code()]
-    }
+/// The message that says so, in answer to this function.
+pub const fn exception_reply(exception: ModbusException, function: u8) -> [u8; 2] {
+    [function | 0x80, exception.code()]
 }
 
 /// How many bytes a message has.

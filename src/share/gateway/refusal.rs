@@ -82,12 +82,13 @@ const fn refused(reason: Refusal) -> ModbusException {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codec::pdu::exception_reply;
 
     #[test]
     fn a_hands_own_exception_reaches_the_client_with_its_code() {
         let told = |reason| {
             let address = 1000;
-            exception(&RequestError::Refused { address, reason }).reply(3)
+            exception_reply(exception(&RequestError::Refused { address, reason }), 3)
         };
         for code in [1, 2, 3, 4, 5, 6, 8, 10, 11, 7, 0xC8] {
             let own = Refusal::Exception(ModbusException::of(code));

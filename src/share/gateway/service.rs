@@ -28,7 +28,7 @@ impl Service {
         let function = asked.function();
         let said = match self.obey(client, asked.pdu()).await {
             Ok(said) => [&[function], said.as_slice()].concat(),
-            Err(exception) => exception.reply(function).to_vec(),
+            Err(exception) => pdu::exception_reply(exception, function).to_vec(),
         };
         asked.reply(asked.unit, &said)
     }
