@@ -22,7 +22,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Cells at a time. Nearly all of their time they wait.
+/// Cells at a time, unless `HANDSCOPE_SEAMS_AT_A_TIME` says otherwise: nearly all of their time they wait, but a slow guest is late then.
 const AT_A_TIME: usize = 4;
 /// So often a hand is brought into motion, where that fails.
 const BEGINS: usize = 3;
@@ -196,8 +196,10 @@ fn try_all(column: Column) {
     let wanted = std::env::var("HANDSCOPE_SEAMS").unwrap_or_default();
     let (begun, all) = (Instant::now(), tries(column, &wanted));
     let (next, failed) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let at_a_time = std::env::var("HANDSCOPE_SEAMS_AT_A_TIME");
+    let at_a_time = at_a_time.map_or(AT_A_TIME, |number| number.parse().unwrap());
     std::thread::scope(|scope| {
-        for _ in 0..AT_A_TIME {
+        for _ in 0..at_a_time {
             scope.spawn(|| {
                 while let Some(one) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
                     if let Err(why) = one.run(!wanted.is_empty()) {
