@@ -23,9 +23,7 @@ impl OpenLink {
             records,
         }
     }
-}
 
-impl OpenLink {
     /// The right of the person at this window to move the hand; granted anew if another has it, or none.
     pub(crate) fn take_lease(&mut self) -> Lease {
         let held = self.link.status().holder;
