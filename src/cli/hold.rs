@@ -3,7 +3,7 @@
 
 use crate::cli::out::{AlreadyReported, say};
 use crate::cli::session;
-use crate::link::holder::MOVES;
+use crate::link::guard::holder::MOVES;
 use crate::link::{self, Clock, LinkConfig, LinkHandle, PollRates};
 use crate::record::Hold;
 use crate::transport::{BoxedWire, Dial, Endpoint, SystemDial, TransportError};
@@ -152,7 +152,7 @@ impl Dial for Insistent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link::holder::RESTS;
+    use crate::link::guard::holder::RESTS;
 
     #[test]
     fn only_a_pipe_that_breaks_while_the_hand_may_move_is_a_death() {

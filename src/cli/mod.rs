@@ -10,7 +10,6 @@ mod listen;
 mod out;
 mod params;
 mod parse;
-mod progress;
 mod quirks;
 mod read;
 mod recordings;
@@ -25,7 +24,7 @@ mod watch;
 mod window;
 mod wires;
 
-use crate::link::{guard, holder};
+use crate::link::guard::{self, holder};
 use anyhow::Context as _;
 use args::{Cli, Command};
 use clap::{CommandFactory as _, Parser as _};

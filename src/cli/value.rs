@@ -1,8 +1,8 @@
 //! The decoded value of a register, as text and as JSON. Pure.
 
 use crate::cli::watch::telemetry::{fault_names, status_name, tactile_json};
+use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{self, Element, Register};
-use crate::hand::sample::touch_span;
 use crate::hand::{Faults, Finger, Status, TactileBlock};
 use serde_json::{Value, json};
 

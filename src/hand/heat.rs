@@ -1,8 +1,8 @@
 //! How warm a drive may get. The manual names no limit, only a fault that ends by itself (2.6.3); the figures are ours.
 
 use crate::hand::dof::Dof;
+use crate::hand::feedback::sample::HandSample;
 use crate::hand::moment::Moment;
-use crate::hand::sample::HandSample;
 use std::fmt;
 use std::time::Duration;
 

@@ -1,9 +1,11 @@
 //! The one table of measured quantities: names, units, digits and scales, as history, plots, tables and text show them.
 
 use crate::hand::dof::PerDof;
+use crate::hand::feedback::reading::{
+    AngleReading, CurrentReading, ForceReading, TemperatureReading,
+};
+use crate::hand::feedback::sample::{Group, HandSample};
 use crate::hand::moment::Timed;
-use crate::hand::reading::{AngleReading, CurrentReading, ForceReading, TemperatureReading};
-use crate::hand::sample::{Group, HandSample};
 
 /// What is measured of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -12,7 +12,6 @@ pub mod config;
 pub mod entries;
 pub mod guard;
 pub mod handle;
-pub mod holder;
 mod image;
 pub mod latency;
 pub mod lease;
@@ -29,9 +28,6 @@ pub mod status;
 pub mod tap;
 pub mod traffic;
 mod wanted;
-#[cfg(test)]
-#[allow(clippy::indexing_slicing, clippy::expect_used, reason = "a test may")]
-mod wanted_tests;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};

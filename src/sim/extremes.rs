@@ -1,7 +1,7 @@
 //! Values that no hand should send, laid over the memory in the `extremes` scenario. Changes nothing else.
 
+use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
-use crate::hand::sample::touch_span;
 use crate::hand::{Finger, TactileBlock};
 use crate::sim::memory::Memory;
 

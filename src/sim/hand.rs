@@ -1,7 +1,7 @@
 //! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
 
+use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
-use crate::hand::sample::touch_span;
 use crate::hand::{Dof, Fault, Finger, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};

@@ -1,7 +1,7 @@
 //! `export`: sessions, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
 
+use crate::cli::out::progress::{EndWished, Progress};
 use crate::cli::out::{Out, ReaderGone, WrongUsage, say};
-use crate::cli::progress::{EndWished, Progress};
 use crate::cli::recordings::picture;
 use crate::cli::recordings::session_file::{
     self, FileArgs, StretchArgs, is_standard, lost, say_remarks,

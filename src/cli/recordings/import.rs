@@ -1,7 +1,7 @@
 //! `import`: a session file out of values that `export --csv` wrote.
 
+use crate::cli::out::progress::{EndWished, Progress};
 use crate::cli::out::{Out, WrongUsage, say};
-use crate::cli::progress::{EndWished, Progress};
 use crate::cli::recordings::export::told;
 use crate::cli::recordings::session_file::{is_standard, stdin_as_file};
 use crate::record::export::Destination;

@@ -1,7 +1,7 @@
 //! `export --png`: the window as it replays a session, its plots over a stretch.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::progress::EndWished;
+use crate::cli::out::progress::EndWished;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::SessionFile;

@@ -3,8 +3,8 @@
 pub mod book;
 
 use crate::hand::TactileBlock;
+use crate::hand::feedback::tactile::BLOCK_LEN;
 use crate::hand::register::BytePacking;
-use crate::hand::tactile::BLOCK_LEN;
 
 /// What was found about a hand when the link got to know it. `None` is what the wire does not ask, or the hand did not
 /// answer.

@@ -4,7 +4,7 @@
 use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, RegisterWrite, Target};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
-use crate::link::holder::Started;
+use crate::link::guard::holder::Started;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};

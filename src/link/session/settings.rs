@@ -7,7 +7,7 @@ use crate::link::bus::{Bus, BusError, ResultFrame};
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::requests::request_error;
-use crate::link::session::save_watch::{Ack, Next};
+use crate::link::session::watch::save::{Ack, Next};
 use crate::link::wanted::PendingControl;
 use crate::record::{
     Calibrated, Doubt, LinkState, NotSent, Reset, Rest, SaveDoubt, Saved, Verdict, WriteCause,

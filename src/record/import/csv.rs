@@ -2,9 +2,9 @@
 //! What no column says stays unknown: the day, the hand, its settings, the bytes on the wire.
 
 use crate::hand::column::{channel_column, joint_column, tip_column};
+use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
+use crate::hand::feedback::tactile::{BLOCK_LEN, TactileBlock};
 use crate::hand::kinematics::Side;
-use crate::hand::sample::SET_OUT_OF_RANGE;
-use crate::hand::tactile::{BLOCK_LEN, TactileBlock};
 use crate::hand::{
     Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Quantity, Reply, Target,
     Touch, Undocumented,

@@ -6,7 +6,7 @@ use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::kit::{self, Label, Pane, format};
-use crate::ui::text::{Text, errors, faults, panels, scan};
+use crate::ui::text::{Text, errors, notices, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Color32, Layout, Ui, vec2};
 
@@ -14,7 +14,7 @@ use egui::{Align, Color32, Layout, Ui, vec2};
 const BUDGET: [(Text, f32); 3] = [
     (panels::BUDGET_COULD, 56.0),
     (panels::BUDGET_SHARE, 46.0),
-    (faults::NOW, 52.0),
+    (notices::NOW, 52.0),
 ];
 
 /// Draws the card of the link.

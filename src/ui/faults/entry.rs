@@ -7,7 +7,7 @@ use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::sessions::stretch::ReplayedStretch;
-use crate::ui::text::{Text, faults, notices, words};
+use crate::ui::text::{Text, notices, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use std::time::Duration;
@@ -73,7 +73,7 @@ pub(crate) fn entry_ui(
             if entry.is_active() || !entry.seen || depth == Depth::Chosen {
                 let said = notices::fault_kind(entry.what, look.language);
                 kit::say_ui(ui, said.cause, palette.muted);
-                let advice = look.told(faults::TODO, said.advice);
+                let advice = look.told(notices::TODO, said.advice);
                 kit::say_ui(ui, &advice, palette.text);
             }
             match depth {
@@ -135,9 +135,9 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         if entry.seen {
             return;
         }
-        let text = look.say(faults::SEEN);
+        let text = look.say(notices::SEEN);
         let name = format!("{text}: {title}");
-        let button = Button::new(text, look.tip(faults::SEEN)).named(&name);
+        let button = Button::new(text, look.tip(notices::SEEN)).named(&name);
         button.on_click(ui, pane, Action::SeenFault(entry.dof, entry.what));
     });
 }
@@ -154,9 +154,9 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Recor
             kit::say_ui(ui, &text, look.palette.muted);
         }
         let recording = recording.filter(|_| {
-            let words = look.say(faults::RECORDING);
+            let words = look.say(notices::RECORDING);
             let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
-            let button = Button::new(words, look.tip(faults::RECORDING_OPEN));
+            let button = Button::new(words, look.tip(notices::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         });
         let hand = pane
@@ -196,10 +196,12 @@ fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
         FaultKind::Status(_) => sample.status.map(|group| group.asked),
     };
     match (entry.is_active(), entry.seen) {
-        (true, _) if pane.freshness(asked) != Freshness::Live => (faults::WHEN_READ, palette.faint),
-        (true, _) => (faults::NOW, palette.bad),
-        (false, false) => (faults::OVER_UNSEEN, palette.warn),
-        (false, true) => (faults::OVER, palette.faint),
+        (true, _) if pane.freshness(asked) != Freshness::Live => {
+            (notices::WHEN_READ, palette.faint)
+        }
+        (true, _) => (notices::NOW, palette.bad),
+        (false, false) => (notices::OVER_UNSEEN, palette.warn),
+        (false, true) => (notices::OVER, palette.faint),
     }
 }
 
@@ -222,10 +224,10 @@ pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let color = if is_active { palette.bad } else { palette.warn };
     mark(ui, place.center(), color);
     let joint = pane.look.say(words::dof(dof));
-    let name = format!("{joint} {}", pane.look.say(faults::UNSEEN_MARK));
+    let name = format!("{joint} {}", pane.look.say(notices::UNSEEN_MARK));
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let tip = title(pane, dof, first.what);
-    response.on_hover_text(format!("{tip}\n{}", pane.look.say(faults::OVER_UNSEEN)));
+    response.on_hover_text(format!("{tip}\n{}", pane.look.say(notices::OVER_UNSEEN)));
 }
 
 /// When it began, how long it lasted, how often it came: what the title does not say already.
@@ -236,11 +238,11 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     if entry.until.is_some() {
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
-        parts.push(look.fill(faults::BEGAN, &[&age]));
-        parts.push(look.told(faults::LASTED, lasted));
+        parts.push(look.fill(notices::BEGAN, &[&age]));
+        parts.push(look.told(notices::LASTED, lasted));
     }
     if entry.count > 1 {
-        parts.push(look.fill(faults::CAME, &[&entry.count]));
+        parts.push(look.fill(notices::CAME, &[&entry.count]));
     }
     parts.join(" · ")
 }
@@ -282,8 +284,8 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.state.hand().readings.faults.unseen().next().is_none();
-    let button = Button::said(look, faults::SEEN_ALL);
+    let button = Button::said(look, notices::SEEN_ALL);
     button
-        .disabled_if(none, look.say(faults::SEEN_NONE))
+        .disabled_if(none, look.say(notices::SEEN_NONE))
         .on_click(ui, pane, Action::SeenFaults);
 }

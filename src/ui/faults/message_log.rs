@@ -2,7 +2,7 @@
 
 use crate::app::notices::{Level, Notice};
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
-use crate::ui::text::{Text, faults, notices};
+use crate::ui::text::{Text, notices};
 use egui::{Align, Layout, ScrollArea, Ui};
 use std::fmt::Write as _;
 
@@ -19,9 +19,9 @@ pub(crate) struct MessageLog {
 
 const fn level_word(level: Level) -> Text {
     match level {
-        Level::Info => faults::WORD_INFO,
-        Level::Warn => faults::WORD_WARN,
-        Level::Alarm => faults::WORD_ALARM,
+        Level::Info => notices::WORD_INFO,
+        Level::Warn => notices::WORD_WARN,
+        Level::Alarm => notices::WORD_ALARM,
     }
 }
 
@@ -32,14 +32,14 @@ impl MessageLog {
         ui.horizontal(|ui| kit::right_ui(ui, |ui| self.tools_ui(ui, pane)));
         let lost = pane.state.notices.log_dropped();
         if lost > 0 {
-            let text = look.told(faults::LOG_LOST, lost);
+            let text = look.told(notices::LOG_LOST, lost);
             Label::new(&text, look.palette.muted).small().ui(ui);
         }
         let shown: Vec<_> = self.passing(pane).take(DRAWN_MAX + 1).collect();
         if shown.is_empty() {
             let text = match pane.state.notices.log().next() {
-                Some(_) => faults::LOG_NONE_PASS,
-                None => faults::LOG_NONE,
+                Some(_) => notices::LOG_NONE_PASS,
+                None => notices::LOG_NONE,
             };
             Label::muted(look, text).ui(ui);
         }
@@ -48,7 +48,7 @@ impl MessageLog {
                 message_ui(ui, pane, notice, |_, _, _| ());
             }
             if shown.len() > DRAWN_MAX {
-                Label::note(look, faults::LOG_MORE).wrap().ui(ui);
+                Label::note(look, notices::LOG_MORE).wrap().ui(ui);
             }
         });
     }
@@ -58,13 +58,13 @@ impl MessageLog {
         let newest = pane.state.notices.log().next().map(|newest| newest.id);
         let copied = self.copied.filter(|(at, _)| *at == newest);
         let text = match copied {
-            None => look.say(faults::COPY).to_owned(),
-            Some((_, lines)) => format!("{} ({lines})", look.say(faults::COPIED)),
+            None => look.say(notices::COPY).to_owned(),
+            Some((_, lines)) => format!("{} ({lines})", look.say(notices::COPIED)),
         };
-        let name = look.pair(look.say(faults::COPY), look.say(faults::LOG));
+        let name = look.pair(look.say(notices::COPY), look.say(notices::LOG));
         let none = self.passing(pane).next().is_none();
-        let copy = Button::new(&text, look.tip(faults::COPY)).named(&name);
-        let copy = copy.disabled_if(none, look.say(faults::LOG_NONE));
+        let copy = Button::new(&text, look.tip(notices::COPY)).named(&name);
+        let copy = copy.disabled_if(none, look.say(notices::LOG_NONE));
         if copy.ui(ui, look).clicked() {
             let mut text = String::new();
             for (notice, line) in self.passing(pane) {
@@ -74,7 +74,7 @@ impl MessageLog {
             self.copied = Some((newest, text.lines().count()));
             ui.ctx().copy_text(text);
         }
-        kit::edit_ui(ui, look.both(faults::LOG_FILTER), &mut self.words);
+        kit::edit_ui(ui, look.both(notices::LOG_FILTER), &mut self.words);
     }
 
     /// The messages with these words, each with its level and words in a line, newest first.

@@ -16,7 +16,7 @@ use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui
 use crate::ui::faults::message_log::{MessageLog, message_ui};
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
-use crate::ui::text::{faults, main, panels, words};
+use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;
 use egui::Ui;
 
@@ -125,15 +125,15 @@ impl FaultsView {
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let recordings = match pane.state.hand().measured.recorder.iter().count() {
-            0 => look.say(faults::RECORDINGS).to_owned(),
-            count => format!("{} ({count})", look.say(faults::RECORDINGS)),
+            0 => look.say(notices::RECORDINGS).to_owned(),
+            count => format!("{} ({count})", look.say(notices::RECORDINGS)),
         };
         ui.horizontal(|ui| {
             for (text, section) in [
-                (look.say(faults::LOG), FaultSection::Log),
+                (look.say(notices::LOG), FaultSection::Log),
                 (&recordings, FaultSection::Recordings),
             ] {
-                let button = Button::new(text, look.say(faults::SECTION_TIP));
+                let button = Button::new(text, look.say(notices::SECTION_TIP));
                 let button = button.choice(self.section == section);
                 if button.ui(ui, look).clicked() {
                     self.section = section;
@@ -152,9 +152,9 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.state.hand();
     let reason = match hand.readings.faults.nothing_to_clear() {
         _ if !hand.connection.status.state.is_live() => Some(main::REFUSED_OFFLINE),
-        _ if hand.readings.sample.faults.is_none() => Some(faults::CLEAR_UNREAD),
-        Some(NothingToClear::NoFault) => Some(faults::CLEAR_NO_FAULT),
-        Some(NothingToClear::OnlyHeat) => Some(faults::CLEAR_ONLY_HEAT),
+        _ if hand.readings.sample.faults.is_none() => Some(notices::CLEAR_UNREAD),
+        Some(NothingToClear::NoFault) => Some(notices::CLEAR_NO_FAULT),
+        Some(NothingToClear::OnlyHeat) => Some(notices::CLEAR_ONLY_HEAT),
         None => None,
     };
     let button = Button::said(look, panels::CLEAR);
@@ -193,15 +193,15 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     let palette = look.palette;
     let said = DriveWords::of(pane, dof);
     let verb = match said.freshness {
-        Freshness::Live => faults::SAYS_NOW,
-        _ => faults::SAID_LAST,
+        Freshness::Live => notices::SAYS_NOW,
+        _ => notices::SAID_LAST,
     };
     let joint = look.say(words::dof(dof));
     let title = format!("{joint} · {}: {}", look.say(verb), said.title);
     let closed = ui.horizontal_wrapped(|ui| {
         kit::lamp_ui(ui, Some(said.lamp));
         Label::new(&title, palette.text).ui(ui);
-        let close = look.say(faults::CHOSEN_CLOSE);
+        let close = look.say(notices::CHOSEN_CLOSE);
         let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
@@ -213,7 +213,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         .is_some_and(|group| !group.value[dof].is_empty());
     if let Some(status) = status.filter(|status| !(faulty && status.is_protective())) {
         let words = words::status(status, look.language);
-        let advice = look.told(faults::TODO, words.advice);
+        let advice = look.told(notices::TODO, words.advice);
         inset_ui(ui, |ui| {
             kit::say_ui(ui, words.cause, palette.muted);
             kit::say_ui(ui, &advice, palette.text);
@@ -226,12 +226,12 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
-    kit::head_ui(ui, look, look.say(faults::MEANINGS), |_| ());
-    kit::say_ui(ui, look.say(faults::MEANINGS_FAULT), look.palette.muted);
+    kit::head_ui(ui, look, look.say(notices::MEANINGS), |_| ());
+    kit::say_ui(ui, look.say(notices::MEANINGS_FAULT), look.palette.muted);
     for bit in 0..5 {
         meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));
     }
-    kit::say_ui(ui, look.say(faults::MEANINGS_STATUS), look.palette.muted);
+    kit::say_ui(ui, look.say(notices::MEANINGS_STATUS), look.palette.muted);
     for code in [0, 1, 2, 3, 5, 6, 7] {
         meaning_ui(
             ui,

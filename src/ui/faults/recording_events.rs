@@ -6,7 +6,7 @@ use crate::history::{Mark, MarkKind};
 use crate::poses::{Play, Preset};
 use crate::ui::kit::Look;
 use crate::ui::plots::marks;
-use crate::ui::text::{faults, main, panels, poses, words};
+use crate::ui::text::{main, notices, panels, poses, words};
 use egui::Color32;
 
 /// One line of the list.
@@ -76,7 +76,7 @@ fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
 /// The titles of all bits that are set.
 fn fault_words(look: Look, bits: Faults) -> String {
     if bits.is_empty() {
-        return look.say(faults::NO_FAULT_BITS).into();
+        return look.say(notices::NO_FAULT_BITS).into();
     }
     let titles = bits
         .iter()
@@ -90,12 +90,12 @@ fn act_words(look: Look, act: &PersonAct) -> String {
     let joint = |dof| look.say(words::dof(dof));
     let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(main::EVERY), joint);
     match act {
-        PersonAct::Disarm => say(faults::ACT_DISARM),
-        PersonAct::Target(dof, angle) => set(joint(*dof), faults::ACT_TARGET, angle.get()),
-        PersonAct::Force(dof, force) => set(joints(dof), faults::ACT_FORCE, force.get()),
+        PersonAct::Disarm => say(notices::ACT_DISARM),
+        PersonAct::Target(dof, angle) => set(joint(*dof), notices::ACT_TARGET, angle.get()),
+        PersonAct::Force(dof, force) => set(joints(dof), notices::ACT_FORCE, force.get()),
         PersonAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
-        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(faults::ACT_LOCK)),
-        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(faults::ACT_UNLOCK)),
+        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(notices::ACT_LOCK)),
+        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(notices::ACT_UNLOCK)),
         PersonAct::Preset(Preset::Open) => say(main::OPEN),
         PersonAct::Preset(Preset::Half) => say(main::HALF),
         PersonAct::Preset(Preset::Close) => say(main::CLOSE),

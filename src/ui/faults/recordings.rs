@@ -14,7 +14,7 @@ use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
 use crate::ui::sessions::stretch::ReplayedStretch;
-use crate::ui::text::{device, faults};
+use crate::ui::text::{device, notices};
 use crate::ui::theme;
 use egui::{Panel, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
@@ -67,7 +67,7 @@ fn chart<'a>(
             .map(|fault| (fault.at.secs(), look.palette.bad))
             .collect(),
         least: panel.row.least_scale,
-        times: Times::From(fault.secs(), look.say(faults::RECORDING_FAULT)),
+        times: Times::From(fault.secs(), look.say(notices::RECORDING_FAULT)),
         ..Chart::new(look, panel.title, height)
     }
 }
@@ -82,7 +82,10 @@ fn title(pane: &Pane<'_>, recording: &Recording) -> String {
     if more == 0 {
         return title;
     }
-    format!("{title} + {more} {}", pane.look.say(faults::RECORDING_MORE))
+    format!(
+        "{title} + {more} {}",
+        pane.look.say(notices::RECORDING_MORE)
+    )
 }
 
 impl RecordingsView {
@@ -115,7 +118,7 @@ impl RecordingsView {
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
                 let left = format::age(until.since(pane.state.now));
-                let text = look.told(faults::RECORDING_RUNS, left);
+                let text = look.told(notices::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
                     kit::lamp_ui(ui, Some(look.palette.bad));
                     kit::say_ui(ui, &text, look.palette.text);
@@ -127,12 +130,12 @@ impl RecordingsView {
                 }
             }
             let kept = match recorder.iter().next() {
-                None => faults::RECORDINGS_NONE,
-                Some(_) => faults::RECORDINGS_KEPT,
+                None => notices::RECORDINGS_NONE,
+                Some(_) => notices::RECORDINGS_KEPT,
             };
             kit::say_ui(ui, look.say(kept), look.palette.muted);
             if recorder.lost() > 0 {
-                let text = look.told(faults::RECORDINGS_LOST, recorder.lost());
+                let text = look.told(notices::RECORDINGS_LOST, recorder.lost());
                 kit::say_ui(ui, &text, look.palette.warn);
             }
         });
@@ -189,18 +192,18 @@ impl RecordingsView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
         let look = pane.look;
         ui.horizontal(|ui| {
-            let back = Button::said(look, faults::RECORDING_BACK);
+            let back = Button::said(look, notices::RECORDING_BACK);
             if back.ui(ui, look).clicked() {
                 self.close();
             }
             kit::right_ui(ui, |ui| {
-                let save = Button::said(look, faults::RECORDING_SAVE).weight(Weight::Strong);
+                let save = Button::said(look, notices::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
                     let content = Export::Recording(recording.table());
                     pane.actions.push(Action::Save(content));
                 }
                 let title = title(pane, recording);
-                let title = format!("{}: {title}", look.say(faults::RECORDING));
+                let title = format!("{}: {title}", look.say(notices::RECORDING));
                 kit::left_ui(ui, |ui| {
                     let title = Label::new(&title, look.palette.text).font(theme::title());
                     title.ui(ui).on_hover_text(about(pane, recording));
@@ -219,18 +222,18 @@ impl RecordingsView {
                 // Without its unit: that stands at the plot.
                 let text = title.split([',', ' ']).next().unwrap_or(title);
                 let on = self.shown.shows(panel.kind);
-                let name = format!("{}: {title}", look.say(faults::RECORDING));
-                let button = Button::new(text, look.say(faults::RECORDING_PANEL_TIP));
+                let name = format!("{}: {title}", look.say(notices::RECORDING));
+                let button = Button::new(text, look.say(notices::RECORDING_PANEL_TIP));
                 if button.named(&name).choice(on).ui(ui, look).clicked() {
                     self.shown.set(panel.kind, !on);
                 }
             }
             ui.separator();
             let near = [
-                (true, faults::RECORDING_NEAR),
-                (false, faults::RECORDING_WHOLE),
+                (true, notices::RECORDING_NEAR),
+                (false, notices::RECORDING_WHOLE),
             ];
-            let chosen = (&mut self.near, faults::RECORDING_NEAR.tip());
+            let chosen = (&mut self.near, notices::RECORDING_NEAR.tip());
             if kit::pick_ui(ui, look, chosen, near) {
                 self.chart = ChartView::default();
             }
@@ -246,10 +249,10 @@ impl RecordingsView {
         let Some((_, lines)) = &self.lines else {
             return;
         };
-        kit::say_ui(ui, look.say(faults::RECORDING_EVENTS), look.palette.muted);
+        kit::say_ui(ui, look.say(notices::RECORDING_EVENTS), look.palette.muted);
         if recording.events_lost > 0 {
             let lost = recording.events_lost;
-            let text = look.told(faults::RECORDING_EVENTS_LOST, lost);
+            let text = look.told(notices::RECORDING_EVENTS_LOST, lost);
             kit::say_ui(ui, &text, look.palette.warn);
         }
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -289,9 +292,9 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) -> bool {
     let palette = look.palette;
     let row = ui.horizontal(|ui| {
         let title = title(pane, recording);
-        let text = look.say(faults::RECORDING_OPEN);
+        let text = look.say(notices::RECORDING_OPEN);
         let name = format!("{text}: {title}");
-        let open = Button::new(text, look.tip(faults::RECORDING_OPEN)).named(&name);
+        let open = Button::new(text, look.tip(notices::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
         let from = recording.fault().map(|fault| fault.at);
         let stretch = ReplayedStretch {

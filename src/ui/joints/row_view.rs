@@ -9,7 +9,7 @@ use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest};
-use crate::ui::text::{faults, main};
+use crate::ui::text::{main, notices};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -125,14 +125,14 @@ pub(crate) fn explain_ui(
     row: &JointRow,
     (rect, said): (Rect, &DriveWords),
 ) {
-    let name = row.named(pane, faults::EXPLAIN);
+    let name = row.named(pane, notices::EXPLAIN);
     let response = ui.interact(rect, row.id("explain"), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     kit::focus_ring(ui, pane.look, &response, rect);
     if response.clicked() {
         pane.open(ViewRequest::Drive(row.dof));
     }
-    let tip = pane.look.tip(faults::EXPLAIN);
+    let tip = pane.look.tip(notices::EXPLAIN);
     let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
     response
         .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())

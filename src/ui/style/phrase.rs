@@ -81,8 +81,8 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, faults, inputs, main, panels, poses, scan, sessions, traffic, tune,
-        window,
+        cards, device, exhibit, inputs, main, notices, panels, poses, scan, sessions, traffic,
+        tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
@@ -90,7 +90,7 @@ mod tests {
             cards::ALL,
             device::ALL,
             exhibit::ALL,
-            faults::ALL,
+            notices::ALL,
             inputs::ALL,
             main::ALL,
             panels::ALL,

@@ -8,7 +8,7 @@ use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
-use crate::ui::text::{Text, faults, inputs, main, sessions, window, words};
+use crate::ui::text::{Text, inputs, main, notices, sessions, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::rooms;
@@ -173,9 +173,9 @@ fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     let look = pane.look;
     let count = pane.state.hand().readings.faults.unseen().count();
-    let (before, after) = (look.say(faults::UNSEEN_BEFORE), look.say(faults::UNSEEN));
+    let (before, after) = (look.say(notices::UNSEEN_BEFORE), look.say(notices::UNSEEN));
     let text = format!("{before} {count} {after}");
-    let button = Button::new(text.trim(), look.tip(faults::UNSEEN));
+    let button = Button::new(text.trim(), look.tip(notices::UNSEEN));
     if lamp_button_ui(ui, look, button, color).clicked() {
         pane.open(ViewRequest::Faults);
     }

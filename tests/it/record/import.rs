@@ -2,9 +2,9 @@
 //! and a file that is wrong is refused with the line.
 
 use handscope::hand::command::HandCommand;
+use handscope::hand::feedback::sample::touch_span;
+use handscope::hand::feedback::tactile::TactileBlock;
 use handscope::hand::kinematics::Side;
-use handscope::hand::sample::touch_span;
-use handscope::hand::tactile::TactileBlock;
 use handscope::hand::{
     Dof, Finger, Group, Groups, HandSample, Moment, Reply, Span, Target, register,
 };

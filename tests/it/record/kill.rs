@@ -6,7 +6,7 @@ use crate::setup::hand;
 use crate::setup::process::{Running, listen};
 use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
-use handscope::hand::{Group, Moment, Span, register, sample::touch_span};
+use handscope::hand::{Group, Moment, Span, feedback::sample::touch_span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{SessionFile, Stretch};
 use handscope::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};

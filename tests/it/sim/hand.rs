@@ -1,10 +1,10 @@
 //! What the simulated hand's bytes say over time. Servers are tested elsewhere.
 
+use handscope::hand::feedback::sample::{HandSample, Reply, touch_span};
 use handscope::hand::register::{
     ANGLE_ACT, ANGLE_SET, CURRENT, ERROR, FORCE_ACT, FORCE_SET, POS_ACT, Register, SPEED_SET,
     STATUS, TEMP,
 };
-use handscope::hand::sample::{HandSample, Reply, touch_span};
 use handscope::hand::{Dof, Fault, Finger, Moment, Span, TactileBlock};
 use handscope::sim::{
     GapAnswer, MinusOne, Object, OutOfRangeWrite, Personality, SaveAnswer, SaveFrame, Scenario,

@@ -1,7 +1,9 @@
 //! What stops the hands when this program ends, however it ends: one call tells every open link to hold, and a process of its
 //! own holds a hand whose program died. Lists the links of this process, as it ends as a whole.
 
-use crate::link::holder::{HolderTie, Started};
+pub mod holder;
+
+use crate::link::guard::holder::{HolderTie, Started};
 use crate::link::wanted::PendingControl;
 use crate::record::Disarmed;
 use crate::transport::Endpoint;

@@ -1,10 +1,10 @@
 //! Another controller on the same hand: requests that are not ours, and setpoints that change though nobody here wrote
 //! them. Only judges; what follows from it is the session's.
 
-use crate::hand::sample::SET_OUT_OF_RANGE;
+use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::{AngleReading, Force, RegisterWrite, Speed, Target};
 use crate::hand::{Group, Groups, HandSample, Moment, PerDof, register};
-use crate::link::session::setpoint_watch::{Seen, SetpointWatch, Wrote};
+use crate::link::session::watch::setpoint::{Seen, SetpointWatch, Wrote};
 use crate::record::{SetpointConflict, SetpointRegister};
 use arrayvec::ArrayVec;
 use std::time::Duration;

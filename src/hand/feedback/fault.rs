@@ -1,6 +1,6 @@
 //! ERROR bits in words (manual 2.6.18). Unknown bits are kept.
 
-use crate::hand::status::Words;
+use crate::hand::feedback::status::Words;
 
 /// One fault that a drive can report (manual 2.6.18).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,7 +1,7 @@
 //! Values outside the manual's ranges, as every file names them: `angle[4]`, or with what the hand sent `angle[4]=1203`.
 
 use crate::hand::dof::Dof;
-use crate::hand::sample::{Group, Groups, HandSample};
+use crate::hand::feedback::sample::{Group, Groups, HandSample};
 use std::fmt;
 
 /// A value of a joint that is outside the manual's range.

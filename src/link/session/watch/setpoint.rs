@@ -5,7 +5,7 @@
 //! take, in this order. Anything else came from elsewhere, unless it looks like the hand's own way to take a value: rounded a
 //! little, or limited. A value that is overwritten before it is read cannot be seen.
 
-use crate::hand::sample::SET_OUT_OF_RANGE;
+use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::{Dof, Moment, PerDof};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::record::{SetpointConflict, SetpointRegister};

@@ -1,14 +1,14 @@
 //! The newest of everything that a hand has told us, each group with its own times. Decoding from memory bytes; no history.
 
 use crate::hand::dof::{Finger, PerDof, PerFinger};
-use crate::hand::fault::Faults;
-use crate::hand::moment::{Moment, Timed};
-use crate::hand::reading::{
+use crate::hand::feedback::fault::Faults;
+use crate::hand::feedback::reading::{
     AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
 };
+use crate::hand::feedback::status::Status;
+use crate::hand::feedback::tactile::TactileBlock;
+use crate::hand::moment::{Moment, Timed};
 use crate::hand::register::{self, Register, Span};
-use crate::hand::status::Status;
-use crate::hand::tactile::TactileBlock;
 use crate::hand::units::{Angle, Force, Speed, Target};
 
 /// Stands in [`HandSample::memory`] for a set value outside its range, as it is outside of every range.

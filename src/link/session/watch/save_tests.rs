@@ -3,7 +3,7 @@
 use crate::codec::rs485::SaveResult;
 use crate::hand::{ModbusException, Moment, Refusal};
 use crate::link::bus::ResultFrame;
-use crate::link::session::save_watch::{Ack, Next, SaveWatch};
+use crate::link::session::watch::save::{Ack, Next, SaveWatch};
 use crate::record::{SaveDoubt, Saved};
 
 /// What the model's hand does with one SAVE, times in steps after it.

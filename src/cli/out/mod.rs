@@ -1,6 +1,8 @@
 //! Standard output, locked once and buffered, and messages on standard error. A reader that goes away ends the command
 //! quietly.
 
+pub(crate) mod progress;
+
 use serde::Serialize;
 use std::io::{self, BufWriter, Write};
 

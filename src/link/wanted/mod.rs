@@ -1,5 +1,9 @@
 //! What the program wants of a session, and the session's ends of the channels between them.
 
+#[cfg(test)]
+#[allow(clippy::indexing_slicing, clippy::expect_used, reason = "a test may")]
+mod tests;
+
 use crate::hand::{Moment, Setpoints};
 use crate::link::image::RegisterImage;
 use crate::link::lease::{HoldToRun, Lease, LeaseBook, LeaseRefusal, Owner};
