@@ -1,9 +1,8 @@
 //! The decoded value of a register, as text and as JSON. Pure.
 
 use crate::cli::watch::telemetry::{fault_names, status_name, tactile_json};
-use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{self, Element, Register};
-use crate::hand::{Faults, Finger, Status, TactileBlock};
+use crate::hand::{Faults, Finger, Group, Status, TactileBlock};
 use serde_json::{Value, json};
 
 /// A register's bytes as a JSON value: a number, six numbers or words, or a fingertip. Null if the bytes do not fit it.
@@ -14,7 +13,7 @@ pub(crate) fn value_json(row: &Register, bytes: &[u8]) -> Value {
     if row.element == Element::Tactile {
         let finger = Finger::ALL
             .into_iter()
-            .find(|finger| touch_span(*finger) == row.span());
+            .find(|finger| Group::Tactile(*finger).span() == row.span());
         let block = TactileBlock::decode(bytes);
         return finger.map_or(Value::Null, |finger| tactile_json(finger, block.as_ref()));
     }

@@ -22,10 +22,11 @@ pub mod units;
 pub use command::{GestureRoute, HandCommand, RegisterWrite, Writes};
 pub use dof::{Dof, Finger, PerDof, PerFinger};
 pub use feedback::fault::{Fault, Faults};
+pub use feedback::group::{Group, Groups, RateClass};
 pub use feedback::reading::{
     AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
 };
-pub use feedback::sample::{Group, Groups, HandSample, Reply};
+pub use feedback::sample::{HandSample, Reply};
 pub use feedback::status::{Status, Words};
 pub use feedback::tactile::TactileBlock;
 pub use feedback::undocumented::Undocumented;

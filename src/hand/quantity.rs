@@ -1,10 +1,11 @@
 //! The one table of measured quantities: names, units, digits and scales, as history, plots, tables and text show them.
 
 use crate::hand::dof::PerDof;
+use crate::hand::feedback::group::Group;
 use crate::hand::feedback::reading::{
     AngleReading, CurrentReading, ForceReading, TemperatureReading,
 };
-use crate::hand::feedback::sample::{Group, HandSample};
+use crate::hand::feedback::sample::HandSample;
 use crate::hand::moment::Timed;
 
 /// What is measured of one joint.

@@ -144,6 +144,14 @@ pub enum Target {
 }
 
 impl Target {
+    /// What this number means in ANGLE_SET; `None` outside -1..=1000.
+    pub fn from_raw(raw: i16) -> Option<Self> {
+        match raw {
+            -1 => Some(Self::Leave),
+            raw => Angle::new(raw).ok().map(Self::Go),
+        }
+    }
+
     /// The number as it stands in ANGLE_SET.
     pub const fn raw(self) -> i16 {
         match self {

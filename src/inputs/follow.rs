@@ -8,6 +8,12 @@ use std::time::Duration;
 
 /// A source that says nothing new for this long is held …
 pub const HOLDS_AFTER: Duration = Duration::from_millis(200);
+
+/// True if who was heard last at `last` still speaks at `now`.
+pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
+    now.since(last) < HOLDS_AFTER
+}
+
 /// … and after this it may move the hand no more.
 pub const ENDS_AFTER: Duration = Duration::from_secs(1);
 /// Targets that are the same to the last bit for this long, away from the ends of the range: tracking is frozen?

@@ -2,10 +2,10 @@
 //! That hand is read and never written. Left and right have the same six joints in the same order, so one follows the other as is.
 
 use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
-use crate::inputs::follow::HOLDS_AFTER;
+use crate::inputs::follow::is_fresh;
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
-use crate::link::Records;
 use crate::link::rate::EventRate;
+use crate::link::{Owner, Records};
 use crate::record::Record;
 use tokio::sync::{mpsc, watch};
 use tokio_util::task::AbortOnDropHandle;
@@ -57,9 +57,9 @@ pub struct MirrorView {
 }
 
 impl MirrorView {
-    /// Whether it is known where that hand is.
-    pub fn is_fresh(&self, now: Moment) -> bool {
-        self.heard.is_some_and(|at| now.since(at) < HOLDS_AFTER)
+    /// As whom it would move the hand at `now`; `None` while it is not known where that hand is.
+    pub fn owner(&self, now: Moment) -> Option<Owner> {
+        is_fresh(self.heard?, now).then_some(Owner::Mirror)
     }
 }
 

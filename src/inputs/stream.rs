@@ -1,11 +1,13 @@
 //! Listens for lines of JSON, over UDP or TCP, and hands on what they ask for. Nothing listens before it is opened, nor after it
 //! is dropped.
 
+use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineFault, StreamLine, begins_message};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
-use crate::link::{Clock, Wake};
+use crate::link::{Clock, Owner, Wake};
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -61,6 +63,14 @@ pub struct StreamView {
     pub not_granted: u64,
     /// Connections at once, of TCP.
     pub connections: usize,
+}
+
+impl StreamView {
+    /// As whom it would move the hand at `now`; `None` while nobody sends.
+    pub fn owner(&self, now: Moment) -> Option<Owner> {
+        let (sender, last) = self.intake.sender?;
+        is_fresh(last, now).then_some(Owner::Stream(sender))
+    }
 }
 
 /// An open stream. Dropped, it is closed.

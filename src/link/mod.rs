@@ -41,7 +41,7 @@ pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 pub use recent::RecentReads;
 pub use records::{LinkObserver, Records};
 pub use request::RequestError;
-pub use stats::{GroupUse, LineUse, LinkStats, PollGroup};
+pub use stats::{GroupUse, LineUse, LinkStats};
 pub use status::{ArmRequest, Dialling, LinkStatus, LinkTrouble};
 pub use tap::WireTap;
 pub use traffic::Traffic;

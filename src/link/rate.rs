@@ -35,8 +35,7 @@ impl EventRate {
         }
     }
 
-    /// Events a second between the oldest and the newest of the last second.
-    /// Times a second, as of now.
+    /// Events a second as of now, between the oldest and the newest of the last second.
     pub(crate) fn hz(&mut self, now: Moment) -> f64 {
         self.forget(now);
         let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else {

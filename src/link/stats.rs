@@ -1,5 +1,6 @@
 //! What the link measured of itself. Counting lives in the session; here is only the result.
 
+use crate::hand::RateClass;
 use std::time::Duration;
 
 /// Counts since the link was opened, and rates over the last seconds.
@@ -53,8 +54,8 @@ pub struct LineUse {
     pub turnaround: Option<Duration>,
     /// Share of the writes, 0 to 1.
     pub writes: f64,
-    /// The groups of reads, in the order of [`PollGroup::ALL`].
-    pub groups: [GroupUse; PollGroup::ALL.len()],
+    /// The groups of reads, in the order of [`RateClass::ALL`].
+    pub groups: [GroupUse; RateClass::ALL.len()],
     /// True if windows end at gaps between registers, because this hand refuses to be read through them.
     pub split: bool,
 }
@@ -69,30 +70,4 @@ pub struct GroupUse {
     pub share: f64,
     /// Whole reads a second that the wire would give if it carried nothing else; 0 before the first answer.
     pub could_hz: f64,
-}
-
-/// What is read at one rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PollGroup {
-    /// Angles and forces.
-    Motion,
-    /// Currents, faults and status.
-    Drives,
-    /// Temperatures.
-    Temperature,
-    /// All five fingertips.
-    Tactile,
-    /// The setpoints that the hand holds, and the drives' positions.
-    Settings,
-}
-
-impl PollGroup {
-    /// All, in the order in which they are shown.
-    pub const ALL: [Self; 5] = [
-        Self::Motion,
-        Self::Drives,
-        Self::Temperature,
-        Self::Tactile,
-        Self::Settings,
-    ];
 }

@@ -1,8 +1,7 @@
 //! Values that no hand should send, laid over the memory in the `extremes` scenario. Changes nothing else.
 
-use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
-use crate::hand::{Finger, TactileBlock};
+use crate::hand::{Finger, Group, TactileBlock};
 use crate::sim::memory::Memory;
 
 /// How long a set of values stays before it moves to the next finger, ms.
@@ -33,7 +32,7 @@ pub(crate) fn overlay(memory: &mut Memory, now_ms: u64) {
         memory.put(row.address, &values);
     }
     for finger in Finger::ALL {
-        memory.put(touch_span(finger).address, &block(finger));
+        memory.put(Group::Tactile(finger).span().address, &block(finger));
     }
 }
 

@@ -1,8 +1,7 @@
 //! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
 
-use crate::hand::feedback::sample::touch_span;
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
-use crate::hand::{Dof, Fault, Finger, Moment, PerDof, PerFinger};
+use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
@@ -564,7 +563,7 @@ impl SimHand {
             let block = self
                 .touch
                 .block(finger, press, slip, number::seconds(measured_ms));
-            let at = touch_span(finger).address;
+            let at = Group::Tactile(finger).span().address;
             self.memory.put(at, &block.encode());
             self.put_check(at);
         }

@@ -23,7 +23,7 @@ use crate::hand::{
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
-use crate::link::{HoldToRun, LinkStatus, Owner, RequestError};
+use crate::link::{HoldToRun, LeaseRefusal, LinkStatus, Owner, RequestError};
 use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::{ArmRefusal, LinkState, Record};
 use crate::tasks::play::{self, PlayCommand, PlayStart};
@@ -412,8 +412,10 @@ impl Hand {
     /// Starts a gesture of the hand's own. It moves every joint, so none may be locked.
     pub(crate) fn gesture(&mut self, gesture: Gesture, route: GestureRoute, ctx: &mut Ctx<'_>) {
         let what = RequestKind::Gesture(gesture);
-        if !self.connection.is_armed() {
-            self.failed(what, RequestError::NotArmed, ctx);
+        if self.own_epoch().is_none() {
+            let owner = self.connection.outside_owner();
+            let taken = owner.map(|owner| LeaseRefusal::Taken(owner).into());
+            self.failed(what, taken.unwrap_or(RequestError::NotArmed), ctx);
         } else if route == GestureRoute::Off {
             ctx.tell(NoticeKind::GesturesOff);
         } else if let Some((dof, _)) = self.controls.joints.iter().find(|(_, own)| own.locked) {

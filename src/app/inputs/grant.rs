@@ -5,7 +5,6 @@ use crate::app::env::running::Running;
 use crate::app::inputs::{FollowOutcome, FollowRun, HandInputs, InputSource};
 use crate::hand::Moment;
 use crate::inputs::Offer;
-use crate::inputs::follow::HOLDS_AFTER;
 use crate::link::{LeaseRefusal, LinkHandle, LinkStopper, Owner};
 use crate::record::Disarmed;
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
@@ -22,29 +21,25 @@ pub(crate) struct Offered {
 impl HandInputs {
     /// What this source offers; `None` while nobody is there or what it says is old.
     pub(crate) fn offered(&self, source: InputSource, now: Moment) -> Option<Offered> {
-        let is_fresh = |last: Moment| now.since(last) < HOLDS_AFTER;
         let (owner, offers) = match source {
             InputSource::Stream => {
-                let (sender, last) = self.stream_view.intake.sender?;
-                let source = self.stream.as_ref().filter(|_| is_fresh(last))?;
-                (Owner::Stream(sender), source.follow())
+                let source = self.stream.as_ref()?;
+                (source.view().owner(now)?, source.follow())
             }
             InputSource::Dds => {
                 let joined = self.dds.as_ref()?;
-                let (_, last) = joined.source.view().sender?;
                 // Two hands must not obey one sender.
-                let is_free = is_fresh(last) && joined.others.now().is_none();
-                (Owner::Dds, is_free.then(|| joined.source.follow())?)
+                let joined = Some(joined).filter(|joined| joined.others.now().is_none())?;
+                let source = &joined.source;
+                (source.view().owner(now)?, source.follow())
             }
             InputSource::Pad => {
                 let source = self.pad.as_ref()?;
-                source.view().name?;
-                (Owner::Gamepad, source.follow())
+                (source.view().owner()?, source.follow())
             }
             InputSource::Mirror => {
-                let mirror = self.mirror.as_ref()?;
-                let is_fresh = mirror.source.view().is_fresh(now);
-                (Owner::Mirror, is_fresh.then(|| mirror.source.follow())?)
+                let source = &self.mirror.as_ref()?.source;
+                (source.view().owner(now)?, source.follow())
             }
         };
         let leader = self.mirror.as_ref().filter(|_| owner == Owner::Mirror);

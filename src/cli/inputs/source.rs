@@ -9,7 +9,6 @@ use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
 use crate::inputs::dds::ctrl;
 use crate::inputs::dds::source::{DdsSource, DdsSourceConfig, DdsView};
-use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::mirror::{MirrorScale, MirrorSource};
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
@@ -221,20 +220,19 @@ impl FollowSource {
     pub(super) fn owner(&self, now: Moment) -> Option<(Owner, String)> {
         match self {
             Self::Stream(_, source) => {
-                let (sender, last) = source.view().intake.sender?;
-                let is_fresh = now.since(last) < HOLDS_AFTER;
-                is_fresh.then(|| (Owner::Stream(sender), sender.to_string()))
+                let view = source.view();
+                Some((view.owner(now)?, view.intake.sender?.0.to_string()))
             }
             Self::Dds(source, ..) => {
-                let (sender, last) = source.view().sender?;
-                let is_fresh = now.since(last) < HOLDS_AFTER;
-                is_fresh.then(|| (Owner::Dds, format!("the program on DDS ({sender})")))
+                let view = source.view();
+                let name = format!("the program on DDS ({})", view.sender?.0);
+                Some((view.owner(now)?, name))
             }
-            Self::Pad(source) => Some((Owner::Gamepad, source.view().name?)),
-            Self::Mirror(other, _, source) => {
-                let is_fresh = source.view().is_fresh(now);
-                is_fresh.then(|| (Owner::Mirror, other.to_string()))
+            Self::Pad(source) => {
+                let view = source.view();
+                Some((view.owner()?, view.name?))
             }
+            Self::Mirror(other, _, source) => Some((source.view().owner(now)?, other.to_string())),
         }
     }
 
@@ -285,7 +283,7 @@ impl FollowSource {
                 let view = source.view();
                 let trouble = leader.status().trouble.map(|trouble| trouble.to_string());
                 // The rate of a hand that is not heard any more is none.
-                let rate_hz = view.is_fresh(now).then_some(view.rate_hz);
+                let rate_hz = view.owner(now).map(|_| view.rate_hz);
                 let words = match (&trouble, rate_hz) {
                     (Some(trouble), _) => format!("{other}: {trouble}"),
                     (None, Some(rate)) => format!("{rate:6.1} readings/s of {other}"),

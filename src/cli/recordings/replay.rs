@@ -157,7 +157,8 @@ fn read_ahead(
 
 fn steps(entry: &Entry) -> Vec<Step> {
     match entry {
-        Entry::Heard(Record::Reading { sample, fresh }) => Group::all()
+        Entry::Heard(Record::Reading { sample, fresh }) => Group::ALL
+            .into_iter()
             .filter(|group| fresh.contains(*group))
             .filter_map(|group| Some(Step::Memory(group.span().address, sample.memory(group)?)))
             .collect(),

@@ -1,9 +1,9 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
 use crate::hand::{
-    Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, Status, TactileBlock,
+    Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, RateClass, Status, TactileBlock,
 };
-use crate::link::{LineUse, LinkStats, PollGroup};
+use crate::link::{LineUse, LinkStats};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -58,7 +58,7 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
 }
 
 fn line_json(line: &LineUse) -> Value {
-    let groups = PollGroup::ALL.into_iter().zip(&line.groups);
+    let groups = RateClass::ALL.into_iter().zip(&line.groups);
     let groups: Map<String, Value> = groups
         .map(|(group, used)| {
             let value = json!({
@@ -79,13 +79,13 @@ fn line_json(line: &LineUse) -> Value {
     })
 }
 
-const fn group_name(group: PollGroup) -> &'static str {
+const fn group_name(group: RateClass) -> &'static str {
     match group {
-        PollGroup::Motion => "motion",
-        PollGroup::Drives => "drives",
-        PollGroup::Temperature => "temperature",
-        PollGroup::Tactile => "tactile",
-        PollGroup::Settings => "settings",
+        RateClass::Motion => "motion",
+        RateClass::Drives => "drives",
+        RateClass::Temperature => "temperature",
+        RateClass::Tactile => "tactile",
+        RateClass::Settings => "settings",
     }
 }
 
@@ -99,7 +99,7 @@ fn line_text(line: &LineUse) -> String {
     if let Some(ms) = millis(line.turnaround) {
         let _infallible = write!(text, ", turnaround {ms:.2} ms");
     }
-    for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
+    for (group, used) in RateClass::ALL.into_iter().zip(&line.groups) {
         let (name, share) = (group_name(group), percent(used.share));
         let _infallible = write!(text, "; {name} {:.1} Hz, {share}", used.hz);
     }

@@ -1,7 +1,24 @@
 //! What the hand says of itself: measured numbers, kept raw, with the manual's range beside them.
 
 use crate::hand::dof::Dof;
-use crate::hand::units::Angle;
+use crate::hand::feedback::fault::Faults;
+use crate::hand::feedback::status::Status;
+use crate::hand::units::{Angle, Force, Speed, Target};
+
+/// One joint's value as a register holds it.
+pub(crate) trait JointValue: Copy {
+    /// Bytes of a joint in its register.
+    const BYTES: usize = 2;
+
+    /// Takes the number that the hand sent.
+    fn decode(raw: i16) -> Self;
+
+    /// The number that the hand sent, as far as it is kept.
+    fn sent(self) -> Option<i16>;
+
+    /// True if the manual's range does not have it.
+    fn is_out_of_range(self) -> bool;
+}
 
 macro_rules! reading {
     ($(#[$doc:meta])* $name:ident($inner:ty), $min:literal ..= $max:literal) => {
@@ -28,8 +45,71 @@ macro_rules! reading {
                 Self::RANGE.contains(&self.0).then_some(self.0)
             }
         }
+
+        impl JointValue for $name {
+            const BYTES: usize = size_of::<$inner>();
+
+            fn decode(raw: i16) -> Self {
+                Self(raw as $inner)
+            }
+
+            fn sent(self) -> Option<i16> {
+                Some(self.0.into())
+            }
+
+            fn is_out_of_range(self) -> bool {
+                self.documented().is_none()
+            }
+        }
     };
 }
+
+/// A set value, which is kept only if it is in range.
+macro_rules! set_value {
+    ($name:ty, $decode:expr, $raw:expr) => {
+        impl JointValue for Option<$name> {
+            fn decode(raw: i16) -> Self {
+                $decode(raw)
+            }
+
+            fn sent(self) -> Option<i16> {
+                self.map($raw)
+            }
+
+            fn is_out_of_range(self) -> bool {
+                self.is_none()
+            }
+        }
+    };
+}
+
+set_value!(Target, Target::from_raw, Target::raw);
+set_value!(Force, |raw| Force::new(raw).ok(), Force::get);
+set_value!(Speed, |raw| Speed::new(raw).ok(), Speed::get);
+
+/// A byte of which every value means something.
+macro_rules! byte {
+    ($name:ty) => {
+        impl JointValue for $name {
+            const BYTES: usize = 1;
+
+            fn decode(raw: i16) -> Self {
+                Self::from_raw(raw.to_le_bytes()[0])
+            }
+
+            fn sent(self) -> Option<i16> {
+                Some(self.raw().into())
+            }
+
+            fn is_out_of_range(self) -> bool {
+                false
+            }
+        }
+    };
+}
+
+byte!(Faults);
+byte!(Status);
 
 reading!(
     /// ANGLE_ACT: 0 = bent, 1000 = open (manual 2.6.15).

@@ -1,140 +1,38 @@
 //! The newest of everything that a hand has told us, each group with its own times. Decoding from memory bytes; no history.
 
-use crate::hand::dof::{Finger, PerDof, PerFinger};
+use crate::hand::dof::{Dof, PerDof, PerFinger};
 use crate::hand::feedback::fault::Faults;
+use crate::hand::feedback::group::{Group, Groups};
 use crate::hand::feedback::reading::{
-    AngleReading, CurrentReading, ForceReading, PositionReading, TemperatureReading,
+    AngleReading, CurrentReading, ForceReading, JointValue, PositionReading, TemperatureReading,
 };
 use crate::hand::feedback::status::Status;
 use crate::hand::feedback::tactile::TactileBlock;
 use crate::hand::moment::{Moment, Timed};
-use crate::hand::register::{self, Register, Span};
-use crate::hand::units::{Angle, Force, Speed, Target};
+use crate::hand::register::Span;
+use crate::hand::units::{Force, Speed, Target};
+use arrayvec::ArrayVec;
 
 /// Stands in [`HandSample::memory`] for a set value outside its range, as it is outside of every range.
 pub const SET_OUT_OF_RANGE: i16 = i16::MIN;
 
-/// The groups of a sample, as a set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub struct Groups(u16);
-
-/// One group of registers that is read as a whole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Group {
-    /// ANGLE_SET.
-    AngleSet,
-    /// FORCE_SET.
-    ForceSet,
-    /// SPEED_SET.
-    SpeedSet,
-    /// POS_ACT.
-    Position,
-    /// ANGLE_ACT.
-    Angle,
-    /// FORCE_ACT.
-    Force,
-    /// CURRENT.
-    Current,
-    /// ERROR.
-    Faults,
-    /// STATUS.
-    Status,
-    /// TEMP.
-    Temperature,
-    /// One fingertip.
-    Tactile(Finger),
-}
-
-impl Group {
-    /// Where it stands in the hand's memory.
-    pub const fn span(self) -> Span {
-        match self {
-            Self::AngleSet => register::ANGLE_SET.span(),
-            Self::ForceSet => register::FORCE_SET.span(),
-            Self::SpeedSet => register::SPEED_SET.span(),
-            Self::Position => register::POS_ACT.span(),
-            Self::Angle => register::ANGLE_ACT.span(),
-            Self::Force => register::FORCE_ACT.span(),
-            Self::Current => register::CURRENT.span(),
-            Self::Faults => register::ERROR.span(),
-            Self::Status => register::STATUS.span(),
-            Self::Temperature => register::TEMP.span(),
-            Self::Tactile(finger) => touch_span(finger),
+/// Calls one function on the six values of a joint group, or another on the block of a fingertip.
+macro_rules! of_group {
+    ($sample:ident, $group:expr, $six:expr, $tip:expr) => {
+        match $group {
+            Group::AngleSet => $six($sample.angle_set),
+            Group::ForceSet => $six($sample.force_set),
+            Group::SpeedSet => $six($sample.speed_set),
+            Group::Position => $six($sample.position),
+            Group::Angle => $six($sample.angle),
+            Group::Force => $six($sample.force),
+            Group::Current => $six($sample.current),
+            Group::Faults => $six($sample.faults),
+            Group::Status => $six($sample.status),
+            Group::Temperature => $six($sample.temperature),
+            Group::Tactile(finger) => $tip($sample.tactile[finger]),
         }
-    }
-
-    /// All, joints first.
-    pub fn all() -> impl Iterator<Item = Self> {
-        [
-            Self::AngleSet,
-            Self::ForceSet,
-            Self::SpeedSet,
-            Self::Position,
-            Self::Angle,
-            Self::Force,
-            Self::Current,
-            Self::Faults,
-            Self::Status,
-            Self::Temperature,
-        ]
-        .into_iter()
-        .chain(Finger::ALL.map(Self::Tactile))
-    }
-
-    const fn bit(self) -> u16 {
-        match self {
-            Self::AngleSet => 1,
-            Self::ForceSet => 1 << 1,
-            Self::SpeedSet => 1 << 2,
-            Self::Position => 1 << 3,
-            Self::Angle => 1 << 4,
-            Self::Force => 1 << 5,
-            Self::Current => 1 << 6,
-            Self::Faults => 1 << 7,
-            Self::Status => 1 << 8,
-            Self::Temperature => 1 << 9,
-            Self::Tactile(finger) => 1 << (10 + finger as u16),
-        }
-    }
-}
-
-impl FromIterator<Group> for Groups {
-    fn from_iter<I: IntoIterator<Item = Group>>(groups: I) -> Self {
-        let mut all = Self::NONE;
-        groups.into_iter().for_each(|group| all.insert(group));
-        all
-    }
-}
-
-impl Groups {
-    /// No group.
-    pub const NONE: Self = Self(0);
-
-    /// Adds a group.
-    pub const fn insert(&mut self, group: Group) {
-        self.0 |= group.bit();
-    }
-
-    /// True if the group is in the set.
-    pub const fn contains(self, group: Group) -> bool {
-        self.0 & group.bit() != 0
-    }
-
-    /// The groups of both.
-    #[must_use]
-    pub const fn and(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// True if no group is in the set.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// True if any fingertip is in the set.
-    pub const fn has_tactile(self) -> bool {
-        self.0 >> 10 != 0
-    }
+    };
 }
 
 /// The newest of everything the hand has told us. `None` = never read on this connection.
@@ -180,163 +78,70 @@ pub struct Reply<'a> {
 impl HandSample {
     /// Takes every group that the reply covers whole, and says which. Groups covered in part are left as they were.
     pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
-        let taken = self.take_set(reply).into_iter();
-        let taken = taken.chain(self.take_actual(reply));
-        let there = taken.filter(|(_, there)| *there);
-        let mut fresh: Groups = there.map(|(group, _)| group).collect();
-        for finger in Finger::ALL {
-            let block = part(reply, touch_span(finger)).and_then(TactileBlock::decode);
-            if let Some(value) = block {
-                fresh.insert(Group::Tactile(finger));
-                self.tactile[finger] = Some(timed(reply, value));
+        let is_held = |group: &Group| {
+            let Some(bytes) = reply.span.slice(reply.bytes, group.span()) else {
+                return false;
+            };
+            match *group {
+                Group::AngleSet => take_six(&mut self.angle_set, reply, bytes),
+                Group::ForceSet => take_six(&mut self.force_set, reply, bytes),
+                Group::SpeedSet => take_six(&mut self.speed_set, reply, bytes),
+                Group::Position => take_six(&mut self.position, reply, bytes),
+                Group::Angle => take_six(&mut self.angle, reply, bytes),
+                Group::Force => take_six(&mut self.force, reply, bytes),
+                Group::Current => take_six(&mut self.current, reply, bytes),
+                Group::Faults => take_six(&mut self.faults, reply, bytes),
+                Group::Status => take_six(&mut self.status, reply, bytes),
+                Group::Temperature => take_six(&mut self.temperature, reply, bytes),
+                Group::Tactile(finger) => take(
+                    &mut self.tactile[finger],
+                    reply,
+                    TactileBlock::decode(bytes),
+                ),
             }
-        }
-        fresh
-    }
-
-    /// Takes what is set, and says of each group whether it was there.
-    fn take_set(&mut self, reply: &Reply<'_>) -> [(Group, bool); 3] {
-        let force = |raw| Force::new(raw).ok();
-        let speed = |raw| Speed::new(raw).ok();
-        [
-            (
-                Group::AngleSet,
-                shorts(reply, &register::ANGLE_SET, &mut self.angle_set, target),
-            ),
-            (
-                Group::ForceSet,
-                shorts(reply, &register::FORCE_SET, &mut self.force_set, force),
-            ),
-            (
-                Group::SpeedSet,
-                shorts(reply, &register::SPEED_SET, &mut self.speed_set, speed),
-            ),
-        ]
-    }
-
-    /// Takes what is measured, and says of each group whether it was there.
-    fn take_actual(&mut self, reply: &Reply<'_>) -> [(Group, bool); 7] {
-        [
-            (
-                Group::Position,
-                shorts(
-                    reply,
-                    &register::POS_ACT,
-                    &mut self.position,
-                    PositionReading::new,
-                ),
-            ),
-            (
-                Group::Angle,
-                shorts(
-                    reply,
-                    &register::ANGLE_ACT,
-                    &mut self.angle,
-                    AngleReading::new,
-                ),
-            ),
-            (
-                Group::Force,
-                shorts(
-                    reply,
-                    &register::FORCE_ACT,
-                    &mut self.force,
-                    ForceReading::new,
-                ),
-            ),
-            (
-                Group::Current,
-                shorts(
-                    reply,
-                    &register::CURRENT,
-                    &mut self.current,
-                    CurrentReading::new,
-                ),
-            ),
-            (
-                Group::Faults,
-                bytes(reply, &register::ERROR, &mut self.faults, Faults::from_raw),
-            ),
-            (
-                Group::Status,
-                bytes(reply, &register::STATUS, &mut self.status, Status::from_raw),
-            ),
-            (
-                Group::Temperature,
-                bytes(
-                    reply,
-                    &register::TEMP,
-                    &mut self.temperature,
-                    TemperatureReading::new,
-                ),
-            ),
-        ]
+        };
+        Group::ALL.into_iter().filter(is_held).collect()
     }
 
     /// When the request for a group left, and when its reply was there; `None` if it was never read.
     pub fn times(&self, group: Group) -> Option<(Moment, Moment)> {
-        fn of<T>(read: &Option<Timed<T>>) -> Option<(Moment, Moment)> {
-            read.as_ref().map(|read| (read.asked, read.received))
+        fn of<T>(read: Option<Timed<T>>) -> Option<(Moment, Moment)> {
+            read.map(|read| (read.asked, read.received))
         }
-        match group {
-            Group::AngleSet => of(&self.angle_set),
-            Group::ForceSet => of(&self.force_set),
-            Group::SpeedSet => of(&self.speed_set),
-            Group::Position => of(&self.position),
-            Group::Angle => of(&self.angle),
-            Group::Force => of(&self.force),
-            Group::Current => of(&self.current),
-            Group::Faults => of(&self.faults),
-            Group::Status => of(&self.status),
-            Group::Temperature => of(&self.temperature),
-            Group::Tactile(finger) => of(&self.tactile[finger]),
-        }
+        of_group!(self, group, of, of)
     }
 
     /// The bytes of a group as the hand sent them, in memory order; `None` if it was never read. Of set values outside their range the
     /// hand's own number is not kept: [`SET_OUT_OF_RANGE`] stands in its place.
     pub fn memory(&self, group: Group) -> Option<Vec<u8>> {
-        fn shorts<T: Copy>(
-            read: &Option<Timed<PerDof<T>>>,
-            raw: impl Fn(T) -> i16,
-        ) -> Option<Vec<u8>> {
-            let six = read.as_ref()?.value.as_array();
-            let bytes = six.iter().flat_map(|value| raw(*value).to_le_bytes());
-            Some(bytes.collect())
+        fn six<T: JointValue>(read: Option<Timed<PerDof<T>>>) -> Option<Vec<u8>> {
+            let sent = |value: &T| value.sent().unwrap_or(SET_OUT_OF_RANGE).to_le_bytes();
+            let six = read?.value;
+            let bytes = six.as_array().iter();
+            Some(
+                bytes
+                    .flat_map(|value| sent(value).into_iter().take(T::BYTES))
+                    .collect(),
+            )
         }
-        fn bytes<T: Copy>(
-            read: &Option<Timed<PerDof<T>>>,
-            raw: impl Fn(T) -> u8,
-        ) -> Option<Vec<u8>> {
-            let six = read.as_ref()?.value.as_array();
-            Some(six.iter().map(|value| raw(*value)).collect())
+        let tip = |read: Option<Timed<TactileBlock>>| Some(read?.value.as_sent().to_vec());
+        of_group!(self, group, six, tip)
+    }
+
+    /// `None` if a joint's value is in the manual's range, has none, or was never read; else what was sent, as far as that is kept.
+    pub fn out_of_range(&self, group: Group, dof: Dof) -> Option<Option<i16>> {
+        fn of<T: JointValue>(read: Option<Timed<PerDof<T>>>, dof: Dof) -> Option<Option<i16>> {
+            let value = read?.value[dof];
+            value.is_out_of_range().then(|| value.sent())
         }
-        match group {
-            Group::AngleSet => shorts(&self.angle_set, |set| {
-                set.map_or(SET_OUT_OF_RANGE, Target::raw)
-            }),
-            Group::ForceSet => shorts(&self.force_set, |set| {
-                set.map_or(SET_OUT_OF_RANGE, Force::get)
-            }),
-            Group::SpeedSet => shorts(&self.speed_set, |set| {
-                set.map_or(SET_OUT_OF_RANGE, Speed::get)
-            }),
-            Group::Position => shorts(&self.position, PositionReading::raw),
-            Group::Angle => shorts(&self.angle, AngleReading::raw),
-            Group::Force => shorts(&self.force, ForceReading::raw),
-            Group::Current => shorts(&self.current, CurrentReading::raw),
-            Group::Faults => bytes(&self.faults, Faults::raw),
-            Group::Status => bytes(&self.status, Status::raw),
-            Group::Temperature => bytes(&self.temperature, TemperatureReading::raw),
-            Group::Tactile(finger) => {
-                self.tactile[finger].map(|block| block.value.as_sent().to_vec())
-            }
-        }
+        of_group!(self, group, |read| of(read, dof), |_tip| None)
     }
 
     /// When the newest of these groups was received.
     pub fn newest(&self, groups: Groups) -> Option<Moment> {
-        let of = Group::all().filter(|group| groups.contains(*group));
+        let of = Group::ALL
+            .into_iter()
+            .filter(|group| groups.contains(*group));
         of.filter_map(|group| self.times(group))
             .map(|times| times.1)
             .max()
@@ -363,70 +168,39 @@ impl HandSample {
     }
 }
 
-/// Where a finger's block lies (manual 2.6).
-pub const fn touch_span(finger: Finger) -> Span {
-    Span::new(register::TOUCH.address + 58 * finger as u16, 58)
-}
-
-fn target(raw: i16) -> Option<Target> {
-    match raw {
-        -1 => Some(Target::Leave),
-        raw => Angle::new(raw).ok().map(Target::Go),
-    }
-}
-
-fn part<'a>(reply: &Reply<'a>, inner: Span) -> Option<&'a [u8]> {
-    reply.span.slice(reply.bytes, inner)
-}
-
-const fn timed<T>(reply: &Reply<'_>, value: T) -> Timed<T> {
-    Timed {
-        value,
-        asked: reply.asked,
-        received: reply.received,
-    }
-}
-
-fn shorts<T>(
-    reply: &Reply<'_>,
-    row: &Register,
+fn take_six<T: JointValue>(
     into: &mut Option<Timed<PerDof<T>>>,
-    decode: impl Fn(i16) -> T,
+    reply: &Reply<'_>,
+    bytes: &[u8],
 ) -> bool {
-    let Some(raw) = part(reply, row.span()) else {
-        return false;
+    let value = |raw: &[u8]| {
+        T::decode(match raw {
+            [low, high] => i16::from_le_bytes([*low, *high]),
+            raw => raw.first().copied().unwrap_or_default().into(),
+        })
     };
-    let (pairs, _) = raw.as_chunks::<2>();
-    let Ok(pairs) = <[[u8; 2]; 6]>::try_from(pairs) else {
-        return false;
-    };
-    *into = Some(timed(
-        reply,
-        PerDof::new(pairs.map(|pair| decode(i16::from_le_bytes(pair)))),
-    ));
-    true
+    let six: ArrayVec<T, { Dof::ALL.len() }> = bytes.chunks_exact(T::BYTES).map(value).collect();
+    take(into, reply, six.into_inner().ok().map(PerDof::new))
 }
 
-fn bytes<T>(
-    reply: &Reply<'_>,
-    row: &Register,
-    into: &mut Option<Timed<PerDof<T>>>,
-    decode: impl Fn(u8) -> T,
-) -> bool {
-    let Some(raw) = part(reply, row.span()) else {
-        return false;
-    };
-    let Ok(raw) = <[u8; 6]>::try_from(raw) else {
-        return false;
-    };
-    *into = Some(timed(reply, PerDof::new(raw.map(decode))));
-    true
+fn take<T>(into: &mut Option<Timed<T>>, reply: &Reply<'_>, value: Option<T>) -> bool {
+    let is_there = value.is_some();
+    if let Some(value) = value {
+        *into = Some(Timed {
+            value,
+            asked: reply.asked,
+            received: reply.received,
+        });
+    }
+    is_there
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::dof::Dof;
+    use crate::hand::dof::Finger;
+    use crate::hand::register;
+    use crate::hand::units::Angle;
 
     fn reply(span: Span, bytes: &[u8]) -> Reply<'_> {
         Reply {

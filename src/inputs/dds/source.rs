@@ -2,10 +2,10 @@
 
 use crate::hand::Moment;
 use crate::inputs::dds::ctrl::{CtrlFault, CtrlMessage};
-use crate::inputs::follow::{ENDS_AFTER, HOLDS_AFTER};
+use crate::inputs::follow::{ENDS_AFTER, is_fresh};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::rate::EventRate;
-use crate::link::{ArmRequest, Clock, Wake};
+use crate::link::{ArmRequest, Clock, Owner, Wake};
 use crate::transport::dds::{DdsMessage, DdsWriterId};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -40,6 +40,14 @@ pub struct DdsView {
     pub refused: BTreeMap<CtrlFault, u64>,
     /// Messages that nobody followed, as no person granted it.
     pub not_granted: u64,
+}
+
+impl DdsView {
+    /// As whom it would move the hand at `now`; `None` while nobody sends.
+    pub fn owner(&self, now: Moment) -> Option<Owner> {
+        let (_, last) = self.sender?;
+        is_fresh(last, now).then_some(Owner::Dds)
+    }
 }
 
 /// An open source. Dropped, it takes nothing any more.
@@ -117,7 +125,7 @@ impl Taking {
             .told
             .borrow()
             .sender
-            .is_none_or(|(told, last)| told != message.from || now.since(last) >= HOLDS_AFTER);
+            .is_none_or(|(told, last)| told != message.from || !is_fresh(last, now));
         self.view.taken += 1;
         self.rate.hit(now);
         let offer = Offer {

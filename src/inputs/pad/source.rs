@@ -6,7 +6,7 @@ use crate::inputs::pad::device::PadReader;
 use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput, PadPoses};
 use crate::inputs::pad::report::{PadNews, PadTrouble};
 use crate::inputs::pad::state::PadState;
-use crate::link::{Clock, Records, Wake};
+use crate::link::{Clock, Owner, Records, Wake};
 use crate::record::Record;
 use std::sync::Arc;
 use std::time::Duration;
@@ -48,6 +48,13 @@ pub struct PadView {
     pub state: PadState,
     /// The fingers that a trigger closes.
     pub fingers: FingerChoice,
+}
+
+impl PadView {
+    /// As whom it would move the hand; `None` without a gamepad.
+    pub fn owner(&self) -> Option<Owner> {
+        self.name.as_ref().map(|_| Owner::Gamepad)
+    }
 }
 
 /// A gamepad that is read. Dropped, it is read no more.

@@ -1,10 +1,9 @@
 //! What the time of the line is spent on, as a budget over the last second. Counts only.
 
-use crate::hand::{Moment, Span};
+use crate::hand::{Group, Moment, RateClass, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
-use crate::link::poll::window::ReadPart;
-use crate::link::stats::{GroupUse, LineUse, PollGroup};
+use crate::link::stats::{GroupUse, LineUse};
 use std::time::Duration;
 
 /// Figures are worked out over this time, and before the first of them over what there is after the shorter one.
@@ -18,7 +17,7 @@ pub(crate) struct LineMeter {
     busy: Duration,
     on_wire: Duration,
     writes: Duration,
-    groups: [TimeSum; PollGroup::ALL.len()],
+    groups: [TimeSum; RateClass::ALL.len()],
     shown: bool,
 }
 
@@ -35,13 +34,13 @@ impl LineMeter {
         self.busy += took;
         self.on_wire += cost.on_wire(window.len);
         let held = || {
-            ReadPart::ALL
+            Group::ALL
                 .into_iter()
                 .filter(|part| window.covers(part.span()))
         };
         let bytes: u32 = held().map(|part| u32::from(part.span().len)).sum();
         for part in held() {
-            if let Some(sum) = self.groups.get_mut(part.group() as usize) {
+            if let Some(sum) = self.groups.get_mut(part.rate() as usize) {
                 sum.time += took * u32::from(part.span().len) / bytes.max(1);
                 sum.parts += 1;
             }
@@ -69,8 +68,8 @@ impl LineMeter {
             return None;
         }
         let share = |time: Duration| (time.as_secs_f64() / over.as_secs_f64()).min(1.0);
-        let mut groups = [GroupUse::default(); PollGroup::ALL.len()];
-        for ((shown, sum), group) in groups.iter_mut().zip(&self.groups).zip(PollGroup::ALL) {
+        let mut groups = [GroupUse::default(); RateClass::ALL.len()];
+        for ((shown, sum), group) in groups.iter_mut().zip(&self.groups).zip(RateClass::ALL) {
             let whole = f64::from(sum.parts) / f64::from(parts_of(group));
             *shown = GroupUse {
                 hz: whole / over.as_secs_f64(),
@@ -97,9 +96,7 @@ impl LineMeter {
     }
 }
 
-fn parts_of(group: PollGroup) -> u32 {
-    let parts = ReadPart::ALL
-        .into_iter()
-        .filter(|part| part.group() == group);
+fn parts_of(class: RateClass) -> u32 {
+    let parts = Group::ALL.into_iter().filter(|part| part.rate() == class);
     u32::try_from(parts.count()).unwrap_or(1).max(1)
 }

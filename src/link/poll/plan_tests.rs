@@ -1,10 +1,8 @@
 //! Tests of the poll plan, on a line that is nothing but its cost model.
-use crate::hand::{Moment, Span};
+use crate::hand::{Finger, Group, Moment, RateClass, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::{PollPlan, PollPriority, PollRates, Tempo};
-use crate::link::poll::window::ReadPart;
 use crate::link::quirks::GapRead;
-use crate::link::stats::PollGroup;
 use std::time::Duration;
 
 const MS: Duration = Duration::from_millis(1);
@@ -13,17 +11,17 @@ const SECONDS: u64 = 10;
 /// What a run gave.
 struct Run {
     asked: Vec<Span>,
-    /// Reads of each part a second, in the order of `ReadPart::ALL`.
-    hz: [f64; ReadPart::ALL.len()],
+    /// Reads of each part a second, in the order of `Group::ALL`.
+    hz: [f64; Group::ALL.len()],
 }
 
 impl Run {
-    fn of(&self, part: ReadPart) -> f64 {
-        self.hz[ReadPart::ALL.iter().position(|each| *each == part).unwrap()]
+    fn of(&self, part: Group) -> f64 {
+        self.hz[Group::ALL.iter().position(|each| *each == part).unwrap()]
     }
 
     fn check_all(&self, least: f64) {
-        for (part, hz) in ReadPart::ALL.iter().zip(self.hz) {
+        for (part, hz) in Group::ALL.iter().zip(self.hz) {
             assert!(hz >= least, "{part:?} is read {hz} times a second");
         }
     }
@@ -40,7 +38,7 @@ fn read(plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
 
 fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
     let (cost, end) = (*plan.cost(), now.plus(Duration::from_secs(SECONDS)));
-    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; ReadPart::ALL.len()]);
+    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; Group::ALL.len()]);
     while now < end {
         let Some(question) = plan.next(now, tempo) else {
             now = plan.next_due(now, tempo);
@@ -55,7 +53,7 @@ fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: T
         plan.answered(window, now, took);
         now = now.plus(took);
         asked.push(window);
-        for (count, part) in counts.iter_mut().zip(ReadPart::ALL) {
+        for (count, part) in counts.iter_mut().zip(Group::ALL) {
             *count += u32::from(window.covers(part.span()));
         }
     }
@@ -73,12 +71,12 @@ fn rs485(baud: u32) -> WireCost {
 fn rates_are_kept_where_the_line_allows() {
     for cost in [WireCost::rs485(None), WireCost::tcp()] {
         let run = run(cost, MS / 5, PollRates::default(), Tempo::Rest);
-        for part in [ReadPart::Angle, ReadPart::Force, ReadPart::Drives] {
+        for part in [Group::Angle, Group::Force, Group::Status] {
             assert!((99.0..=101.0).contains(&run.of(part)), "{}", run.of(part));
         }
-        assert!((29.0..=31.0).contains(&run.of(ReadPart::Tip(3))));
-        assert!((4.9..=6.0).contains(&run.of(ReadPart::Temperature)));
-        assert!((1.9..=2.5).contains(&run.of(ReadPart::Speeds)));
+        assert!((29.0..=31.0).contains(&run.of(Group::Tactile(Finger::ALL[3]))));
+        assert!((4.9..=6.0).contains(&run.of(Group::Temperature)));
+        assert!((1.9..=2.5).contains(&run.of(Group::SpeedSet)));
     }
 }
 
@@ -102,7 +100,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
         for rates in [PollRates::default(), PollRates::FULL] {
             let run = run(cost, MS * 15, rates, Tempo::Motion);
             for pair in run.asked.windows(2) {
-                let motion = |span: &Span| span.covers(ReadPart::Angle.span());
+                let motion = |span: &Span| span.covers(Group::Angle.span());
                 assert!(pair.iter().any(motion), "{pair:?}");
             }
             let slowest = run.asked.iter().map(|span| cost.read(span.len, MS * 15));
@@ -110,7 +108,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
             assert!(slowest.max().unwrap() + hold <= MS * 30);
             let rest = self::run(cost, MS * 15, rates, Tempo::Rest);
             assert!(
-                run.of(ReadPart::Angle) > rest.of(ReadPart::Angle),
+                run.of(Group::Angle) > rest.of(Group::Angle),
                 "motion comes first"
             );
         }
@@ -125,22 +123,18 @@ fn while_something_moves_touch_comes_at_10_hz_and_more_often_where_it_comes_firs
         read(plan, MS * 6, Tempo::Motion)
     };
     let (force, touch) = (run(PollPriority::Force), run(PollPriority::Touch));
-    assert!(force.of(ReadPart::Angle) >= 25.0 && force.of(ReadPart::Drives) >= 25.0);
+    assert!(force.of(Group::Angle) >= 25.0 && force.of(Group::Status) >= 25.0);
     assert!(
-        force.of(ReadPart::Tip(4)) >= 10.0,
+        force.of(Group::Tactile(Finger::ALL[4])) >= 10.0,
         "{}",
-        force.of(ReadPart::Tip(4))
+        force.of(Group::Tactile(Finger::ALL[4]))
     );
     assert!(
-        touch.of(ReadPart::Tip(4)) >= 14.0,
+        touch.of(Group::Tactile(Finger::ALL[4])) >= 14.0,
         "{}",
-        touch.of(ReadPart::Tip(4))
+        touch.of(Group::Tactile(Finger::ALL[4]))
     );
-    assert!(
-        touch.of(ReadPart::Angle) >= 15.0,
-        "{}",
-        touch.of(ReadPart::Angle)
-    );
+    assert!(touch.of(Group::Angle) >= 15.0, "{}", touch.of(Group::Angle));
     touch.check_all(0.3);
 }
 
@@ -150,7 +144,7 @@ fn at_full_rate_and_rest_a_cycle_is_one_state_and_two_reads_of_fingertips() {
     let late = &run.asked[200..];
     let states = late
         .iter()
-        .filter(|span| span.covers(ReadPart::Drives.span()))
+        .filter(|span| span.covers(Group::Status.span()))
         .count();
     let tips = late.iter().filter(|span| span.address >= 2950).count();
     assert!(
@@ -174,7 +168,10 @@ fn fingertips_at_the_ends_that_were_read_alone_are_not_read_alone_for_ever() {
     // So often that the turnaround is known, and with it how much one read may hold.
     for _ in 0..32 {
         for (tip, together) in [(1, 3), (4, 1), (0, 1)] {
-            let window = Span::new(ReadPart::Tip(tip).span().address, 58 * together);
+            let window = Span::new(
+                Group::Tactile(Finger::ALL[tip]).span().address,
+                58 * together,
+            );
             let took = cost.read(window.len, MS * 6);
             plan.answered(window, now, took);
             now = now.plus(took);
@@ -215,9 +212,9 @@ fn while_a_stop_is_confirmed_only_motion_and_faults_are_read() {
     assert!(
         run.asked
             .iter()
-            .all(|span| span.covers(ReadPart::Angle.span()) || span.covers(ReadPart::Drives.span()))
+            .all(|span| span.covers(Group::Angle.span()) || span.covers(Group::Status.span()))
     );
-    assert!(run.of(ReadPart::Angle) > 20.0 && run.of(ReadPart::Drives) > 15.0);
+    assert!(run.of(Group::Angle) > 20.0 && run.of(Group::Status) > 15.0);
 }
 
 #[test]
@@ -233,11 +230,7 @@ fn the_motion_state_has_forms_enough_for_a_line_with_late_replies() {
                 shapes.len() >= forms && seen.len() >= lens,
                 "{tempo:?} {shapes:?}"
             );
-            assert!(
-                shapes
-                    .iter()
-                    .all(|shape| shape.covers(ReadPart::Angle.span()))
-            );
+            assert!(shapes.iter().all(|shape| shape.covers(Group::Angle.span())));
         }
     }
 }
@@ -257,16 +250,16 @@ fn a_hand_that_is_not_to_be_read_is_asked_for_nothing_again() {
 fn what_the_wire_could_give_is_the_cost_model_turned_round() {
     let cost = rs485(115_200);
     let mut plan = PollPlan::new(PollRates::FULL, cost, Moment::ZERO);
-    assert!(plan.could_hz(PollGroup::Motion) < f64::EPSILON);
+    assert!(plan.could_hz(RateClass::Motion) < f64::EPSILON);
     for n in 0..100_u64 {
         let at = Moment::from_micros(n * 20_000);
         plan.answered(Span::new(1546, 48), at, cost.read(48, MS * 6));
     }
     let alone = |len| 1.0 / cost.read(len, MS * 6).as_secs_f64();
-    assert!((plan.could_hz(PollGroup::Motion) / alone(48) - 1.0).abs() < 0.01);
+    assert!((plan.could_hz(RateClass::Motion) / alone(48) - 1.0).abs() < 0.01);
     let sweep = cost.read(232, MS * 6) + cost.read(58, MS * 6);
     let sweeps = 1.0 / sweep.as_secs_f64();
-    assert!((plan.could_hz(PollGroup::Tactile) / sweeps - 1.0).abs() < 0.01);
+    assert!((plan.could_hz(RateClass::Tactile) / sweeps - 1.0).abs() < 0.01);
 }
 
 #[test]
@@ -279,8 +272,8 @@ fn a_hand_known_to_refuse_the_gap_is_never_asked_through_it() {
     for _ in 0..300 {
         let window = plan.next(now, Tempo::Rest).unwrap().shapes[0];
         assert!(window.end() <= 1558 || window.address >= 1582, "{window:?}");
-        seen[0] += u32::from(window.covers(ReadPart::Angle.span()));
-        seen[1] += u32::from(window.covers(ReadPart::Force.span()));
+        seen[0] += u32::from(window.covers(Group::Angle.span()));
+        seen[1] += u32::from(window.covers(Group::Force.span()));
         let took = cost.read(window.len, MS * 6);
         plan.answered(window, now, took);
         now = now.plus(took);

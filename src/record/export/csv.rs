@@ -75,8 +75,9 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
     }
 
     fn reading(&mut self, at: Moment, sample: &HandSample, fresh: Groups) -> io::Result<()> {
-        let is_again =
-            Group::all().any(|group| fresh.contains(group) && self.line.taken.contains(group));
+        let is_again = Group::ALL
+            .into_iter()
+            .any(|group| fresh.contains(group) && self.line.taken.contains(group));
         if self.line.at != Some(at) || is_again {
             self.put()?;
             self.line.at = Some(at);

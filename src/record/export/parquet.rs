@@ -83,7 +83,9 @@ impl ParquetTable {
         sample: &HandSample,
         fresh: Groups,
     ) -> Result<(), ParquetError> {
-        let asked = Group::all().filter(|group| fresh.contains(*group));
+        let asked = Group::ALL
+            .into_iter()
+            .filter(|group| fresh.contains(*group));
         let asked = asked
             .filter_map(|group| sample.times(group))
             .map(|(asked, _)| asked)

@@ -158,7 +158,8 @@ impl EntryEncoder {
     /// One reply: the joints' groups in one message, each fingertip in one of its own.
     fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<Message> {
         let mut messages = Vec::new();
-        let of_joints = Group::all()
+        let of_joints = Group::ALL
+            .into_iter()
             .find(|group| !matches!(group, Group::Tactile(_)) && fresh.contains(*group));
         if let Some((asked, received)) = of_joints.and_then(|group| sample.times(group)) {
             let state = self.state(sample, fresh, (asked, received));

@@ -1,7 +1,8 @@
 //! How the link goes: state, rates, round trips, counts, and what the line's time goes to.
 
 use crate::app::action::Action;
-use crate::link::{PollGroup, PollPriority};
+use crate::hand::RateClass;
+use crate::link::PollPriority;
 use crate::record::quirk_sheet::Fact;
 use crate::transport::Endpoint;
 use crate::ui::connection::link_words::link_words;
@@ -97,7 +98,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
             measured(
-                panels::group(PollGroup::Tactile),
+                panels::group(RateClass::Tactile),
                 format::hertz(stats.tactile_hz),
             ),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
@@ -151,7 +152,7 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 cell_ui(ui, width, |ui| drop(head.ui(ui)));
             }
         });
-        for (group, used) in PollGroup::ALL.into_iter().zip(&line.groups) {
+        for (group, used) in RateClass::ALL.into_iter().zip(&line.groups) {
             let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
             row(ui, panels::group(group), values);
         }

@@ -2,9 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind, InputSource};
-use crate::hand::Moment;
-use crate::inputs::follow::HOLDS_AFTER;
 use crate::inputs::stream::StreamPlace;
+use crate::link::Owner;
 use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
@@ -90,8 +89,8 @@ impl SourceCards {
         ui.horizontal_wrapped(|ui| {
             let switch = (InputKind::Stream, inputs::LISTEN, action);
             switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
-            let sender = pane.state.hand().inputs.stream_view.intake.sender;
-            let missing = silence(pane, sender.map(|(_, last)| last).filter(|_| at.is_some()));
+            let view = &pane.state.hand().inputs.stream_view;
+            let missing = silence(pane, view.owner(pane.state.now).filter(|_| at.is_some()));
             let source = (
                 look.say(inputs::STREAM),
                 InputAction::Grant(InputSource::Stream),
@@ -118,8 +117,9 @@ impl SourceCards {
         ui.horizontal_wrapped(|ui| {
             let switch = (InputKind::Dds, inputs::JOIN, action);
             switch_ui(ui, pane, switch, (at, wrong));
-            let sender = view.as_ref().and_then(|view| view.view.sender);
-            let missing = silence(pane, sender.map(|(_, last)| last));
+            let owner = view.as_ref();
+            let owner = owner.and_then(|view| view.view.owner(pane.state.now));
+            let missing = silence(pane, owner);
             let other = view.as_ref().and_then(|view| view.other.as_ref());
             let other =
                 other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
@@ -278,11 +278,10 @@ pub(crate) fn grant_ui(
     button.on_click(ui, pane, Action::Input(action));
 }
 
-/// Why nobody can be followed now who was heard last at this moment.
-fn silence(pane: &Pane<'_>, last: Option<Moment>) -> Option<&'static str> {
-    let now = pane.state.now;
-    let is_there = last.is_some_and(|last| now.since(last) < HOLDS_AFTER);
-    (!is_there).then(|| pane.look.say(inputs::NOBODY_SENDS))
+/// Why nobody can be followed now, if nobody sends.
+fn silence(pane: &Pane<'_>, owner: Option<Owner>) -> Option<&'static str> {
+    let is_silent = owner.is_none();
+    is_silent.then(|| pane.look.say(inputs::NOBODY_SENDS))
 }
 
 fn stream_figures_ui(ui: &mut Ui, pane: &Pane<'_>) {

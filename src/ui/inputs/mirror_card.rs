@@ -28,8 +28,8 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str
     let taken = look.say(inputs::TAKEN);
     choice.response.on_disabled_hover_text(taken);
     if let Some(mirror) = mirror {
-        let is_fresh = mirror.view.is_fresh(state.now);
-        let (answers, rate) = if is_fresh {
+        let answers = mirror.view.owner(state.now).is_some();
+        let (answers, rate) = if answers {
             (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz))
         } else {
             (inputs::ANSWERS_NOT, "-".to_owned())
@@ -108,7 +108,7 @@ fn missing(state: &State, mirror: Option<&HandMirror>) -> Option<Text> {
         Some(mirror) if state.hands.is_circle(mirror.leader, hand.label.slot) => {
             Some(inputs::CIRCLE)
         }
-        Some(mirror) if !mirror.view.is_fresh(state.now) => Some(inputs::LEADER_SILENT),
+        Some(mirror) if mirror.view.owner(state.now).is_none() => Some(inputs::LEADER_SILENT),
         Some(_) => None,
     }
 }

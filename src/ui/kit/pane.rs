@@ -35,6 +35,8 @@ pub(crate) enum ViewRequest {
     Note,
     /// The list of keys, or away with it.
     Keys,
+    /// The command palette, or away with it.
+    Palette,
 }
 
 impl Pane<'_> {

@@ -3,8 +3,7 @@
 use crate::app::readings::friction::GripState;
 use crate::app::readings::tare::{Source, TareZero};
 use crate::app::settings::Language;
-use crate::hand::Moment;
-use crate::link::PollGroup;
+use crate::hand::{Moment, RateClass};
 use crate::sim::Scenario;
 use crate::ui::style::phrase::texts;
 use crate::ui::style::{Look, format};
@@ -242,12 +241,12 @@ texts! {
     }
 
     /// What is read together.
-    fn group(PollGroup) {
-        PollGroup::Motion => "Angles, forces", "角度、受力";
-        PollGroup::Drives => "Currents, faults", "电流、故障";
-        PollGroup::Temperature => "Temperatures", "温度";
-        PollGroup::Tactile => "Fingertips", "指尖";
-        PollGroup::Settings => "Setpoints", "设定值";
+    fn group(RateClass) {
+        RateClass::Motion => "Angles, forces", "角度、受力";
+        RateClass::Drives => "Currents, faults", "电流、故障";
+        RateClass::Temperature => "Temperatures", "温度";
+        RateClass::Tactile => "Fingertips", "指尖";
+        RateClass::Settings => "Setpoints", "设定值";
     }
 
     /// A way to reach a hand, by its part before the colon, and a hint to it.

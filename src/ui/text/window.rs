@@ -63,6 +63,9 @@ texts! {
     KEY_LANGUAGE: "English or Chinese", "中文或英文";
     KEY_THEME: "Dark or light", "深色或浅色";
     KEY_LIST: "This list", "本列表";
+    KEY_COMMANDS: "Find a command", "查找命令";
+    COMMANDS: "Commands", "命令", "Type a part of a name: an act, a view, a pose", "输入名称的一部分：操作、页面、姿态";
+    COMMANDS_NONE: "Nothing is called so.", "没有匹配的命令。";
     KEY_MOTION: "Motion", "运动";
     KEY_JOINTS: "Joint that the arrows move", "方向键控制的关节";
     KEY_MEASURING: "Measuring", "测量";

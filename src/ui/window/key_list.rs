@@ -122,7 +122,7 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
     shut
 }
 
-fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
+pub(super) fn cap_ui(ui: &mut Ui, look: Look, key: &str) {
     let frame = Frame::new()
         .fill(look.palette.control)
         .corner_radius(theme::ROUND_SMALL)

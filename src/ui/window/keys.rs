@@ -82,7 +82,7 @@ const ALT: Modifiers = Modifiers::ALT;
 const HOLD_TO_RUN: Key = Key::H;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 41] = [
+pub(crate) static ROWS: [KeyRow; 42] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -164,6 +164,7 @@ pub(crate) static ROWS: [KeyRow; 41] = [
     row(COMMAND, Key::D, Wish::Theme),
     row(NONE, Key::F1, Wish::Opens(ViewRequest::Keys)),
     row(NONE, Key::Questionmark, Wish::Opens(ViewRequest::Keys)),
+    row(COMMAND, Key::K, Wish::Opens(ViewRequest::Palette)),
 ];
 
 /// The keys with which egui itself makes everything larger and smaller.
@@ -234,6 +235,7 @@ impl Wish {
             Self::Opens(ViewRequest::View(view)) => view.title(),
             Self::Opens(ViewRequest::Note) => window::KEY_NOTE,
             Self::Opens(ViewRequest::Keys) => window::KEY_LIST,
+            Self::Opens(ViewRequest::Palette) => window::KEY_COMMANDS,
             Self::Opens(ViewRequest::Drive(dof)) => words::dof(dof),
             Self::Opens(ViewRequest::Faults) => View::Faults.title(),
         }

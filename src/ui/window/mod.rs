@@ -21,6 +21,7 @@ pub(crate) mod header;
 mod key_actions;
 pub(crate) mod key_list;
 pub(crate) mod keys;
+mod palette;
 pub(crate) mod rooms;
 pub(crate) mod status;
 mod stop_first;
@@ -35,6 +36,7 @@ use crate::hand::Moment;
 use crate::ui::exhibit::{self, ExhibitPage};
 use crate::ui::hands::strips;
 use crate::ui::kit::{self, CardView, Look, Pane, Typing, ViewRequest};
+use crate::ui::poses::tiles::press;
 use crate::ui::theme;
 use crate::ui::view::View;
 use crate::ui::window::body::Body;
@@ -42,6 +44,7 @@ use crate::ui::window::cards::{card_of, is_covered};
 use crate::ui::window::key_actions::{held_key_action, key_action, zoom_action};
 use crate::ui::window::key_list::KeyList;
 use crate::ui::window::keys::{Escape, Wish};
+use crate::ui::window::palette::{Command, CommandPalette};
 use crate::ui::window::stop_first::stop_first;
 use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
 
@@ -54,6 +57,7 @@ pub struct Window {
     /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
     typed: bool,
     key_list: KeyList,
+    palette: CommandPalette,
     cards: CardView,
     /// The page that is shown in place of all else.
     exhibit: Option<ExhibitPage>,
@@ -131,7 +135,7 @@ impl Window {
             paths.find(|path| path.extension().is_some_and(|ending| ending == "mcap"))
         });
         actions.extend(dropped.map(|path| Action::Session(SessionAction::Open(path))));
-        let stopped = wishes.contains(&Wish::Stop);
+        let mut stopped = wishes.contains(&Wish::Stop);
         actions.extend(held_key_action(ui, state, &wishes));
         let mut typing = std::mem::take(&mut self.typing);
         let mut opens = None;
@@ -143,13 +147,18 @@ impl Window {
             opens: &mut opens,
         };
         for wish in wishes {
-            if let Wish::Opens(opens) = wish {
-                self.open(opens, state.now);
-            }
-            let action = key_action(ui, &mut pane, &mut self.body.own, wish);
-            pane.actions.extend(action);
+            self.obey(ui, &mut pane, wish);
         }
-        self.parts_ui(ui, &mut pane);
+        match self.parts_ui(ui, &mut pane) {
+            Some(Command::Wish(wish)) => {
+                stopped |= wish == Wish::Stop;
+                self.obey(ui, &mut pane, wish);
+            }
+            Some(Command::Entry(entry)) if pane.unready().is_none() => {
+                pane.actions.push(press(state, entry));
+            }
+            Some(Command::Entry(_)) | None => {}
+        }
         self.typing = typing;
         self.typed = ui.ctx().text_edit_focused();
         if let Some(opens) = opens {
@@ -162,6 +171,7 @@ impl Window {
     /// What Esc does now: it closes what is open while the hand rests for certain.
     fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
         let is_open = self.key_list.is_open()
+            || self.palette.is_open()
             || self.body.own.status.writes_note()
             || self.cards.informs()
             || self.typed
@@ -172,9 +182,19 @@ impl Window {
         // Popups, fields and cards do so themselves.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
+            self.palette.hide();
             self.body.own.status.drop_note();
         }
         Escape::Closes
+    }
+
+    /// What a key or a command asks for.
+    fn obey(&mut self, ui: &Ui, pane: &mut Pane<'_>, wish: Wish) {
+        if let Wish::Opens(opens) = wish {
+            self.open(opens, pane.state.now);
+        }
+        let action = key_action(ui, pane, &mut self.body.own, wish);
+        pane.actions.extend(action);
     }
 
     fn open(&mut self, opens: ViewRequest, now: Moment) {
@@ -187,6 +207,7 @@ impl Window {
             ViewRequest::Drive(dof) => self.body.own.faults.choose(Some(dof)),
             ViewRequest::Note => self.body.own.status.open_note(now),
             ViewRequest::Keys => self.key_list.toggle(),
+            ViewRequest::Palette => self.palette.toggle(),
         }
     }
 
@@ -204,7 +225,8 @@ impl Window {
         ui.set_style(style);
     }
 
-    fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws all parts; gives what was chosen in the palette.
+    fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<Command> {
         let palette = pane.look.palette;
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.window);
         let is_free = !is_covered(pane.state);
@@ -217,6 +239,7 @@ impl Window {
         let covered = ui.available_rect_before_wrap();
         if !is_free {
             self.key_list.hide();
+            self.palette.hide();
             ui.disable();
         }
         let tabs = Frame::new().inner_margin(Margin::symmetric(8, 2));
@@ -231,6 +254,9 @@ impl Window {
         self.key_list.ui(ui, below, pane.look);
         let asked = self.cards.ui(ui, covered, card_of(pane.state, pane.look));
         pane.actions.extend(asked);
+        let library = (&pane.state.poses, &pane.state.settings);
+        self.palette
+            .ui(ui, below, (pane.look, pane.unready()), library)
     }
 
     /// The bars above the tabs. STOP can be pressed in them whatever card is open, the rest only if `is_free`.

@@ -410,6 +410,28 @@ async fn no_action_moves_a_hand_or_writes_what_it_keeps_that_does_not_say_so() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn these_actions_pass_while_a_recording_is_shown_and_no_others() {
+    let mut bench = Bench::live().await;
+    let passes = all(bench.things()).into_iter();
+    let passes = passes.filter(|action| action.effect().passes_in_replay());
+    let names: BTreeSet<&str> = passes.map(|action| (&action).into()).collect();
+    let wanted = [
+        "Stop",
+        "Session",
+        "Save",
+        "SavePicture",
+        "Theme",
+        "Language",
+        "Layout",
+        "Zoom",
+        "AngleUnit",
+        "PlotWindow",
+        "ShowPlot",
+    ];
+    assert_eq!(names, BTreeSet::from(wanted));
+}
+
+#[tokio::test(start_paused = true)]
 async fn nothing_but_a_stop_reaches_a_hand_behind_a_recording() {
     let mut bench = Bench::live().await;
     let things = bench.things();

@@ -2,7 +2,6 @@
 //! and a file that is wrong is refused with the line.
 
 use handscope::hand::command::HandCommand;
-use handscope::hand::feedback::sample::touch_span;
 use handscope::hand::feedback::tactile::TactileBlock;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{
@@ -74,7 +73,7 @@ fn entries() -> Vec<Entry> {
                     tangential_n: if number % 3 == 0 { f32::NAN } else { 0.1 },
                     ..block
                 };
-                reply(touch_span(tip), &block.encode())
+                reply(Group::Tactile(tip).span(), &block.encode())
             }
         });
         match number {
@@ -248,7 +247,10 @@ fn what_no_column_says_stays_unknown() {
     let (sample, fresh) = &read[0];
     assert!(fresh.contains(Group::Angle) && !fresh.contains(Group::Force));
     assert_eq!(
-        Group::all().filter(|group| fresh.contains(*group)).count(),
+        Group::ALL
+            .into_iter()
+            .filter(|group| fresh.contains(*group))
+            .count(),
         1
     );
     let angles = handscope::hand::Quantity::Angle.documented(sample).unwrap();

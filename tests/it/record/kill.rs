@@ -6,7 +6,7 @@ use crate::setup::hand;
 use crate::setup::process::{Running, listen};
 use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
-use handscope::hand::{Group, Moment, Span, feedback::sample::touch_span, register};
+use handscope::hand::{Group, Moment, Span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{SessionFile, Stretch};
 use handscope::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
@@ -175,7 +175,7 @@ fn span(group: Group) -> Span {
         Group::Faults => register::ERROR.span(),
         Group::Status => register::STATUS.span(),
         Group::Temperature => register::TEMP.span(),
-        Group::Tactile(finger) => touch_span(finger),
+        Group::Tactile(finger) => Group::Tactile(finger).span(),
     }
 }
 
@@ -207,7 +207,10 @@ fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
                     _ => {}
                 },
                 Entry::Heard(Record::Reading { sample, fresh }) => {
-                    for group in Group::all().filter(|group| fresh.contains(*group)) {
+                    for group in Group::ALL
+                        .into_iter()
+                        .filter(|group| fresh.contains(*group))
+                    {
                         let (span, read) = (span(group), sample.memory(group).unwrap());
                         let is_it = |said: &&Said| said.part(span.address, span.len) == Some(&read);
                         while said.peek().is_some_and(|said| !is_it(said)) {

@@ -1,11 +1,11 @@
 //! What the simulated hand's bytes say over time. Servers are tested elsewhere.
 
-use handscope::hand::feedback::sample::{HandSample, Reply, touch_span};
 use handscope::hand::register::{
     ANGLE_ACT, ANGLE_SET, CURRENT, ERROR, FORCE_ACT, FORCE_SET, POS_ACT, Register, SPEED_SET,
     STATUS, TEMP,
 };
 use handscope::hand::{Dof, Fault, Finger, Moment, Span, TactileBlock};
+use handscope::hand::{Group, HandSample, Reply};
 use handscope::sim::{
     GapAnswer, MinusOne, Object, OutOfRangeWrite, Personality, SaveAnswer, SaveFrame, Scenario,
     SimConfig, SimHand, SpeedZero,
@@ -44,7 +44,7 @@ fn put(hand: &mut SimHand, address: u16, values: &[i16], ms: u64) -> usize {
 }
 
 fn block(hand: &mut SimHand, finger: Finger, ms: u64) -> TactileBlock {
-    TactileBlock::decode(&hand.read(touch_span(finger), at(ms)).unwrap()).unwrap()
+    TactileBlock::decode(&hand.read(Group::Tactile(finger).span(), at(ms)).unwrap()).unwrap()
 }
 
 #[test]

@@ -183,7 +183,7 @@ fn the_list_of_keys_opens_and_closes_and_stop_works_over_it() {
 type Opened = (fn(&mut Bench), fn(&Bench) -> bool);
 
 /// What Esc closes: the list of keys, a note, a number that is being typed, a menu.
-const OPENED: [Opened; 4] = [
+const OPENED: [Opened; 5] = [
     (|bench| bench.key(Key::F1), |bench| bench.shows("Shift+A")),
     (
         |bench| bench.key(Key::N),
@@ -196,6 +196,10 @@ const OPENED: [Opened; 4] = [
     (
         |bench| bench.click_button("Window menu"),
         |bench| bench.shows("Reset layout"),
+    ),
+    (
+        |bench| bench.key_with(Modifiers::COMMAND, Key::K),
+        |bench| bench.shows("Commands"),
     ),
 ];
 
@@ -306,4 +310,49 @@ fn tab_walks_from_the_top_bar_over_the_joints_to_the_view() {
     for pair in order.windows(2) {
         assert!(at(pair[0]) < at(pair[1]), "{pair:?} in {walked:?}");
     }
+}
+
+#[test]
+fn the_palette_finds_a_view_an_act_and_a_pose_in_either_language() {
+    let mut bench = Bench::live();
+    for (typed, view) in [("traf", View::Traffic), ("连接", View::Connection)] {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", typed);
+        bench.key(Key::Enter);
+        bench.run(100);
+        assert_eq!(bench.view(), view, "{typed}");
+        assert!(!bench.shows("Commands"), "it is closed");
+    }
+    bench.key_with(Modifiers::COMMAND, Key::K);
+    bench.run(100);
+    bench.type_into("Commands", "dark light");
+    bench.key(Key::Enter);
+    bench.run(100);
+    assert_eq!(bench.state().settings.theme, Theme::default().other());
+}
+
+#[test]
+fn the_palette_moves_only_an_armed_hand_and_esc_closes_it() {
+    let mut bench = Bench::live();
+    let take_point = |bench: &mut Bench| {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", "point");
+        bench.key(Key::Enter);
+        bench.run(1500);
+    };
+    take_point(&mut bench);
+    assert_eq!(bench.writes().len(), 0, "not armed");
+    bench.key(Key::Escape);
+    bench.run(100);
+    assert!(
+        !bench.shows("Commands") && bench.writes().is_empty(),
+        "no stop"
+    );
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.run(300);
+    take_point(&mut bench);
+    assert!(bench.angle(Dof::Ring) < 900, "it bends");
+    assert!(bench.angle(Dof::Index) > 900, "it points");
 }

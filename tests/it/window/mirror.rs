@@ -8,7 +8,7 @@ use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::slot::SlotId;
-use handscope::hand::{Angle, Dof, Fault, register};
+use handscope::hand::{Angle, Dof, Fault, Gesture, register};
 use handscope::inputs::follow::FollowPhase;
 use handscope::inputs::mirror::MirrorScale;
 use handscope::link::Owner;
@@ -218,6 +218,16 @@ fn a_lost_leader_holds_the_hand_that_it_led() {
     assert_eq!(hand.connection.status.disarmed, Some(Disarmed::Silent));
     show(&mut bench, 0);
     assert!(bench.is_disabled(Role::Button, GRANT));
+}
+
+#[test]
+fn a_gesture_does_not_take_a_hand_from_the_one_that_leads_it() {
+    let mut bench = two();
+    lead(&mut bench, 0, 1);
+    bench.act(Action::Gesture(Gesture::MIN));
+    bench.run(300);
+    let led = hand(&bench, 0).connection.outside_owner();
+    assert_eq!((led, bench.writes().len()), (Some(Owner::Mirror), 0));
 }
 
 #[test]

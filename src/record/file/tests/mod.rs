@@ -125,7 +125,9 @@ pub(crate) fn atoms(entry: &Entry) -> Vec<Atom> {
     let Entry::Heard(Record::Reading { sample, fresh }) = entry else {
         return vec![Atom::Other(Box::new(entry.clone()))];
     };
-    let own = Group::all().filter(|group| fresh.contains(*group));
+    let own = Group::ALL
+        .into_iter()
+        .filter(|group| fresh.contains(*group));
     own.filter_map(|group| {
         let (asked, received) = sample.times(group)?;
         Some(Atom::Group(group, asked, received, sample.memory(group)?))
@@ -325,7 +327,7 @@ fn a_stretch_begins_with_what_was_known_before_it() {
     assert!(times.iter().all(|at| (from..=to).contains(at)));
     let first = first.unwrap();
     let mut missing = Groups::NONE;
-    for group in Group::all().take(10) {
+    for group in Group::ALL.into_iter().take(10) {
         if first.times(group).is_none() {
             missing.insert(group);
         }

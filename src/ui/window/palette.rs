@@ -1,0 +1,219 @@
+//! The command palette: everything that has a key, each view and each pose or demo, found by a part of its name in either
+//! language. Carries nothing out.
+
+use crate::app::poses::PoseState;
+use crate::app::settings::Settings;
+use crate::poses::library::EntryId;
+use crate::ui::kit::{self, Button, Look, ViewRequest, Weight};
+use crate::ui::text::{Text, window};
+use crate::ui::theme;
+use crate::ui::view::View;
+use crate::ui::window::key_list::cap_ui;
+use crate::ui::window::keys::{ROWS, Wish};
+use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
+
+/// Most commands that are shown at once; a longer name finds the others.
+const SHOWN_MAX: usize = 10;
+/// Points.
+const WIDTH: f32 = 520.0;
+
+/// What is chosen in the palette.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Command {
+    /// What a key asks for.
+    Wish(Wish),
+    /// A pose, demo or reaction.
+    Entry(EntryId),
+}
+
+/// A command as it is listed.
+#[derive(Debug)]
+struct Listed {
+    command: Command,
+    /// In the window's language.
+    name: String,
+    /// In both languages and lower case, to be searched.
+    names: String,
+    keys: String,
+}
+
+/// The palette, shown or not.
+#[derive(Debug, Default)]
+pub(super) struct CommandPalette {
+    query: Option<Query>,
+}
+
+#[derive(Debug, Default)]
+struct Query {
+    text: String,
+    /// Which of the listed ones Enter takes.
+    chosen: usize,
+    /// It was drawn before: a click beside it hides it.
+    drawn: bool,
+}
+
+impl CommandPalette {
+    /// Shows it, or hides it.
+    pub(super) fn toggle(&mut self) {
+        self.query = match self.query {
+            None => Some(Query::default()),
+            Some(_) => None,
+        };
+    }
+
+    /// True while it is shown.
+    pub(super) const fn is_open(&self) -> bool {
+        self.query.is_some()
+    }
+
+    /// Shows it no more.
+    pub(super) fn hide(&mut self) {
+        self.query = None;
+    }
+
+    /// Draws it at the top of a place, if it is shown, and gives what was chosen. `unready` says why nothing can move the hand.
+    pub(super) fn ui(
+        &mut self,
+        ui: &Ui,
+        place: Rect,
+        (look, unready): (Look, Option<&str>),
+        (poses, settings): (&PoseState, &Settings),
+    ) -> Option<Command> {
+        let query = self.query.as_mut()?;
+        let steps = ui.input_mut(|input| {
+            let mut taken = |key| input.count_and_consume_key(Modifiers::NONE, key);
+            (
+                taken(Key::ArrowDown),
+                taken(Key::ArrowUp),
+                taken(Key::Enter),
+            )
+        });
+        let found = found(look, &query.text, poses, settings);
+        let last = found.len().saturating_sub(1);
+        query.chosen = (query.chosen + steps.0).saturating_sub(steps.1).min(last);
+        let edge = Stroke::new(theme::LINE, look.palette.accent);
+        let window = Window::new(look.say(window::COMMANDS))
+            .id(Id::unique("command palette"))
+            .title_bar(false)
+            .resizable(false)
+            .frame(Frame::window(ui.style()).stroke(edge))
+            .pivot(Align2::CENTER_TOP)
+            .fixed_pos(place.center_top() + egui::vec2(0.0, theme::PAD))
+            .constrain_to(place);
+        let shown = window.show(ui.ctx(), |ui| {
+            ui.set_width((place.width() - 4.0 * theme::PAD).min(WIDTH));
+            query.ui(ui, (look, unready), &found)
+        })?;
+        let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
+        let entered = entered.filter(|listed| unready.is_none() || !listed.command.moves());
+        let chosen = shown
+            .inner
+            .flatten()
+            .or(entered.map(|listed| listed.command));
+        let beside = query.drawn && shown.response.clicked_elsewhere();
+        query.drawn = true;
+        if chosen.is_some() || beside {
+            self.query = None;
+        }
+        chosen
+    }
+}
+
+impl Query {
+    /// Draws the field and what it finds; gives what was clicked.
+    fn ui(
+        &mut self,
+        ui: &mut Ui,
+        (look, unready): (Look, Option<&str>),
+        found: &[Listed],
+    ) -> Option<Command> {
+        let (name, hint) = look.both(window::COMMANDS);
+        let field = kit::edit_ui(ui, (name, hint), &mut self.text);
+        field.request_focus();
+        if field.changed() {
+            self.chosen = 0;
+        }
+        if found.is_empty() {
+            kit::say_ui(ui, look.say(window::COMMANDS_NONE), look.palette.muted);
+        }
+        let mut clicked = None;
+        // A few around the chosen one.
+        let from = self.chosen.saturating_sub(SHOWN_MAX - 1);
+        for (place, listed) in found.iter().enumerate().skip(from).take(SHOWN_MAX) {
+            ui.horizontal(|ui| {
+                let weight = if place == self.chosen {
+                    Weight::Strong
+                } else {
+                    Weight::Quiet
+                };
+                let why_not = unready.filter(|_| listed.command.moves());
+                let button = Button::new(&listed.name, "")
+                    .weight(weight)
+                    .disabled(why_not);
+                if button.ui(ui, look).clicked() {
+                    clicked = Some(listed.command);
+                }
+                kit::right_ui(ui, |ui| {
+                    if !listed.keys.is_empty() {
+                        cap_ui(ui, look, &listed.keys);
+                    }
+                });
+            });
+        }
+        clicked
+    }
+}
+
+impl Command {
+    /// Whether it asks a hand to move.
+    const fn moves(self) -> bool {
+        matches!(
+            self,
+            Self::Entry(_) | Self::Wish(Wish::Open | Wish::Half | Wish::Close)
+        )
+    }
+}
+
+/// All commands whose names have each word that was typed; those that begin with the first stand first.
+fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec<Listed> {
+    let said = |command, text: Text, keys| Listed {
+        command,
+        name: look.say(text).to_owned(),
+        names: format!("{} {}", text.en, text.zh).to_lowercase(),
+        keys,
+    };
+    let views = View::ALL.map(|view| Wish::Opens(ViewRequest::View(view)));
+    // What is held, and what is no act of its own, has a key only.
+    let is_act = |wish: &Wish| {
+        !matches!(
+            wish,
+            Wish::HoldToRun | Wish::Entry(_) | Wish::Hand(_) | Wish::Opens(ViewRequest::Palette)
+        ) && !views.contains(wish)
+    };
+    let mut acts: Vec<Wish> = ROWS.iter().map(|row| row.wish).filter(is_act).collect();
+    acts.dedup();
+    let wishes = acts.into_iter().chain(views);
+    let wishes = wishes.map(|wish| said(Command::Wish(wish), wish.words(), wish.keys()));
+    let entries = poses.ready(&settings.hidden_poses).into_iter();
+    let entries = entries.filter_map(|entry| {
+        let names = poses.named(entry)?;
+        let key = names.key.map(|key| format!("Shift+{}", key.get()));
+        Some(Listed {
+            command: Command::Entry(entry),
+            name: look.entry_name(poses, entry).to_owned(),
+            names: format!("{} {}", names.text, names.zh).to_lowercase(),
+            keys: key.unwrap_or_default(),
+        })
+    });
+    let typed = typed.to_lowercase();
+    let has_all = |listed: &Listed| {
+        let mut words = typed.split_whitespace();
+        words.all(|word| listed.names.contains(word))
+    };
+    let mut found: Vec<Listed> = wishes.chain(entries).filter(has_all).collect();
+    found.sort_by_key(|listed| {
+        let mut words = listed.names.split_whitespace();
+        !words.any(|word| word.starts_with(typed.trim()))
+    });
+    found
+}
