@@ -208,7 +208,7 @@ impl Backups {
     }
 
     fn attempt_with(&self, verdict: SaveVerdict) -> io::Result<String> {
-        let mut file = file::load(&self.attempt_path()).map_err(io::Error::other)?;
+        let mut file = file::load(&self.attempt_path())?;
         file.verdict = Some(verdict);
         Ok(file.to_toml())
     }
