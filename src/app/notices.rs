@@ -10,6 +10,7 @@ use crate::record::{ArmRefusal, Disarmed, SetpointConflict};
 use crate::store::FileError;
 use crate::system::SystemError;
 use crate::trials::Abort;
+use crate::trials::plan_settings::PlanReadError;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -189,11 +190,7 @@ pub enum NoticeKind {
     /// A file was written.
     Saved { path: PathBuf, entries: usize },
     /// A file could not be written.
-    NotSaved {
-        path: PathBuf,
-        /// The system's words.
-        message: String,
-    },
+    NotSaved { path: PathBuf, error: SystemError },
     /// A session could not be deleted.
     NotDeleted {
         /// The file.
@@ -215,10 +212,7 @@ pub enum NoticeKind {
         last_seen: String,
     },
     /// The plan of trials of the last time cannot be taken.
-    PlanIgnored {
-        /// Why.
-        message: String,
-    },
+    PlanIgnored { error: PlanReadError },
     /// The remembered hand's spelling means nothing.
     EndpointIgnored {
         /// What the file says.
@@ -229,8 +223,8 @@ pub enum NoticeKind {
 impl NoticeKind {
     /// A file could not be written there.
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
-        let message = error.to_string();
-        Self::NotSaved { path, message }
+        let error = error.into();
+        Self::NotSaved { path, error }
     }
 
     /// A session could not be deleted.

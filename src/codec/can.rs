@@ -54,11 +54,11 @@ pub struct CanFrame {
 /// The parts of an identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CanId {
-    /// Read or write.
+    /// Whether the frame reads or writes memory.
     pub way: CanFunction,
     /// First byte's address, 0..=4095.
     pub address: u16,
-    /// The hand, 0..=16383.
+    /// Id of the hand, 0..=16383.
     pub hand: u16,
 }
 

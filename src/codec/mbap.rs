@@ -14,7 +14,7 @@ const LENGTH_MIN: u16 = 2;
 /// Unit, function and 252 bytes of data.
 const LENGTH_MAX: u16 = 254;
 
-/// One whole message.
+/// One Modbus TCP message: header, unit and PDU.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adu {
     /// The number by which a reply belongs to its request.
@@ -50,13 +50,13 @@ pub enum MbapError {
     /// The protocol id is not 0.
     #[error("the other side does not speak Modbus TCP: protocol id {got} instead of 0")]
     Protocol {
-        /// What was received.
+        /// Value of the header's field as received.
         got: u16,
     },
     /// The length field is impossible.
     #[error("a Modbus TCP message says {got} bytes; possible are 2 to 254")]
     Length {
-        /// What was received.
+        /// Value of the header's field as received.
         got: u16,
     },
 }

@@ -17,6 +17,6 @@ pub struct NoiseCounts {
     pub checksum_errors: u64,
     /// Runs of bytes that had to be skipped to find the next good one.
     pub resyncs: u64,
-    /// Bytes skipped.
+    /// Bytes skipped because no frame began with them.
     pub skipped_bytes: u64,
 }

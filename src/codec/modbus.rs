@@ -56,7 +56,7 @@ fn holds_bytes(address: u16) -> bool {
 pub enum ModbusWrite {
     /// Function 6 (manual 2.5.2), for one-byte registers: the value as a number at the byte address.
     Single {
-        /// Byte address.
+        /// Address in the hand's memory, which counts bytes.
         address: u16,
         /// The byte, 0..=255.
         value: u16,

@@ -8,10 +8,10 @@ const BYTES_MAX: u8 = 250;
 /// Most bytes that one write carries: 123 words, by the standard.
 const WRITTEN_MAX: u8 = 246;
 
-/// Which side says it.
+/// Side of the conversation that sends a PDU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModbusRole {
-    /// Who asks.
+    /// The side that sends requests: this program, or a client of the gateway.
     Client,
     /// The hand.
     Server,
@@ -24,14 +24,14 @@ pub enum Pdu<'a> {
     Read {
         /// First byte's address.
         address: u16,
-        /// Words.
+        /// Number of words.
         count: u16,
     },
     /// Function 03, answered.
     Words(&'a [u8]),
     /// Function 06, asked or answered.
     WriteOne {
-        /// Byte address.
+        /// Address in the hand's memory, which counts bytes.
         address: u16,
         /// The word.
         value: u16,
@@ -42,26 +42,26 @@ pub enum Pdu<'a> {
         address: u16,
         /// Words that are announced.
         count: u16,
-        /// The words.
+        /// The words as they stand in the PDU, high byte first.
         words: &'a [u8],
     },
     /// Function 16, answered.
     Written {
         /// First byte's address.
         address: u16,
-        /// Words.
+        /// Number of words.
         count: u16,
     },
     /// The hand said no.
     Exception {
         /// The function that was asked, without the top bit.
         function: u8,
-        /// Why.
+        /// Exception code.
         code: u8,
     },
     /// A function that this hand does not know, or one of the wrong length.
     Other {
-        /// Its code.
+        /// Function code of the request.
         function: u8,
     },
 }

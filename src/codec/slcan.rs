@@ -40,12 +40,12 @@ pub enum SlcanCommand {
     Other(u8),
 }
 
-/// What an adapter says.
+/// One answer of an slcan adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SlcanAnswer {
-    /// CR alone.
+    /// CR alone: the command was carried out.
     Done,
-    /// BEL.
+    /// BEL: the command was rejected.
     Failed,
     /// `z` or `Z`: the frame is on its way.
     Sent,

@@ -35,7 +35,7 @@ const DATA: u8 = 0;
 /// A packet as it is sent.
 pub type Packet = ArrayVec<u8, PACKET_MAX>;
 
-/// What a packet brings.
+/// Content of one packet from the adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PacketContent {
     /// A data frame with a 29-bit identifier.
@@ -53,9 +53,9 @@ pub enum PacketStart {
     BadSum {
         /// Its bytes.
         len: usize,
-        /// As sent.
+        /// Checksum in the packet.
         got: u8,
-        /// Of what was sent.
+        /// Checksum computed over the packet.
         want: u8,
     },
     /// Too few bytes to tell.

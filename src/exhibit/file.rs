@@ -97,9 +97,8 @@ pub struct NamedFile<'a> {
 
 impl NamedFile<'_> {
     /// The error of the file that names it, because of this one.
-    pub fn refused(&self, why: &dyn std::fmt::Display) -> FileError {
-        let what = format!("{}: {why}", self.path.display());
-        let cause = FileCause::Unreadable(what);
+    pub fn refused(&self, why: FileError) -> FileError {
+        let cause = why.of_named(self.path.display().to_string()).cause;
         self.source.blame(self.at.clone(), self.field, cause)
     }
 

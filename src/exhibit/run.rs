@@ -471,10 +471,13 @@ impl ExhibitRun {
         if !std::mem::replace(&mut self.is_live, true) {
             let slept =
                 std::mem::take(&mut self.slept) || status.disarmed == Some(Disarmed::Resume);
-            self.phase = Phase::Halted(match std::mem::replace(&mut self.was_live, true) {
-                true if slept => HaltReason::Slept,
-                true => HaltReason::LinkLost,
-                false => HaltReason::NotArmed,
+            let was_live = std::mem::replace(&mut self.was_live, true);
+            self.phase = Phase::Halted(if !was_live {
+                HaltReason::NotArmed
+            } else if slept {
+                HaltReason::Slept
+            } else {
+                HaltReason::LinkLost
             });
             self.held = None;
         }

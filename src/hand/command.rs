@@ -27,6 +27,18 @@ pub enum GestureRoute {
 
 /// What a hand may be told at any time: motion, limits, and to clear its errors. What it keeps, and what it does alone, are
 /// [`Setting`](crate::hand::Setting) and [`Trigger`](crate::hand::Trigger).
+///
+/// ```
+/// use handscope::hand::{Angle, Dof, HandCommand, PerDof, Target};
+///
+/// let mut targets = PerDof::splat(Target::Leave);
+/// targets[Dof::Index] = Target::Go(Angle::new(500)?);
+/// let writes = HandCommand::Angles(targets).writes();
+/// assert_eq!(writes[0].address(), 1486);
+/// // -1 for each joint that stays, 500 for the index finger.
+/// assert_eq!(writes[0].bytes()[4..8], [0xFF, 0xFF, 0xF4, 0x01]);
+/// # Ok::<(), handscope::hand::OutOfRange>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum HandCommand {
@@ -50,7 +62,7 @@ pub struct RegisterWrite {
 }
 
 impl RegisterWrite {
-    /// Where it goes.
+    /// The bytes of the hand's memory that it writes.
     pub const fn span(&self) -> Span {
         self.span
     }

@@ -16,7 +16,7 @@ pub const FRESH_FOR: Duration = Duration::from_secs(5);
 /// A drive that is warm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct DriveHeat {
-    /// Whose drive.
+    /// Joint whose drive is warm.
     pub dof: Dof,
     /// °C, at least [`WARM`].
     pub celsius: u8,

@@ -10,7 +10,7 @@ use glam::{Affine3, EulerRot, Mat3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::FRAC_PI_2;
 
-/// Which hand.
+/// Left or right hand; the model is the same, mirrored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {

@@ -49,7 +49,7 @@ impl Moment {
 /// A value with the moments its request left and its reply arrived.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timed<T> {
-    /// What was read.
+    /// The value as it was decoded.
     pub value: T,
     /// When the request left: the value cannot be older than this.
     pub asked: Moment,

@@ -41,7 +41,7 @@ pub struct QuantityRow {
     pub json_name: &'static str,
     /// The unit in ASCII, as tables and text have it; empty if there is none.
     pub unit: &'static str,
-    /// Digits after the point.
+    /// Digits after the decimal point when shown.
     pub decimals: usize,
     /// The scale of a plot never shows less than this.
     pub least_scale: (f64, f64),

@@ -52,7 +52,7 @@ impl ModbusException {
         }
     }
 
-    /// Its code.
+    /// The exception code on the wire (manual 2.4).
     pub const fn code(self) -> u8 {
         match self {
             Self::IllegalFunction => 1,

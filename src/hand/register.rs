@@ -8,7 +8,7 @@ use std::fmt;
 pub struct Span {
     /// First byte.
     pub address: u16,
-    /// Number of bytes.
+    /// Number of bytes, at least 1.
     pub len: u16,
 }
 
@@ -47,7 +47,7 @@ pub enum Element {
     Tactile,
 }
 
-/// Who may do what.
+/// Whether the register is read only or read and written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Access {
     /// Only read.
@@ -61,13 +61,13 @@ pub enum Access {
 /// What happens to a value when the power goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Persistence {
-    /// Gone.
+    /// Lost at power-off.
     #[serde(rename = "no")]
     Volatile,
     /// Kept once SAVE was written.
     #[serde(rename = "by SAVE")]
     Saved,
-    /// Measured, not kept.
+    /// Measured anew with each reading.
     #[serde(rename = "live")]
     Live,
 }
@@ -88,10 +88,10 @@ pub struct Register {
     pub name: &'static str,
     /// First byte.
     pub address: u16,
-    /// Bytes.
+    /// Length of the whole register in bytes.
     #[serde(rename = "bytes")]
     pub len: u16,
-    /// What an element is.
+    /// Type of one element: byte, short, fingertip block.
     pub element: Element,
     /// Read, or read and write.
     pub access: Access,
@@ -103,15 +103,15 @@ pub struct Register {
     pub default: Option<i32>,
     /// Unit, empty if none.
     pub unit: &'static str,
-    /// Kept or not.
+    /// Whether the value survives power-off, and when it is stored.
     #[serde(rename = "kept")]
     pub persistence: Persistence,
     /// Section of the manual.
     pub section: &'static str,
-    /// Manual or field.
+    /// Whether the manual's table lists it, or only programs in the field use it.
     #[serde(skip)]
     pub origin: Origin,
-    /// One sentence.
+    /// What it means, as one sentence for `handscope registers`.
     pub meaning: &'static str,
 }
 
@@ -484,7 +484,7 @@ pub enum BytePacking {
 }
 
 impl BytePacking {
-    /// All.
+    /// All byte packings.
     pub const ALL: [Self; 3] = [Self::LowFirst, Self::HighFirst, Self::OnePerWord];
 
     /// As a person writes it in an endpoint.

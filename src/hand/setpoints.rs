@@ -24,11 +24,11 @@ pub struct ArmEpoch(pub u64);
 pub struct Setpoints {
     /// The arming they belong to; in any other they are dropped.
     pub epoch: ArmEpoch,
-    /// Angles to go to.
+    /// Target angles; `None` leaves ANGLE_SET of the joint as it is.
     pub angle: PerDof<Option<Target>>,
-    /// Force thresholds.
+    /// Force thresholds; `None` leaves FORCE_SET of the joint as it is.
     pub force: PerDof<Option<Force>>,
-    /// Speeds.
+    /// Speeds; `None` leaves SPEED_SET of the joint as it is.
     pub speed: PerDof<Option<Speed>>,
 }
 

@@ -82,7 +82,7 @@ pub enum Trigger {
 }
 
 impl Trigger {
-    /// The register write.
+    /// The register write that starts it.
     pub fn write(self) -> RegisterWrite {
         let row = match self {
             Self::Save => &register::SAVE,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct OutOfRange {
     /// The register family, as in the manual.
     pub what: &'static str,
-    /// What was given.
+    /// Value that was rejected.
     pub got: i64,
     /// Smallest allowed.
     pub min: i64,

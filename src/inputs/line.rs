@@ -98,7 +98,7 @@ impl StreamLine {
         if line.len() > LINE_MAX {
             return Err(LineFault::TooLong);
         }
-        let raw: Raw = serde_json::from_slice(line).map_err(|unread| malformed(line, &unread))?;
+        let raw: Raw = serde_json::from_slice(line).map_err(|_unread| malformed(line))?;
         if raw.v.is_some_and(|version| version != LINE_VERSION) {
             return Err(LineFault::Version);
         }
@@ -147,14 +147,11 @@ fn angle(share: f64) -> Result<Angle, LineFault> {
 }
 
 /// JSON has no word for what is no finite number; many senders write one anyway, or a number that is too large to be one.
-fn malformed(line: &[u8], unread: &serde_json::Error) -> LineFault {
-    if !begins_message(line) {
-        return LineFault::Malformed;
-    }
-    let words: [&[u8]; 2] = [b"NaN", b"Infinity"];
-    let has = |word: &&[u8]| line.windows(word.len()).any(|part| part == *word);
-    let is_too_large = unread.to_string().starts_with("number out of range");
-    if is_too_large || words.iter().any(has) {
+fn malformed(line: &[u8]) -> LineFault {
+    let is_in_number = |byte: &u8| byte.is_ascii_alphanumeric() || b"+-.".contains(byte);
+    let mut words = line.split(|byte| !is_in_number(byte)).map(str::from_utf8);
+    let is_not_finite = |word: &str| word.parse().is_ok_and(|number: f64| !number.is_finite());
+    if begins_message(line) && words.any(|word| word.is_ok_and(is_not_finite)) {
         LineFault::NotFinite
     } else {
         LineFault::Malformed

@@ -11,13 +11,13 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// What a link is opened with.
 #[derive(Clone)]
 pub struct LinkConfig {
-    /// The hand.
+    /// Where the hand is and how it is spoken to.
     pub endpoint: Endpoint,
     /// How often to read what.
     pub rates: PollRates,
     /// The program's clock.
     pub clock: Clock,
-    /// How wires are opened.
+    /// How wires are opened; tests put a simulated hand here.
     pub dial: Arc<dyn Dial>,
     /// Called when a record waits.
     pub wake: Wake,

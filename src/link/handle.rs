@@ -24,6 +24,29 @@ pub const RECORDS_MAX: usize = 1024;
 
 /// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
 /// told last.
+///
+/// ```no_run
+/// # async fn example() -> Result<(), Box<dyn std::error::Error>> {
+/// use handscope::hand::register;
+/// use handscope::link::{self, Clock, LinkConfig, PollRates};
+/// use handscope::transport::SystemDial;
+/// use std::sync::Arc;
+///
+/// let config = LinkConfig {
+///     endpoint: "rs485:/dev/ttyUSB0".parse()?,
+///     rates: PollRates::default(),
+///     clock: Clock::start(),
+///     dial: Arc::new(SystemDial),
+///     wake: Arc::new(|| ()),
+/// };
+/// let (hand, mut records) = link::open(config, &tokio::runtime::Handle::current());
+/// println!("{:?}", hand.read(register::HAND_ID.span()).await?);
+/// while let Some(record) = records.next().await {
+///     println!("{record:?}");
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct LinkHandle(Arc<LinkShared>);
 

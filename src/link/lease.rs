@@ -74,9 +74,9 @@ impl HoldToRun {
 /// Who has the right now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LeaseHolder {
-    /// What it was granted.
+    /// The right to move the hand.
     pub lease: Lease,
-    /// Who it is.
+    /// Who holds the right.
     pub owner: Owner,
 }
 

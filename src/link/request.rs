@@ -74,7 +74,7 @@ pub enum RequestError {
     /// Too many requests wait already.
     #[error("{limit} requests wait already: nothing was sent")]
     Full {
-        /// The queue's length.
+        /// Requests that the queue holds.
         limit: usize,
     },
     /// This wire cannot carry it.
@@ -82,7 +82,7 @@ pub enum RequestError {
     TooLong {
         /// First byte.
         address: u16,
-        /// Bytes.
+        /// Number of bytes asked for.
         len: u16,
     },
     /// The hand did not answer in time. Whether it acted is not known.
@@ -100,7 +100,7 @@ pub enum RequestError {
     Refused {
         /// First byte.
         address: u16,
-        /// Why.
+        /// The hand's reason.
         reason: Refusal,
     },
     /// The hand answered something that does not fit the request.
@@ -108,9 +108,9 @@ pub enum RequestError {
     WrongLength {
         /// First byte.
         address: u16,
-        /// What came.
+        /// Bytes received.
         got: usize,
-        /// What was asked.
+        /// Bytes expected.
         want: usize,
     },
     /// An earlier, unanswered request for the same address may still be answered, and the two could not be told apart.

@@ -10,9 +10,9 @@ use crate::transport::TransportError;
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct LinkStatus {
-    /// Where it stands.
+    /// Connection, arming and stop as one state.
     pub state: LinkState,
-    /// Since when.
+    /// When `state` began.
     pub since: Moment,
     /// What is being tried while there is no wire.
     pub dialling: Dialling,
@@ -111,7 +111,7 @@ pub enum LinkTrouble {
     /// The hand answered and then fell silent for several requests in a row.
     #[error("the hand stopped answering: {silent} requests without a reply")]
     Silent {
-        /// Requests in a row.
+        /// Requests in a row without a reply.
         silent: u32,
     },
     /// Late replies could no longer be told from fresh ones, so the line was closed.
@@ -122,7 +122,7 @@ pub enum LinkTrouble {
     /// This computer slept.
     #[error("this computer was asleep for {slept_s} s: what was shown before is old")]
     Suspended {
-        /// Seconds.
+        /// Seconds of sleep by the system's clock.
         slept_s: u64,
     },
 }

@@ -24,7 +24,7 @@ pub const PIECES_AT_ONCE: usize = 2048;
 pub struct Pieces {
     /// In order, at most [`PIECES_AT_ONCE`].
     pub pieces: Vec<Piece>,
-    /// Where to go on.
+    /// Place in the stream to ask for next.
     pub next: u64,
     /// Pieces that went out of the ring before they were asked for.
     pub lost: u64,

@@ -2,9 +2,9 @@
 //! all in the form of [`crate::params::file`]. Writes to no hand.
 
 use crate::params::file;
-use crate::params::file::ParamsFile;
+use crate::params::file::{ParamsFile, SaveVerdict};
 use crate::params::values::Params;
-use crate::record::{SaveDoubt, Saved};
+use crate::record::Saved;
 use crate::store::calendar::stamp;
 use crate::store::{FileError, replace_keeping_last};
 use crate::transport::Endpoint;
@@ -36,23 +36,6 @@ pub struct Known {
     pub saved: Option<ParamsFile>,
     /// A later SAVE whose result is not known.
     pub doubtful: Option<ParamsFile>,
-}
-
-/// The result of a SAVE as far as it is known, as a stable word for files and JSON.
-pub const fn saved_name(saved: &Saved) -> &'static str {
-    match saved {
-        Saved::Confirmed => "confirmed",
-        Saved::ReadBack => "read_back",
-        Saved::Failed { .. } => "failed",
-        Saved::Unknown { why } => match why {
-            SaveDoubt::NoResult => "unknown: no result",
-            SaveDoubt::Unanswered => "unknown: not acknowledged",
-            SaveDoubt::NotReadBack => "unknown: not read back",
-            SaveDoubt::LinkLost => "unknown: link lost",
-        },
-        Saved::Refused { .. } => "refused",
-        Saved::NotSent(_) => "not_sent",
-    }
 }
 
 /// The folder of all hands, beside the settings.
@@ -197,7 +180,7 @@ impl Backups {
     /// What the system says. Then no SAVE should be sent.
     pub fn note_attempt(&self, params: &Params, since_1970: Duration) -> io::Result<()> {
         let file = ParamsFile {
-            verdict: "unknown: under way".into(),
+            verdict: Some(SaveVerdict::UnderWay),
             ..self.file(params, "save", since_1970)
         };
         replace_keeping_last(&self.attempt_path(), &file.to_toml())
@@ -208,7 +191,7 @@ impl Backups {
     /// # Errors
     /// What the system says, or what is wrong with the note. The SAVE is then noted as of unknown result.
     pub fn note_result(&self, saved: &Saved) -> io::Result<()> {
-        let text = self.attempt_with(saved_name(saved))?;
+        let text = self.attempt_with(saved.into())?;
         if matches!(saved, Saved::Confirmed | Saved::ReadBack) {
             replace_keeping_last(&self.saved_path(), &text)?;
         }
@@ -220,13 +203,13 @@ impl Backups {
     /// # Errors
     /// As [`Self::note_result`].
     pub fn note_not_done(&self) -> io::Result<()> {
-        let text = self.attempt_with("refused")?;
+        let text = self.attempt_with(SaveVerdict::Refused)?;
         replace_keeping_last(&self.attempt_path(), &text)
     }
 
-    fn attempt_with(&self, verdict: &str) -> io::Result<String> {
-        let mut file = file::load(&self.attempt_path()).map_err(io::Error::other)?;
-        file.verdict = verdict.into();
+    fn attempt_with(&self, verdict: SaveVerdict) -> io::Result<String> {
+        let mut file = file::load(&self.attempt_path())?;
+        file.verdict = Some(verdict);
         Ok(file.to_toml())
     }
 
@@ -259,7 +242,8 @@ impl Backups {
         let attempt = optional(self.attempt_path())?;
         Ok(Known {
             saved: optional(self.saved_path())?,
-            doubtful: attempt.filter(|file| file.verdict.starts_with("unknown")),
+            doubtful: attempt
+                .filter(|file| file.verdict.as_ref().is_some_and(SaveVerdict::is_in_doubt)),
         })
     }
 
@@ -285,7 +269,7 @@ impl Backups {
 mod tests {
     use super::*;
     use crate::params::rows::{ParamId, Value};
-    use crate::record::NotSent;
+    use crate::record::{NotSent, SaveDoubt};
 
     fn record(folder: &tempfile::TempDir) -> Backups {
         let hand = "rtu:/dev/../x?id=7".parse().unwrap();
@@ -406,14 +390,46 @@ mod tests {
         record.note_attempt(&params(3), at(20)).unwrap();
         record.note_result(&Saved::ReadBack).unwrap();
         let known = record.known().unwrap().saved.unwrap();
-        assert_eq!(
-            (known.verdict.as_str(), known.params),
-            ("read_back", params(3))
-        );
+        let expected = (Some(SaveVerdict::ReadBack), params(3));
+        assert_eq!((known.verdict, known.params), expected);
         assert!(
             record.since_attempt(std::time::SystemTime::now()).unwrap() < Duration::from_secs(60)
         );
         record.forget_saved().unwrap();
         assert_eq!(record.known().unwrap(), Known::default());
+    }
+
+    #[test]
+    fn the_words_of_earlier_files_say_what_is_in_doubt() {
+        let folder = tempfile::tempdir().unwrap();
+        let record = record(&folder);
+        for (word, in_doubt) in [
+            ("confirmed", false),
+            ("read_back", false),
+            ("failed", false),
+            ("refused", false),
+            ("not_sent", false),
+            ("unknown: under way", true),
+            ("unknown: no result", true),
+            ("unknown: not acknowledged", true),
+            ("unknown: not read back", true),
+            ("unknown: link lost", true),
+            ("unknown: of a later version", true),
+            ("a word of a later version", true),
+        ] {
+            let text = format!(
+                "format = \"handscope-params\"\nversion = 1\nverdict = \"{word}\"\nhand_id = 1\n"
+            );
+            std::fs::create_dir_all(record.folder()).unwrap();
+            std::fs::write(record.attempt_path(), text).unwrap();
+            let doubtful = record.known().unwrap().doubtful;
+            assert_eq!(doubtful.is_some(), in_doubt, "{word}");
+            if let Some(file) = doubtful {
+                assert_eq!(file.verdict_text(), word);
+            }
+        }
+        record.note_attempt(&params(1), at(0)).unwrap();
+        let attempt = std::fs::read_to_string(record.attempt_path()).unwrap();
+        assert!(attempt.contains("verdict = \"unknown: under way\""));
     }
 }

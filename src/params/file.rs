@@ -3,6 +3,7 @@
 
 use crate::params::rows::{DEFAULT_FORCE, DEFAULT_SPEED, ParamId};
 use crate::params::values::Params;
+use crate::record::{SaveDoubt, Saved};
 use crate::store::toml_file::{self, VERSION};
 use crate::store::{FileCause, FileError, FileText};
 use std::path::Path;
@@ -28,14 +29,80 @@ pub struct ParamsFile {
     /// Why it was written: `dump`, `before save`, …
     pub why: String,
     /// For what was saved: what is known of the SAVE.
-    pub verdict: String,
+    pub verdict: Option<SaveVerdict>,
     /// The values.
     pub params: Params,
     /// Keys of a later version, kept as they are.
     pub others: Table,
 }
 
+/// What is known of a SAVE. Files and JSON hold its `Display`, which `FromStr` reads again.
+#[derive(Debug, Clone, PartialEq, Eq, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "snake_case")]
+pub enum SaveVerdict {
+    Confirmed,
+    ReadBack,
+    Failed,
+    Refused,
+    NotSent,
+    /// It was about to be sent, and the program ended before the result.
+    #[strum(serialize = "unknown: under way")]
+    UnderWay,
+    #[strum(serialize = "unknown: no result")]
+    NoResult,
+    #[strum(serialize = "unknown: not acknowledged")]
+    Unanswered,
+    #[strum(serialize = "unknown: not read back")]
+    NotReadBack,
+    #[strum(serialize = "unknown: link lost")]
+    LinkLost,
+    /// Of another version of this program.
+    #[strum(default)]
+    Other(String),
+}
+
+impl SaveVerdict {
+    /// Whether flash may hold what was to be saved, and may not.
+    pub const fn is_in_doubt(&self) -> bool {
+        match self {
+            Self::Confirmed | Self::ReadBack | Self::Failed | Self::Refused | Self::NotSent => {
+                false
+            }
+            Self::UnderWay
+            | Self::NoResult
+            | Self::Unanswered
+            | Self::NotReadBack
+            | Self::LinkLost
+            | Self::Other(_) => true,
+        }
+    }
+}
+
+impl From<&Saved> for SaveVerdict {
+    fn from(saved: &Saved) -> Self {
+        match saved {
+            Saved::Confirmed => Self::Confirmed,
+            Saved::ReadBack => Self::ReadBack,
+            Saved::Failed { .. } => Self::Failed,
+            Saved::Unknown { why } => match why {
+                SaveDoubt::NoResult => Self::NoResult,
+                SaveDoubt::Unanswered => Self::Unanswered,
+                SaveDoubt::NotReadBack => Self::NotReadBack,
+                SaveDoubt::LinkLost => Self::LinkLost,
+            },
+            Saved::Refused { .. } => Self::Refused,
+            Saved::NotSent(_) => Self::NotSent,
+        }
+    }
+}
+
 impl ParamsFile {
+    /// What is known of the SAVE, as the file has it; empty if it says nothing.
+    pub fn verdict_text(&self) -> String {
+        let verdict = self.verdict.as_ref();
+        verdict.map(SaveVerdict::to_string).unwrap_or_default()
+    }
+
     /// The text of the file.
     pub fn to_toml(&self) -> String {
         let mut table = Table::new();
@@ -45,7 +112,7 @@ impl ParamsFile {
             ("hand", &self.hand),
             ("at", &self.at),
             ("why", &self.why),
-            ("verdict", &self.verdict),
+            ("verdict", &self.verdict_text()),
         ];
         for (key, text) in words.into_iter().filter(|(_, text)| !text.is_empty()) {
             put(&mut table, key, text.as_str());
@@ -93,7 +160,10 @@ pub fn read(text: &str) -> Result<ParamsFile, FileError> {
         hand: word(&mut table, "hand")?,
         at: word(&mut table, "at")?,
         why: word(&mut table, "why")?,
-        verdict: word(&mut table, "verdict")?,
+        // No word fails to be read: one that is not known is `Other`.
+        verdict: Some(word(&mut table, "verdict")?)
+            .filter(|text| !text.is_empty())
+            .and_then(|text| text.parse().ok()),
         ..ParamsFile::default()
     };
     for name in GROUPS {

@@ -123,7 +123,7 @@ impl fmt::Display for Disarmed {
             Self::Resume => "this computer slept",
             Self::OtherController => "another controller talks to the hand",
             Self::Released => "it was let go",
-            Self::Silent => "it asked nothing for too long",
+            Self::Silent => "nothing was asked of it for too long",
             Self::Hot => "a drive is too hot",
         })
     }

@@ -97,10 +97,12 @@ impl DesktopApp {
         let moves = |hand: &Hand| {
             hand.connection.status.rest == Rest::Moving || Mover::of(hand, state.now).is_some()
         };
-        match state.hands.iter().any(moves) {
-            true => FRAME_WITHIN,
-            false if self.is_software => FRAME_AT_REST_IN_SOFTWARE_WITHIN,
-            false => FRAME_AT_REST_WITHIN,
+        if state.hands.iter().any(moves) {
+            FRAME_WITHIN
+        } else if self.is_software {
+            FRAME_AT_REST_IN_SOFTWARE_WITHIN
+        } else {
+            FRAME_AT_REST_WITHIN
         }
     }
 

@@ -90,7 +90,12 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<Option<String>> {
         about => about?,
     };
     if !about.is_file() {
-        return Err(io::Error::other("it is not a file"));
+        let kind = if about.is_dir() {
+            io::ErrorKind::IsADirectory
+        } else {
+            io::ErrorKind::InvalidInput
+        };
+        return Err(io::Error::new(kind, "it is not a file"));
     }
     if about.len() > limit {
         let got = about.len();

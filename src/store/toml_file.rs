@@ -2,6 +2,7 @@
 //! of them.
 
 use crate::store::read_text;
+use crate::system::SystemError;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::io;
@@ -27,9 +28,15 @@ pub struct FileError {
 /// What is wrong with a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileCause {
-    /// Not TOML, or a value that does not fit its field.
+    /// Not TOML, or not a row of a table, or a value that does not fit its field.
     #[error("{0}")]
-    Toml(String),
+    Form(String),
+    /// Another table.
+    #[error("this is not a table of samples")]
+    NotSamples,
+    /// Not a picture.
+    #[error("{0}")]
+    Picture(String),
     /// Another kind of file.
     #[error("this is another kind of file: its format is \"{got}\", not \"{wanted}\"")]
     Format {
@@ -83,7 +90,27 @@ pub enum FileCause {
     Empty,
     /// The system could not read it.
     #[error("it cannot be read: {0}")]
-    Unreadable(String),
+    Unreadable(SystemError),
+    /// A file that this one names is rejected.
+    #[error("it cannot be read: {path}: {}", .error.reason())]
+    Named { path: String, error: Box<FileError> },
+}
+
+impl FileError {
+    /// The error of the file that names this one.
+    pub fn of_named(self, path: String) -> Self {
+        let error = Box::new(self);
+        FileCause::Named { path, error }.into()
+    }
+
+    /// What is wrong, where it is said already that the file cannot be read.
+    fn reason(&self) -> String {
+        match &self.cause {
+            FileCause::Unreadable(why) => why.to_string(),
+            FileCause::Named { path, error } => format!("{path}: {}", error.reason()),
+            _ => self.to_string(),
+        }
+    }
 }
 
 /// Line and field, as they stand before the cause.
@@ -105,7 +132,16 @@ impl From<FileCause> for FileError {
 
 impl From<io::Error> for FileError {
     fn from(error: io::Error) -> Self {
-        FileCause::Unreadable(error.to_string()).into()
+        FileCause::Unreadable(error.into()).into()
+    }
+}
+
+impl From<FileError> for io::Error {
+    fn from(error: FileError) -> Self {
+        match &error.cause {
+            FileCause::Unreadable(system) => Self::new(system.kind, error),
+            _ => Self::new(io::ErrorKind::InvalidData, error),
+        }
     }
 }
 
@@ -120,7 +156,7 @@ pub fn load<T>(
 ) -> Result<T, FileError> {
     match read_text(path, limit)? {
         Some(text) => read(&text),
-        None => Err(io::Error::other("there is no such file").into()),
+        None => Err(io::Error::new(io::ErrorKind::NotFound, "there is no such file").into()),
     }
 }
 
@@ -163,7 +199,7 @@ impl<'a> FileText<'a> {
     /// What it holds.
     ///
     /// # Errors
-    /// [`FileCause::Toml`] with line and field.
+    /// [`FileCause::Form`] with line and field.
     pub fn parse<T: DeserializeOwned>(self) -> Result<T, FileError> {
         toml::from_str(self.0).map_err(|error| self.toml_error(&error))
     }
@@ -180,7 +216,7 @@ impl<'a> FileText<'a> {
         FileError {
             field: named.or_else(|| self.key_before(span.start)),
             line: error.span().map(|span| self.line(span.start)),
-            cause: FileCause::Toml(said),
+            cause: FileCause::Form(said),
         }
     }
 

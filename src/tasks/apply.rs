@@ -29,13 +29,13 @@ pub struct Apply {
 /// What follows if not every row was applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Otherwise {
-    /// Those that were stay.
+    /// Rows that were already written stay as they are.
     Stay,
     /// The hand gets back what it held.
     Undo,
 }
 
-/// The result.
+/// Outcome of applying parameters, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Applied {
     /// What the hand held before.

@@ -28,7 +28,7 @@ const MEASURE_FOR: Duration = Duration::from_millis(1500);
 /// What it takes at most. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
 pub const TAKES: Duration = Duration::from_secs(8);
 
-/// What must be so.
+/// Condition for calibrating the force sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Check {
     /// Every joint is open.
@@ -165,7 +165,7 @@ pub enum CalibrateStep {
     Measuring,
 }
 
-/// The result.
+/// Outcome of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrateReport {
     /// How it ended, or why it was not sent.

@@ -23,7 +23,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// What an exhibition begins with.
 #[derive(Debug, Clone)]
 pub struct ExhibitStart {
-    /// What may be played.
+    /// Motions that visitors may start, and their limits.
     pub plan: Arc<ExhibitPlan>,
     /// Joints that are left alone.
     pub locked: PerDof<bool>,
@@ -40,7 +40,7 @@ pub struct ExhibitStart {
 pub struct PageDrawn(AtomicU64);
 
 impl PageDrawn {
-    /// It was drawn.
+    /// Notes that the page was drawn; the hand is stopped if this stays out.
     pub fn mark(&self, now: Moment) {
         self.0.store(now.micros(), Ordering::Relaxed);
     }
@@ -57,7 +57,7 @@ pub enum ExhibitStep {
     View(ExhibitView),
     /// The hand was told this.
     Sent(Setpoints),
-    /// Something to be counted.
+    /// Event for the report of the day.
     Event(ExhibitEvent),
 }
 

@@ -36,7 +36,7 @@ pub struct FollowTerms {
     pub hold: HoldToRun,
 }
 
-/// What following begins with.
+/// Settings and rights with which following begins.
 #[derive(Debug, Clone)]
 pub struct FollowStart {
     /// The right to move the hand, granted by a person for this source.
@@ -54,7 +54,7 @@ pub struct FollowStart {
 /// What is shown of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowView {
-    /// What goes on.
+    /// Phase of following, as the window shows it.
     pub phase: FollowPhase,
     /// Where the joints were sent.
     pub sent: PerDof<Option<Angle>>,
@@ -69,9 +69,9 @@ pub struct FollowView {
 /// Why it ended. The hand was stopped, by this or by what ended it, unless another moves it now or its link was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowEnd {
-    /// The source fell silent.
+    /// The source sent nothing for too long.
     Silent,
-    /// The source is gone.
+    /// The source was closed or unplugged.
     Gone,
     /// A drive is too hot.
     Hot(DriveHeat),

@@ -21,11 +21,11 @@ const LOOK_EACH: Duration = Duration::from_millis(10);
 
 /// One hand on an open link. The fake of tests is the other one who is this.
 pub trait TaskHand: Clone + Send + Sync + 'static {
-    /// Where the link stands.
+    /// Status of the link now.
     fn status(&self) -> LinkStatus;
     /// Everything that happens from now on.
     fn records(&self) -> Records;
-    /// Reads some memory.
+    /// Reads a span of the hand's memory.
     fn read(&self, span: Span) -> impl Future<Output = Result<Vec<u8>, RequestError>> + Send;
     /// Writes, and waits for the acknowledgement.
     fn write(&self, command: HandCommand) -> impl Future<Output = Result<(), RequestError>> + Send;
@@ -132,7 +132,7 @@ impl TaskHand for LinkHandle {
 
 /// Goes where a hand may be. A port has room for one link, so the one of before is given up.
 pub trait Reach: Send {
-    /// What it reaches.
+    /// Link to a hand that was found.
     type Link: TaskHand;
     /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
     fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Link>> + Send;

@@ -33,16 +33,15 @@ pub enum TaskError {
     /// A row that has to be known could not be read.
     #[error("cannot read {}: {why}", id.name())]
     NotRead {
-        /// The first such row.
+        /// First parameter that could not be read.
         id: ParamId,
-        /// Why.
+        /// Why the read failed.
         why: RequestError,
     },
     /// No hand was reached at its place.
     #[error("the hand does not answer")]
     NotReached,
-    /// It would make joints hit harder than before, or change what the hand is found by, and nobody said that this is
-    /// meant.
+    /// It would make joints hit harder than before, or change what the hand is found by, and that was not confirmed.
     #[error("not confirmed")]
     NotMeant(Risks),
     /// The backup, or the note that goes before a SAVE, could not be written.
@@ -93,7 +92,7 @@ pub struct Risks {
 /// What a person agreed to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Consent {
-    /// To whatever it does.
+    /// To every risk of the task.
     Given,
     /// To these joints' hitting harder, and to nothing else.
     To(Vec<Danger>),

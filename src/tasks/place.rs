@@ -25,9 +25,9 @@ const ROUNDS: u8 = 3;
 /// What is to be changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlaceChange {
-    /// Which row.
+    /// Parameter that holds the place: id, serial speed or address.
     pub id: ParamId,
-    /// What it holds.
+    /// Value before the change.
     pub before: Value,
     /// What it is to hold.
     pub wanted: Value,
@@ -58,7 +58,7 @@ pub enum PlaceStep {
     Writing(WhichPlace),
     /// There, or held and waiting for power: a person says whether it stays, within [`KEEP_WITHIN`].
     Keeping(WhichPlace),
-    /// It is taken back.
+    /// The old value is being written back.
     Returning,
     /// Kept: a person says whether it goes into flash.
     Offering(WhichPlace),
@@ -66,7 +66,7 @@ pub enum PlaceStep {
     Saving(WhichPlace),
 }
 
-/// How it ended.
+/// Where the hand is after the change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlaceEnd {
     /// The hand was not reached for the write, or was not known to rest. Nothing was written.
@@ -86,7 +86,7 @@ pub enum PlaceEnd {
     Kept {
         /// Where the hand answers now.
         at: WhichPlace,
-        /// The result of SAVE.
+        /// Result of SAVE; `None` if it was not sent.
         saved: Option<Saved>,
     },
     /// Kept, and SAVE went out where it was; since then no hand answers at either place.
@@ -108,14 +108,14 @@ impl PlaceEnd {
     }
 }
 
-/// The result.
+/// Outcome of a change of id, serial speed or address.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlaceReport {
     /// What the hand held before.
     pub backup: PathBuf,
     /// Where the write sent the hand; `None` if there was none.
     pub moved: Option<Moved>,
-    /// How it ended.
+    /// Where the hand is after the change.
     pub end: PlaceEnd,
     /// Why the files of the hand could not be kept up, if they could not.
     pub not_noted: Option<String>,
@@ -318,7 +318,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
             }
         };
         if let Some(why) = not_noted {
-            self.not_noted.get_or_insert(why);
+            self.not_noted.get_or_insert(why.to_string());
         }
         // Once it is switched off and on the hand may be at the other place.
         if !(at == WhichPlace::New && saved == Saved::Confirmed) {

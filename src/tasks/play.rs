@@ -20,9 +20,9 @@ const FRESH_FOR: Duration = Duration::from_millis(250);
 /// What a sequence begins with.
 #[derive(Debug, Clone)]
 pub struct PlayStart {
-    /// What is played.
+    /// Sequence to play.
     pub plan: PlayPlan,
-    /// Through, or one step.
+    /// Plays to the end, or stops after each step.
     pub pace: PlayMode,
     /// The arming that a person gave for it.
     pub epoch: ArmEpoch,
@@ -41,7 +41,7 @@ pub struct PlayStart {
 pub enum PlayCommand {
     /// Hold where the hand is, until resumed.
     Pause,
-    /// Go on.
+    /// Goes on after a pause.
     Resume(PlayMode),
     /// End it and hold where the hand is.
     End,
@@ -52,7 +52,7 @@ pub enum PlayCommand {
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlayStep {
-    /// It stands elsewhere now.
+    /// The position in the sequence changed.
     View(PlayView),
     /// The hand was told this; joints that are `None` were left alone.
     Sent(Setpoints),

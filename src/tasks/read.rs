@@ -14,7 +14,7 @@ const TRIES: u32 = 4;
 /// How often the time is waited out in which an earlier answer may still come: once after each that was lost.
 const WAITS: u32 = TRIES;
 
-/// What was read.
+/// Parameters that were read, and why others were not.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ReadRows {
     /// The rows that could be read.

@@ -8,6 +8,7 @@ use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Reset};
 use crate::store::on_thread;
+use crate::system::SystemError;
 use crate::tasks::hand::{Reach, TaskHand, once_at_rest};
 use crate::tasks::read::ReadRows;
 use crate::tasks::save::back_up;
@@ -29,19 +30,19 @@ pub enum ResetStep {
     Looking(WhichPlace),
 }
 
-/// How it ended.
+/// How the reset ended, and where the hand is now.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ResetEnd {
     /// It was not sent, and why, if the link says so.
     NotSent(Option<NotSent>),
     /// The hand said no.
     Refused {
-        /// Why.
+        /// The hand's reason.
         reason: Refusal,
     },
     /// A hand answers there.
     Found {
-        /// Where.
+        /// Place at which it answers.
         at: WhichPlace,
         /// What it holds, as far as it could be read.
         params: Params,
@@ -80,17 +81,17 @@ impl ResetProof {
     }
 }
 
-/// The result.
+/// Outcome of a return to the factory parameters.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ResetReport {
     /// What the hand held before.
     pub backup: PathBuf,
     /// Whether the hand acknowledged it.
     pub is_acknowledged: bool,
-    /// How it ended.
+    /// How the reset ended, and where the hand is now.
     pub end: ResetEnd,
     /// Why the files of the hand could not be kept up, if they could not.
-    pub not_noted: Option<String>,
+    pub not_noted: Option<SystemError>,
 }
 
 /// Where a hand is found before and after a reset.
@@ -139,7 +140,7 @@ pub async fn reset<R: Reach>(
             let forgotten = on_thread(move || noting.forget_saved()).await;
             report.end = find(reach, places, &before, &mut tell).await;
             let adopted = adopt(backups, places, &report.end).await;
-            report.not_noted = forgotten.and(adopted).err().map(|error| error.to_string());
+            report.not_noted = forgotten.and(adopted).err().map(SystemError::from);
         }
         Err(error) => return Err(error.into()),
     }

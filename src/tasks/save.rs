@@ -8,6 +8,7 @@ use crate::params::values::Params;
 use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
+use crate::system::SystemError;
 use crate::tasks::hand::{TaskHand, once_at_rest};
 use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
 use std::io;
@@ -29,17 +30,17 @@ pub struct Save {
     pub consent: Consent,
 }
 
-/// The result.
+/// Outcome of a SAVE, with the backup made before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SaveReport {
-    /// What the hand held.
+    /// Parameters read before SAVE.
     pub params: Params,
-    /// Where that was kept.
+    /// Path of the backup.
     pub backup: PathBuf,
     /// What is known of flash.
     pub saved: Saved,
     /// Why this could not be noted.
-    pub not_noted: Option<String>,
+    pub not_noted: Option<SystemError>,
 }
 
 /// Saves.
@@ -94,7 +95,7 @@ pub(crate) async fn save_noted<H: TaskHand>(
     backups: &Backups,
     params: &Params,
     goes_out: impl FnOnce(),
-) -> Result<(Saved, Option<String>), TaskError> {
+) -> Result<(Saved, Option<SystemError>), TaskError> {
     let (noting, attempt) = (backups.clone(), params.clone());
     on_thread(move || noting.note_attempt(&attempt, since_1970()))
         .await
@@ -118,7 +119,7 @@ pub(crate) async fn save_noted<H: TaskHand>(
         None => noting.note_not_done(),
     });
     let not_noted = not_noted.await.err();
-    Ok((result?, not_noted.map(|error| error.to_string())))
+    Ok((result?, not_noted.map(SystemError::from)))
 }
 
 fn no_backup(error: io::Error) -> TaskError {

@@ -27,7 +27,7 @@ const REST_WITHIN: Duration = Duration::from_secs(3);
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesStep {
-    /// It stands elsewhere now.
+    /// The stage or the trial changed.
     View(SeriesView),
     /// A trial is over.
     Trial(Box<Trial>),
@@ -47,7 +47,7 @@ pub enum Stop {
     LinkLost,
 }
 
-/// How it ended.
+/// How a series ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeriesReport {
     /// Why it ended early, if it did.
@@ -59,7 +59,7 @@ pub struct SeriesReport {
 /// What a series begins with.
 #[derive(Debug, Clone)]
 pub struct SeriesStart {
-    /// What to try.
+    /// Plan of the series, already checked.
     pub plan: TrialPlan,
     /// The arming that a person gave for it.
     pub epoch: ArmEpoch,

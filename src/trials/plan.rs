@@ -20,6 +20,21 @@ pub const TEMPERATURE_MAX: u8 = 75;
 pub const MARGIN: i16 = 40;
 
 /// A series of grasp trials. In files it is the table `plan` of `session.toml` and `trial_plan` of the settings.
+///
+/// ```
+/// use handscope::hand::{Angle, Dof, Speed};
+/// use handscope::trials::TrialPlan;
+///
+/// let mut plan = TrialPlan::default();
+/// plan.grid.speeds = vec![Speed::new(100)?, Speed::new(400)?];
+/// plan.start[Dof::Index] = Some(Angle::new(1000)?);
+/// plan.close[Dof::Index] = Some(Angle::new(0)?);
+/// assert_eq!(plan.check(), Ok(()));
+/// // Too short a way cannot be told from noise.
+/// plan.close[Dof::Index] = Some(Angle::new(990)?);
+/// assert!(plan.check().is_err());
+/// # Ok::<(), handscope::hand::OutOfRange>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialPlan {
     /// Speeds, thresholds and how often each.
@@ -454,7 +469,8 @@ impl PlanError {
 }
 
 fn within(
-    (field, what): (PlanField, &'static str),
+    field: PlanField,
+    what: &'static str,
     got: f64,
     range: RangeInclusive<f64>,
 ) -> Result<(), PlanError> {
@@ -492,7 +508,8 @@ impl TrialPlan {
         self.check_approach()?;
         let range = DWELL_MIN.as_secs_f64()..=WAIT_MAX.as_secs_f64();
         within(
-            (PlanField::Dwell, "a dwell in s"),
+            PlanField::Dwell,
+            "a dwell in s",
             self.dwell.as_secs_f64(),
             range,
         )?;
@@ -508,17 +525,19 @@ impl TrialPlan {
         let trials = u32::try_from(cells.saturating_mul(grid.repeats)).unwrap_or(u32::MAX);
         let range = 1.0..=f64::from(TRIALS_MAX);
         within(
-            (PlanField::Repeats, "a number of trials"),
+            PlanField::Repeats,
+            "a number of trials",
             trials.into(),
             range,
         )?;
         for speed in &grid.speeds {
             let range = 1.0..=f64::from(Speed::MAX.get());
-            within((PlanField::Speeds, "a speed"), speed.get().into(), range)?;
+            within(PlanField::Speeds, "a speed", speed.get().into(), range)?;
         }
         let range = 0.0..=WAIT_MAX.as_secs_f64();
         within(
-            (PlanField::Rest, "a rest in s"),
+            PlanField::Rest,
+            "a rest in s",
             grid.rest.as_secs_f64(),
             range,
         )
@@ -539,8 +558,8 @@ impl TrialPlan {
             Until::Proximity(_) => 16e6,
             Until::Touch(_) => f64::from(Force::MAX.get()),
         };
-        let at = (PlanField::Until, "an end of the approach");
-        within(at, until.value().into(), 1.0..=most)
+        let what = "an end of the approach";
+        within(PlanField::Until, what, until.value().into(), 1.0..=most)
     }
 
     fn check_stage(&self, at: Angle) -> Result<(), PlanError> {
@@ -568,7 +587,8 @@ impl TrialPlan {
         let least = least.unwrap_or_default().max(1);
         let range = f64::from(least)..=4000.0;
         within(
-            (PlanField::Ceiling, "a force ceiling in g"),
+            PlanField::Ceiling,
+            "a force ceiling in g",
             got.into(),
             range,
         )?;

@@ -9,7 +9,7 @@ use crate::exhibit::file::{self, ExhibitFile, NamedFile};
 use crate::poses::library::PoseLibrary;
 use crate::store::{BackgroundJob, FileCause, FileError, toml_file};
 use std::fs::File;
-use std::io::{Cursor, Read as _};
+use std::io::{Cursor, ErrorKind, Read as _};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub fn read(path: &Path) -> Result<Exhibition, FileError> {
         let own = match file.poses()? {
             Some(poses) => {
                 stays_inside(folder, &poses)?;
-                pose_file::read(&poses.path).map_err(|error| poses.refused(&said(&error)))?
+                pose_file::read(&poses.path).map_err(|error| poses.refused(error))?
             }
             None => PoseLibrary::default(),
         };
@@ -57,7 +57,7 @@ pub fn read(path: &Path) -> Result<Exhibition, FileError> {
         let picture = |named: NamedFile<'_>| {
             stays_inside(folder, &named)?;
             let picture = pixels(&named.path);
-            picture.map_err(|why| named.refused(&why))
+            picture.map_err(|why| named.refused(picture_error(why)))
         };
         Ok(Exhibition {
             plan: Arc::new(plan),
@@ -79,10 +79,11 @@ fn is_private(path: &Path) -> Result<(), FileError> {
     }
     let path = std::path::absolute(path)?.display().to_string();
     let is_plain = |letter: char| letter.is_alphanumeric() || "/._-+".contains(letter);
-    let path = match path.chars().all(is_plain) {
-        true => path,
+    let path = if path.chars().all(is_plain) {
+        path
+    } else {
         // As a shell wants it.
-        false => format!("'{}'", path.replace('\'', "'\\''")),
+        format!("'{}'", path.replace('\'', "'\\''"))
     };
     Err(FileError {
         field: Some("pin".into()),
@@ -114,11 +115,10 @@ fn stays_inside(folder: &Path, named: &NamedFile<'_>) -> Result<(), FileError> {
     }
 }
 
-/// What is wrong with a file, where it is said already that it cannot be read.
-fn said(error: &FileError) -> String {
-    match &error.cause {
-        FileCause::Unreadable(why) => why.clone(),
-        _ => error.to_string(),
+fn picture_error(error: png::DecodingError) -> FileError {
+    match error {
+        png::DecodingError::IoError(error) => error.into(),
+        error => FileCause::Picture(error.to_string()).into(),
     }
 }
 
@@ -128,7 +128,7 @@ fn pixels(path: &Path) -> Result<Logo, png::DecodingError> {
     opened.take(LOGO_LEN_MAX + 1).read_to_end(&mut file)?;
     if file.len() as u64 > LOGO_LEN_MAX {
         let what = format!("it is too large: a logo has at most {LOGO_LEN_MAX} bytes");
-        return Err(std::io::Error::other(what).into());
+        return Err(std::io::Error::new(ErrorKind::FileTooLarge, what).into());
     }
     let mut decoder = png::Decoder::new(Cursor::new(file));
     decoder.set_transformations(png::Transformations::ALPHA | png::Transformations::STRIP_16);
@@ -137,7 +137,7 @@ fn pixels(path: &Path) -> Result<Logo, png::DecodingError> {
     if width > LOGO_SIZE_MAX || height > LOGO_SIZE_MAX {
         let what =
             format!("{width}x{height} pixels are too many: at most {LOGO_SIZE_MAX} each way");
-        return Err(std::io::Error::other(what).into());
+        return Err(std::io::Error::new(ErrorKind::FileTooLarge, what).into());
     }
     let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
     let info = reader.next_frame(&mut bytes)?;

@@ -83,7 +83,7 @@ pub struct ExhibitState {
     pub plan: Arc<ExhibitPlan>,
     /// What stands beside its title.
     pub logo: Option<Logo>,
-    /// What goes on.
+    /// What the visitors' page shows.
     pub view: ExhibitView,
     /// What staff see.
     pub staff: StaffPanel,

@@ -1,4 +1,4 @@
-//! What a person wants of the joints: wishes in, setpoints out. Knows no link and no clock.
+//! What a person sets for the joints: changes in, setpoints out. Knows no link and no clock.
 
 use crate::app::hand::held_key::HeldKey;
 use crate::hand::{
@@ -9,7 +9,7 @@ use crate::link::ArmRequest;
 /// One joint as a person sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JointControl {
-    /// Where the slider stands: the actual angle while not armed, the person's wish while armed. `None` = not known.
+    /// Where the slider stands: the actual angle while not armed, the person's target while armed. `None` = not known.
     pub target: Option<Angle>,
     /// Force threshold; sent at arming and when changed while armed.
     pub force: Force,
@@ -30,9 +30,9 @@ impl Default for JointControl {
     }
 }
 
-/// What a person wants of one joint.
+/// A change that a person makes to one joint.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum JointWish {
+pub(crate) enum JointChange {
     /// Where it should go. Nothing while the person may not move it.
     Target(Angle),
     /// Force threshold; kept, and sent while the person may move it.
@@ -84,42 +84,42 @@ impl Controls {
         }
     }
 
-    /// Takes a wish. `epoch` is the arming in which the person may move the hand; gives what is to be sent in it.
+    /// Takes a change. `epoch` is the arming in which the person may move the hand; gives what is to be sent in it.
     pub(crate) fn take(
         &mut self,
         dof: Dof,
-        wish: JointWish,
+        change: JointChange,
         epoch: Option<ArmEpoch>,
     ) -> Option<Setpoints> {
         let joint = &mut self.joints[dof];
         let was_locked = joint.locked;
-        match wish {
-            JointWish::Target(angle) => {
+        match change {
+            JointChange::Target(angle) => {
                 if epoch.is_none() || was_locked {
                     return None;
                 }
                 joint.target = Some(angle);
                 self.steered[dof] = true;
             }
-            JointWish::Force(force) => joint.force = force,
-            JointWish::Speed(speed) => joint.speed = speed,
-            JointWish::Lock(locked) => {
+            JointChange::Force(force) => joint.force = force,
+            JointChange::Speed(speed) => joint.speed = speed,
+            JointChange::Lock(locked) => {
                 joint.locked = locked;
                 self.steered[dof] = false;
             }
         }
         let joint = self.joints[dof];
         let mut setpoints = Setpoints::none(epoch.filter(|_| !joint.locked)?);
-        match wish {
-            JointWish::Target(angle) => setpoints.angle[dof] = Some(Target::Go(angle)),
-            JointWish::Force(force) => setpoints.force[dof] = Some(force),
-            JointWish::Speed(speed) => setpoints.speed[dof] = Some(speed),
+        match change {
+            JointChange::Target(angle) => setpoints.angle[dof] = Some(Target::Go(angle)),
+            JointChange::Force(force) => setpoints.force[dof] = Some(force),
+            JointChange::Speed(speed) => setpoints.speed[dof] = Some(speed),
             // What was changed meanwhile goes out when it is free again.
-            JointWish::Lock(_) if was_locked => {
+            JointChange::Lock(_) if was_locked => {
                 setpoints.force[dof] = Some(joint.force);
                 setpoints.speed[dof] = Some(joint.speed);
             }
-            JointWish::Lock(_) => return None,
+            JointChange::Lock(_) => return None,
         }
         Some(setpoints)
     }
@@ -190,34 +190,37 @@ mod tests {
     const EPOCH: ArmEpoch = ArmEpoch(1);
 
     #[test]
-    fn a_wish_goes_out_only_in_an_arming_and_only_for_a_joint_that_is_not_locked() {
-        let wishes = [
-            JointWish::Target(Angle::MIN),
-            JointWish::Force(Force::MAX),
-            JointWish::Speed(Speed::MAX),
-            JointWish::Lock(false),
+    fn a_change_goes_out_only_in_an_arming_and_only_for_a_joint_that_is_not_locked() {
+        let changes = [
+            JointChange::Target(Angle::MIN),
+            JointChange::Force(Force::MAX),
+            JointChange::Speed(Speed::MAX),
+            JointChange::Lock(false),
         ];
-        for wish in wishes {
+        for change in changes {
             let mut controls = Controls::default();
-            assert!(controls.take(Dof::Index, wish, None).is_none(), "{wish:?}");
+            assert!(
+                controls.take(Dof::Index, change, None).is_none(),
+                "{change:?}"
+            );
             assert_eq!(
                 controls.joints[Dof::Index].target,
                 None,
                 "no wish to move is kept"
             );
-            controls.take(Dof::Index, JointWish::Lock(true), Some(EPOCH));
-            let sent = controls.take(Dof::Index, wish, Some(EPOCH));
-            let frees = matches!(wish, JointWish::Lock(false));
-            assert_eq!(sent.is_some(), frees, "{wish:?} of a locked joint");
+            controls.take(Dof::Index, JointChange::Lock(true), Some(EPOCH));
+            let sent = controls.take(Dof::Index, change, Some(EPOCH));
+            let frees = matches!(change, JointChange::Lock(false));
+            assert_eq!(sent.is_some(), frees, "{change:?} of a locked joint");
         }
     }
 
     #[test]
     fn speed_and_force_that_were_changed_while_locked_go_out_when_it_is_free() {
         let mut controls = Controls::default();
-        controls.take(Dof::Ring, JointWish::Lock(true), Some(EPOCH));
-        controls.take(Dof::Ring, JointWish::Force(Force::MAX), Some(EPOCH));
-        let sent = controls.take(Dof::Ring, JointWish::Lock(false), Some(EPOCH));
+        controls.take(Dof::Ring, JointChange::Lock(true), Some(EPOCH));
+        controls.take(Dof::Ring, JointChange::Force(Force::MAX), Some(EPOCH));
+        let sent = controls.take(Dof::Ring, JointChange::Lock(false), Some(EPOCH));
         let sent = sent.unwrap();
         assert_eq!(sent.force[Dof::Ring], Some(Force::MAX));
         assert_eq!(sent.speed[Dof::Ring], Some(Speed::GENTLE));
@@ -227,7 +230,7 @@ mod tests {
     #[test]
     fn of_a_pose_the_locked_joints_are_left_out() {
         let mut controls = Controls::default();
-        controls.take(Dof::Little, JointWish::Lock(true), None);
+        controls.take(Dof::Little, JointChange::Lock(true), None);
         let mut pose = Setpoints::none(EPOCH);
         pose.angle = PerDof::splat(Some(Target::Go(Angle::MAX)));
         let sent = controls.free(&pose).unwrap();

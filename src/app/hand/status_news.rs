@@ -20,15 +20,15 @@ pub(crate) struct StatusNews {
     pub(crate) is_armed: bool,
 }
 
-/// Where news go, and when they are taken in.
-pub(crate) struct Tell<'a, 'n> {
+/// History and messages of one hand, to which changes of its status go.
+pub(crate) struct StatusReport<'a, 'n> {
     pub(crate) history: &'a mut History,
     pub(crate) notices: &'a mut HandNotices<'n>,
     pub(crate) now: Moment,
 }
 
-impl Tell<'_, '_> {
-    /// Takes in the status of now, and tells what changed.
+impl StatusReport<'_, '_> {
+    /// Compares the new status with the one before; adds marks and messages for what changed.
     pub(crate) fn status(&mut self, connection: &mut Connection, status: LinkStatus) -> StatusNews {
         let before = connection.take_status(status);
         let mut news = self.reached(connection, &before);

@@ -3,9 +3,9 @@
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::hand::controls::JointWish;
+use crate::app::hand::controls::JointChange;
 use crate::app::hand::open::Leaving;
-use crate::app::hand::status_news::Tell;
+use crate::app::hand::status_news::StatusReport;
 use crate::app::hand::{Activity, Connection, Controls, HoldKey, SequenceRun};
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
@@ -53,7 +53,7 @@ pub struct Hand {
     pub sequence: Option<SequenceRun>,
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
-    /// What is done under a card.
+    /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
     pub inputs: HandInputs,
@@ -226,12 +226,12 @@ impl Hand {
         notices: &mut HandNotices<'_>,
         now: Moment,
     ) {
-        let mut tell = Tell {
+        let mut report = StatusReport {
             history: &mut self.measured.history,
             notices,
             now,
         };
-        let news = tell.status(&mut self.connection, status);
+        let news = report.status(&mut self.connection, status);
         if news.is_lost {
             self.params.link_lost(now);
         }
@@ -323,17 +323,17 @@ impl Hand {
         self.connection.status.armed.filter(|_| may_move)
     }
 
-    /// What a person wants of a joint. Speed and force are kept where they cannot be sent.
-    pub(crate) fn wish(&mut self, dof: Dof, wish: JointWish) {
-        let wanted = self.controls.take(dof, wish, self.own_epoch());
-        if let JointWish::Lock(_) = wish {
+    /// Changes what a person set for a joint. Speed and force are kept where they cannot be sent.
+    pub(crate) fn change_joint(&mut self, dof: Dof, change: JointChange) {
+        let wanted = self.controls.take(dof, change, self.own_epoch());
+        if let JointChange::Lock(_) = change {
             self.follow();
             if let Some(run) = &self.sequence {
                 run.command(PlayCommand::Lock(self.controls.locked()));
             }
         }
         if let Some(setpoints) = wanted {
-            if let JointWish::Target(_) = wish {
+            if let JointChange::Target(_) = change {
                 self.take_over();
             }
             self.connection.send(&setpoints);

@@ -4,7 +4,7 @@ use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::env::choose::NoChoice;
 use crate::app::env::reveal::no_reveal;
-use crate::app::hand::controls::JointWish;
+use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::notices::{Level, NoticeKind, Notices};
 use crate::hand::{
@@ -184,7 +184,9 @@ fn the_links_own_word_comes_later_and_arms_nothing_after_a_stop() {
 fn after_disarming_the_sliders_follow_again() {
     let mut bench = Bench::monitoring(400);
     bench.epoch(1);
-    bench.hand.wish(Dof::Index, JointWish::Target(Angle::MAX));
+    bench
+        .hand
+        .change_joint(Dof::Index, JointChange::Target(Angle::MAX));
     bench.angles(410);
     assert_eq!(
         (bench.target(Dof::Index), bench.target(Dof::Ring)),
@@ -201,7 +203,9 @@ fn after_disarming_the_sliders_follow_again() {
 fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
     let mut bench = Bench::monitoring(400);
     bench.epoch(1);
-    bench.hand.wish(Dof::Index, JointWish::Target(Angle::MIN));
+    bench
+        .hand
+        .change_joint(Dof::Index, JointChange::Target(Angle::MIN));
     let trouble = LinkTrouble::Silent { silent: 5 };
     bench.status(LinkStatus {
         trouble: Some(trouble.clone()),

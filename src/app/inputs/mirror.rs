@@ -18,7 +18,7 @@ pub struct HandMirror {
 
 impl HandMirror {
     /// Watches from now on. Must be called within a tokio runtime.
-    pub(crate) fn open((leader, link): (SlotId, &LinkHandle), scale: MirrorScale) -> Self {
+    pub(crate) fn open(leader: SlotId, link: &LinkHandle, scale: MirrorScale) -> Self {
         Self {
             leader,
             scale,

@@ -16,6 +16,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
 use crate::record::Saved;
 use crate::store::{BackgroundJob, FileError};
+use crate::system::SystemError;
 use crate::tasks::{BackupError, ParamStep};
 use crate::transport::Endpoint;
 use std::collections::BTreeMap;
@@ -75,7 +76,7 @@ pub enum SaveEnd {
     /// What was staged did not all come into force: no SAVE was sent.
     NotApplied,
     /// With this result, which could not be recorded.
-    NotNoted(Saved, String),
+    NotNoted(Saved, SystemError),
 }
 
 /// What is known of the rows that a hand keeps.

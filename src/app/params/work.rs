@@ -30,9 +30,9 @@ use std::time::Duration;
 /// Speed and force in force are read all the time; older ones are not copied.
 const COPY_WITHIN: Duration = Duration::from_secs(5);
 
-/// The hand that is meant, and what the program stands on.
+/// The hand whose parameters are read or written, and how tasks on it are started.
 #[derive(Clone, Copy)]
-struct At<'a> {
+struct HandContext<'a> {
     connection: &'a Connection,
     env: &'a Env,
 }
@@ -47,35 +47,35 @@ impl ParamsState {
         ctx: &Ctx<'_>,
     ) {
         let link = &connection.status;
-        let at = At {
+        let hand = HandContext {
             connection,
             env: ctx.env,
         };
         match action {
             ParamAction::Read if self.read_refusal(link).is_some() => {}
-            ParamAction::Read => self.read_rows(at),
+            ParamAction::Read => self.read_rows(hand),
             ParamAction::Apply if self.apply_refusal(link).is_some() => {}
-            ParamAction::Apply => self.apply_rows(self.to_apply(), Vec::new(), at),
+            ParamAction::Apply => self.apply_rows(self.to_apply(), Vec::new(), hand),
             ParamAction::Undo if self.undo_refusal(link).is_some() => {}
             ParamAction::Undo => {
                 let undo = self.undo.clone();
                 self.stage_all(&undo);
-                self.apply_rows(undo, Vec::new(), at);
+                self.apply_rows(undo, Vec::new(), hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(at),
+            ParamAction::Save => self.ask_save(hand),
             ParamAction::Agree if self.write_refusal(link).is_some() => {}
             ParamAction::Agree => {
                 let Some(WriteQuestion { what, dangers }) = self.question.take() else {
                     return;
                 };
                 match what {
-                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, at),
+                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, hand),
                     WriteRequest::Save if self.to_apply().is_empty() => {
-                        self.save(dangers, at);
+                        self.save(dangers, hand);
                     }
                     WriteRequest::Save => {
-                        self.apply_rows(self.to_apply(), dangers.clone(), at);
+                        self.apply_rows(self.to_apply(), dangers.clone(), hand);
                         self.save_next = Some(dangers);
                     }
                 }
@@ -126,7 +126,7 @@ impl ParamsState {
     /// Reads the rows because somebody looks at them, if it is due.
     pub(crate) fn look_at(&mut self, connection: &Connection, env: &Env, now: Moment) {
         if self.look(now) && self.read_refusal(&connection.status).is_none() {
-            self.read_rows(At { connection, env });
+            self.read_rows(HandContext { connection, env });
         }
     }
 
@@ -134,7 +134,7 @@ impl ParamsState {
     fn start<F>(
         &mut self,
         doing: Doing,
-        At { connection, env }: At<'_>,
+        HandContext { connection, env }: HandContext<'_>,
         task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
     ) where
         F: Future<Output = ParamsEnd> + Send + 'static,
@@ -145,30 +145,30 @@ impl ParamsState {
         }
     }
 
-    fn read_rows(&mut self, at: At<'_>) {
-        self.start(Doing::Reading, at, |link, steps| async move {
+    fn read_rows(&mut self, hand: HandContext<'_>) {
+        self.start(Doing::Reading, hand, |link, steps| async move {
             let took = |span, bytes: &[u8]| steps.tell(ParamStep::Read(span, bytes.to_vec()));
             ParamsEnd::Read(rows(&link, took).await)
         });
     }
 
-    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, at: At<'_>) {
+    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, hand: HandContext<'_>) {
         let task = Apply {
             wanted,
             consent: Consent::To(agreed),
             backups: None,
             otherwise: Otherwise::Stay,
         };
-        self.start(Doing::Applying, at, |link, steps| async move {
+        self.start(Doing::Applying, hand, |link, steps| async move {
             let end = apply(&link, &task, |step| steps.tell(step)).await;
             ParamsEnd::Applied(task.wanted, end)
         });
     }
 
     /// Shows what a SAVE would change; where that is nothing, it is done at once.
-    fn ask_save(&mut self, at: At<'_>) {
+    fn ask_save(&mut self, hand: HandContext<'_>) {
         if self.unsaved().is_empty() {
-            return self.save(Vec::new(), at);
+            return self.save(Vec::new(), hand);
         }
         self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
@@ -176,7 +176,7 @@ impl ParamsState {
         });
     }
 
-    fn save(&mut self, agreed: Vec<Danger>, at: At<'_>) {
+    fn save(&mut self, agreed: Vec<Danger>, hand: HandContext<'_>) {
         let Some(backups) = self.files.clone() else {
             return;
         };
@@ -185,7 +185,7 @@ impl ParamsState {
             before: self.before_changes(&Params::default()),
             consent: Consent::To(agreed),
         };
-        self.start(Doing::BackingUp, at, |link, steps| async move {
+        self.start(Doing::BackingUp, hand, |link, steps| async move {
             ParamsEnd::Saved(save(&link, &task, |step| steps.tell(step)).await)
         });
     }
@@ -209,7 +209,7 @@ impl ParamsState {
             if self.is_applied() && self.save_refusal(link).is_none() {
                 self.save(
                     agreed,
-                    At {
+                    HandContext {
                         connection,
                         env: ctx.env,
                     },
@@ -320,7 +320,7 @@ impl ParamsState {
         let end = match end {
             Ok(report) => match report.not_noted {
                 None => SaveEnd::Told(report.saved),
-                Some(message) => SaveEnd::NotNoted(report.saved, message),
+                Some(error) => SaveEnd::NotNoted(report.saved, error),
             },
             Err(TaskError::NoBackup(why)) => SaveEnd::NoBackup(why),
             Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),

@@ -17,7 +17,7 @@ pub(super) fn watch_hand(state: &mut State, wanted: Option<(SlotId, MirrorScale)
             .find(|hand| hand.label.slot == leader)?
             .connection
             .link()?;
-        Some(HandMirror::open((leader, link), scale))
+        Some(HandMirror::open(leader, link, scale))
     });
     let hand = state.hand_mut();
     hand.inputs.mirror = mirror.filter(|_| hand.connection.open.is_some());

@@ -19,7 +19,7 @@ use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::Exhibition;
 use crate::app::files::export::{self, Export};
-use crate::app::hand::controls::JointWish;
+use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::hands::hand::REST_WITHIN;
 use crate::app::notices::{NoticeKind, RequestKind};
@@ -198,14 +198,26 @@ impl App {
             Action::HoldToRun(on) => hand_actions::set_hold_to_run(state, on),
             Action::HoldKey(_) if self.closing.is_some() => {}
             Action::HoldKey(key) => hands::hold_key(state, key, env),
-            Action::Target(dof, angle) => state.hand_mut().wish(dof, JointWish::Target(angle)),
+            Action::Target(dof, angle) => state
+                .hand_mut()
+                .change_joint(dof, JointChange::Target(angle)),
             Action::Force(dof, force) => {
-                each(dof).for_each(|dof| state.hand_mut().wish(dof, JointWish::Force(force)));
+                each(dof).for_each(|dof| {
+                    state
+                        .hand_mut()
+                        .change_joint(dof, JointChange::Force(force))
+                });
             }
             Action::Speed(dof, speed) => {
-                each(dof).for_each(|dof| state.hand_mut().wish(dof, JointWish::Speed(speed)));
+                each(dof).for_each(|dof| {
+                    state
+                        .hand_mut()
+                        .change_joint(dof, JointChange::Speed(speed))
+                });
             }
-            Action::Lock(dof, locked) => state.hand_mut().wish(dof, JointWish::Lock(locked)),
+            Action::Lock(dof, locked) => state
+                .hand_mut()
+                .change_joint(dof, JointChange::Lock(locked)),
             Action::Preset(preset) => pose_actions::preset(state.hand_mut(), preset),
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);

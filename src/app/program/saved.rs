@@ -39,8 +39,7 @@ impl SavedFiles {
         match from_settings(state.settings.trial_plan.as_ref()) {
             Ok(plan) => state.trials.plan = plan,
             Err(error) => {
-                let message = error.to_string();
-                let ignored = NoticeKind::PlanIgnored { message };
+                let ignored = NoticeKind::PlanIgnored { error };
                 state.notices.push(Moment::ZERO, ignored);
             }
         }

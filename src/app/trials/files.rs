@@ -9,7 +9,7 @@ use crate::app::trials::state::{
 };
 use crate::store;
 use crate::store::calendar::stamp;
-use crate::store::{BackgroundJob, on_thread, read_text};
+use crate::store::{BackgroundJob, FileCause, FileError, on_thread, read_text};
 use crate::trials::recording::csv;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
 use crate::trials::session_writer::TrialSessionWriter;
@@ -135,15 +135,15 @@ fn write(session: TrialSession, folder: &Path, criterion: Option<Criterion>) -> 
 }
 
 /// Reads a session's folder. A table of samples that is not there leaves its trial without lines; a spoilt one refuses all.
-fn read_session(folder: &Path) -> io::Result<TrialSession> {
+fn read_session(folder: &Path) -> Result<TrialSession, FileError> {
     let file = load(folder)?;
     let trial = |summary: TrialSummary| {
         let samples = samples(folder, summary.samples.as_deref());
         let number = summary.number;
-        let samples = samples.map_err(|error| io::Error::other(format!("trial {number}: {error}")));
+        let samples = samples.map_err(|error| error.of_named(format!("trial {number}")));
         Ok(SessionTrial::read(summary, &samples?.unwrap_or_default()))
     };
-    let trials: io::Result<Vec<SessionTrial>> = file.trials.into_iter().map(trial).collect();
+    let trials: Result<Vec<SessionTrial>, FileError> = file.trials.into_iter().map(trial).collect();
     Ok(TrialSession {
         id: SessionId(0),
         head: file.head,
@@ -154,19 +154,16 @@ fn read_session(folder: &Path) -> io::Result<TrialSession> {
 }
 
 /// The samples of a trial; none if the file is not there. No name leads out of the folder.
-fn samples(folder: &Path, name: Option<&str>) -> io::Result<Option<TrialRecording>> {
+fn samples(folder: &Path, name: Option<&str>) -> Result<Option<TrialRecording>, FileError> {
     let Some(name) = name else { return Ok(None) };
     let mut parts = Path::new(name).components();
     let (Some(Component::Normal(_)), None) = (parts.next(), parts.next()) else {
-        return Err(io::Error::other(format!(
-            "'{name}' is no file of this folder"
-        )));
+        let got = format!("'{name}'");
+        return Err(FileCause::Outside { got }.into());
     };
-    let wrong = |error: String| io::Error::other(format!("'{name}', {error}"));
-    let text = read_text(&folder.join(name), TABLE_LEN_MAX);
-    let text = text.map_err(|error| wrong(error.to_string()))?;
-    let table = text.map(|text| csv::read(&text)).transpose();
-    table.map_err(|error| wrong(error.to_string()))
+    let text = read_text(&folder.join(name), TABLE_LEN_MAX).map_err(FileError::from);
+    let table = text.and_then(|text| text.map(|text| csv::read(&text)).transpose());
+    table.map_err(|error| error.of_named(format!("'{name}'")))
 }
 
 impl TrialsState {

@@ -37,7 +37,7 @@ pub(crate) struct FollowArgs {
     hand: Endpoint,
     #[command(flatten)]
     from: SourceArgs,
-    /// Move the hand: nothing is in its way, and the 24 V switch is in reach. Without, what arrives is only shown
+    /// Move the hand. Make sure that nothing is in its way and the 24 V switch is in reach. Without this option what arrives is only shown
     #[arg(long)]
     arm: bool,
     /// How far a target may be ahead of its joint, 20 to 500 counts of 1000

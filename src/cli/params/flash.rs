@@ -5,7 +5,7 @@ use crate::cli::params::args::FlashArgs;
 use crate::cli::params::patience::Patience;
 use crate::cli::params::reach::{self, LinkOpener};
 use crate::cli::params::words;
-use crate::params::backups::saved_name;
+use crate::params::file::SaveVerdict;
 use crate::params::place::PlacePair;
 use crate::record::Saved;
 use crate::tasks::reset::{self, ResetEnd, ResetProof, ResetReport, ResetStep};
@@ -49,7 +49,7 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
     let object = json!({
         "hand": common.hand.to_string(),
         "backup": report.backup,
-        "result": saved_name(&report.saved),
+        "result": SaveVerdict::from(&report.saved).to_string(),
         "words": sentence,
         "params": report.params,
     });

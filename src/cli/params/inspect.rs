@@ -103,7 +103,7 @@ fn other(args: &DiffArgs, files: &Backups) -> anyhow::Result<Other> {
         );
     };
     let notes = [
-        format!("saved {} ({})", saved.at, saved.verdict),
+        format!("saved {} ({})", saved.at, saved.verdict_text()),
         "flash cannot be read: only after a power-up does the hand hold what is in it".into(),
     ];
     Ok(Other {
@@ -122,7 +122,7 @@ pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
         .with_context(|| format!("cannot list {}", folder.display()))?;
     let known = known(&files)?;
     if args.json {
-        let note = |file: &ParamsFile| json!({ "at": file.at, "verdict": file.verdict });
+        let note = |file: &ParamsFile| json!({ "at": file.at, "verdict": file.verdict_text() });
         return out.object(&json!({
             "hand": args.hand.to_string(),
             "folder": folder.display().to_string(),
@@ -140,7 +140,7 @@ pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
     }
     out.line(&known.saved.map_or_else(
         || "this program has no confirmed save for this hand".into(),
-        |file| format!("last saved {} ({})", file.at, file.verdict),
+        |file| format!("last saved {} ({})", file.at, file.verdict_text()),
     ))?;
     out.lines(known.doubtful.map(|file| doubt("the SAVE", &file)))
 }
@@ -153,7 +153,7 @@ fn backup_json(backup: &Backup) -> Value {
 }
 
 fn doubt(what: &str, file: &ParamsFile) -> String {
-    let (at, verdict) = (&file.at, &file.verdict);
+    let (at, verdict) = (&file.at, file.verdict_text());
     format!("the result of {what} at {at} is not known ({verdict})")
 }
 

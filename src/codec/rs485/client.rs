@@ -45,7 +45,7 @@ pub fn encode_write(id: HandId, write: &RegisterWrite) -> Rs485Frame {
 pub enum Rs485Reply {
     /// Bytes that were read (manual 2.2.1).
     Read {
-        /// The hand that answers.
+        /// Id of the hand that answers.
         id: u8,
         /// First byte's address.
         address: u16,
@@ -54,7 +54,7 @@ pub enum Rs485Reply {
     },
     /// A write was taken (manual 2.2.2), or the late result of SAVE.
     WriteAck {
-        /// The hand that answers.
+        /// Id of the hand that answers.
         id: u8,
         /// First byte's address.
         address: u16,
@@ -83,7 +83,7 @@ impl Rs485Reply {
         }
     }
 
-    /// The hand that answers.
+    /// Id of the hand that answers.
     pub const fn id(&self) -> u8 {
         match self {
             Self::Read { id, .. } | Self::WriteAck { id, .. } => *id,

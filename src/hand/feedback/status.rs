@@ -140,9 +140,9 @@ impl Status {
 /// A title, a cause and an advice, each one short sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Words {
-    /// Two or three words.
+    /// Two or three words, for a badge or a heading.
     pub title: &'static str,
-    /// What happened.
+    /// What happened, as one sentence.
     pub cause: &'static str,
     /// What a person should do.
     pub advice: &'static str,

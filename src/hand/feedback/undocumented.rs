@@ -10,7 +10,7 @@ use std::fmt;
 pub struct Undocumented {
     /// What it is a value of.
     pub group: Group,
-    /// Of which joint.
+    /// Joint whose register held it.
     pub dof: Dof,
     /// What the hand sent; not kept of set points.
     pub raw: Option<i16>,

@@ -7,6 +7,7 @@ use crate::record::quirk_sheet::QuirkSheet;
 use crate::store::{read_text, replace_keeping_last};
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// What this version writes. Books of a later version are read as far as they are understood, and never written.
@@ -70,7 +71,8 @@ impl QuirkBook {
     pub fn load(path: &Path) -> std::io::Result<Self> {
         match read_text(path, FILE_LEN_MAX)? {
             None => Ok(Self::default()),
-            Some(text) => toml::from_str(&text).map_err(std::io::Error::other),
+            Some(text) => toml::from_str(&text)
+                .map_err(|error| std::io::Error::new(ErrorKind::InvalidData, error)),
         }
     }
 
@@ -100,7 +102,8 @@ impl QuirkBook {
         let mut book = Self::load(path)?;
         let before = book.note(now);
         if book.version > VERSION {
-            return Err(std::io::Error::other(
+            return Err(std::io::Error::new(
+                ErrorKind::InvalidData,
                 "the quirk sheets are of a later version",
             ));
         }

@@ -8,7 +8,7 @@ use std::time::Duration;
 /// A hand that answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoundHand {
-    /// How it is reached.
+    /// Endpoint that connects to it.
     pub endpoint: Endpoint,
     /// What it says its HAND_ID is (manual 2.6.1).
     pub hand_id: u8,
@@ -23,16 +23,16 @@ pub struct FoundHand {
 pub enum ScanHint {
     /// Something answers, and is not the hand that was asked.
     OtherId {
-        /// How it was asked.
+        /// Endpoint that was tried.
         endpoint: Endpoint,
         /// What its HAND_ID reads.
         hand_id: u8,
     },
     /// Something answers, and will not tell its HAND_ID.
     Refuses {
-        /// How it was asked.
+        /// Endpoint that was tried.
         endpoint: Endpoint,
-        /// Its reason.
+        /// Why it refuses to give HAND_ID.
         reason: Refusal,
     },
     /// Replies that nobody here asked for.
@@ -42,11 +42,11 @@ pub enum ScanHint {
     },
     /// Bytes that are no reply.
     Garbled {
-        /// Port.
+        /// Serial port or adapter.
         place: String,
         /// Speeds at which they came.
         bauds: Vec<u32>,
-        /// How many bytes.
+        /// Bytes received at all these speeds.
         bytes: usize,
     },
 }
@@ -110,7 +110,7 @@ pub struct ScanSummary {
     pub took: Duration,
 }
 
-/// One thing that happened.
+/// One step of a scan, in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScanEvent {
     /// What is going to be done.
@@ -128,7 +128,7 @@ pub enum ScanEvent {
     Trouble {
         /// Port, interface or address.
         place: String,
-        /// Why.
+        /// Why it could not be opened.
         error: TransportError,
     },
     /// Something worth a word at a place without a hand.

@@ -26,7 +26,7 @@ const EVENTS_MAX: usize = 256;
 pub enum Local {
     /// All that the system lists. What looks like a CAN adapter is asked as one, all others as a serial line.
     Listed,
-    /// These.
+    /// Only the ones named here.
     Named {
         /// Serial ports.
         ports: Vec<ScanPort>,
@@ -42,7 +42,7 @@ pub struct ScanConfig {
     pub local: Local,
     /// Addresses in the network. None is ever added to them.
     pub hosts: Vec<Hosts>,
-    /// Ids on every bus.
+    /// Ids to try on every serial line and CAN bus.
     pub ids: Vec<HandId>,
     /// The hands that are connected now: the port of each is left alone.
     pub held: Vec<Endpoint>,

@@ -25,19 +25,19 @@ pub enum HostsError {
         "'{text}' is not a host: write an address such as 192.168.11.210, with :PORT if it is not 6000"
     )]
     Host {
-        /// What was given.
+        /// Text that was typed.
         text: String,
     },
     /// A port that is none.
     #[error("'{port}' is not a port: write a number from 1 to 65535")]
     Port {
-        /// What was given.
+        /// Text that was typed.
         port: String,
     },
     /// A range that is none.
     #[error("'{text}' is not an address range: write one such as 192.168.11.0/24")]
     Range {
-        /// What was given.
+        /// Text that was typed.
         text: String,
     },
     /// A range that is too wide.
@@ -45,7 +45,7 @@ pub enum HostsError {
         "a range of /{prefix} has more than {HOSTS_MAX} addresses: name one of /{PREFIX_MIN} to /32"
     )]
     TooWide {
-        /// Its leading bits.
+        /// Length of the network prefix in bits.
         prefix: u32,
     },
     /// Addresses that no hand can have.

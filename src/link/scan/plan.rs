@@ -45,11 +45,11 @@ pub enum Speaks {
 /// One serial port to look at.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScanPort {
-    /// Path or name.
+    /// Path of the port, or its name on Windows.
     pub port: String,
     /// What is plugged in there, if it is on USB.
     pub usb: Option<UsbFound>,
-    /// What is asked there.
+    /// Protocols to try there.
     pub speaks: Speaks,
 }
 

@@ -191,6 +191,8 @@ impl Session {
         let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
         WireEnd::Lost(match self.dialled {
             Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
+            // It has neither port nor speed that could be wrong.
+            Endpoint::Sim { .. } => LinkTrouble::NoAnswer { id },
             _ if is_noisy => LinkTrouble::Garbled { place, id },
             _ => LinkTrouble::NoAnswer { id },
         })

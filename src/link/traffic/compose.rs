@@ -17,7 +17,7 @@ pub enum SnippetFormat {
 }
 
 impl SnippetFormat {
-    /// All.
+    /// All formats, in the order of the menu.
     pub const ALL: [Self; 4] = [Self::Hex, Self::Python, Self::C, Self::Rust];
 
     /// Its name, the same in all languages.

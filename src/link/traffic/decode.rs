@@ -15,10 +15,10 @@ use std::time::Duration;
 /// the 16 ms of a USB adapter.
 pub const SILENCE: Duration = Duration::from_millis(25);
 
-/// What was found.
+/// Result of decoding a stretch of bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Heard {
-    /// A frame.
+    /// A complete frame, valid or not.
     Frame(Frame),
     /// The request of this number stayed without reply.
     NoReply(u64),
@@ -58,7 +58,7 @@ impl Decoder {
         }
     }
 
-    /// Takes the next piece.
+    /// Decodes the next piece of recorded bytes; frames that end in it are added to `out`.
     pub fn push(&mut self, piece: &Piece, out: &mut Vec<Heard>) {
         self.tick(piece.at, out);
         match piece.kind {

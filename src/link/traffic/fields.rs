@@ -58,9 +58,9 @@ pub enum FieldName {
 /// Some bytes of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
-    /// Which bytes.
+    /// Bytes of the frame, from its first.
     pub at: Range<usize>,
-    /// What they are.
+    /// Meaning of the bytes.
     pub name: FieldName,
     /// The register whose memory they are, as the manual names it.
     pub register: Option<String>,

@@ -36,7 +36,7 @@ impl FrameFormat {
     }
 }
 
-/// What a frame is.
+/// Kind of a frame, the same for all protocols.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// The wire was opened.
@@ -73,17 +73,17 @@ pub enum Wrong {
     /// The sum over the frame differs (manual 2.2.1).
     #[error("checksum {got:02X}, should be {want:02X}")]
     Checksum {
-        /// As sent.
+        /// Value in the frame.
         got: u8,
-        /// Of what was sent.
+        /// Value computed over the frame.
         want: u8,
     },
     /// The CRC over the frame differs (manual 2.4).
     #[error("CRC {got:04X}, should be {want:04X}")]
     Crc {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
-        /// Of what was sent.
+        /// Value computed over the frame.
         want: u16,
     },
     /// It ended before its own length byte says.
@@ -111,25 +111,25 @@ pub enum Wrong {
     /// Another protocol id than 0 (manual 2.5).
     #[error("protocol id {got}, should be 0: the other side does not speak Modbus TCP")]
     Protocol {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
     },
     /// A length field that no message has (manual 2.5).
     #[error("length field {got}, possible are 2 to 254")]
     LengthField {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
     },
     /// A function that this hand does not know, or whose length does not fit it.
     #[error("unknown function {function}, or one of the wrong length")]
     Function {
-        /// As sent.
+        /// Value in the frame.
         function: u8,
     },
     /// From or to another hand.
     #[error("id {got}, this hand is {want}")]
     ForeignId {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
         /// The one of this link.
         want: u16,
@@ -137,7 +137,7 @@ pub enum Wrong {
     /// A CAN identifier that is not this hand's protocol.
     #[error("identifier {id:08X} does not belong to the hand")]
     ForeignCanId {
-        /// As sent.
+        /// Value in the frame.
         id: u32,
     },
     /// A request that came in: an adapter that echoes, or another program that asks.
@@ -152,31 +152,31 @@ pub enum Wrong {
     /// It answers a request that was given up.
     #[error("late: the request was given up {after_ms} ms ago")]
     Late {
-        /// Since the request.
+        /// Time since the request.
         after_ms: u64,
     },
     /// Fewer or more bytes than were asked for.
     #[error("{got} bytes of memory, {want} were requested")]
     Amount {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
-        /// As asked.
+        /// Value in the request.
         want: u16,
     },
     /// It is about another address than was asked.
     #[error("address {got}, {want} was requested")]
     Address {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
-        /// As asked.
+        /// Value in the request.
         want: u16,
     },
     /// Another number than that of the open request (manual 2.5).
     #[error("transaction {got}, expected {want}")]
     Transaction {
-        /// As sent.
+        /// Value in the frame.
         got: u16,
-        /// That of the request.
+        /// Value in the request.
         want: u16,
     },
     /// The hand said no.
@@ -188,13 +188,13 @@ pub enum Wrong {
     /// The hand did not take it: an acknowledgement other than 1.
     #[error("not accepted: acknowledgement {value}, should be 1")]
     NotTaken {
-        /// As sent.
+        /// Value in the frame.
         value: u8,
     },
     /// A SAVE that failed (manual 2.2.2).
     #[error("SAVE failed with {value:02X}")]
     NotSaved {
-        /// As sent.
+        /// Value in the frame.
         value: u8,
     },
     /// No reply came before the next request.
@@ -249,13 +249,13 @@ pub struct Frame {
     pub number: u64,
     /// When its last byte passed.
     pub at: Moment,
-    /// Which way it went.
+    /// To the hand or from it.
     pub direction: Direction,
     /// How it stands on the wire.
     pub form: FrameFormat,
     /// All of it, as it passed.
     pub bytes: Box<[u8]>,
-    /// What it is.
+    /// Request, reply, event of the wire, or noise.
     pub kind: Kind,
     /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,

@@ -9,7 +9,7 @@ use crate::link::traffic::frame::{Kind, Wrong};
 use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
-/// What stands here.
+/// The frame that begins at the first byte, or why none does.
 pub fn look(bytes: &[u8]) -> FrameCut {
     match scan(bytes) {
         FrameStart::Frame(_, len) => FrameCut::Whole(len),

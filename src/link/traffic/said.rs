@@ -3,10 +3,10 @@
 use crate::hand::Span;
 use crate::link::traffic::frame::{Kind, Wrong};
 
-/// What a frame says.
+/// Content of a frame, apart from its framing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrameContent {
-    /// What it is.
+    /// Request, reply, event of the wire, or noise.
     pub kind: Kind,
     /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,
@@ -43,7 +43,7 @@ impl FrameContent {
         self
     }
 
-    /// About this memory.
+    /// Sets the memory that the frame is about.
     #[must_use]
     pub const fn about(mut self, span: Span) -> Self {
         self.len = Some(span.len);

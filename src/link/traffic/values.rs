@@ -7,7 +7,7 @@ use crate::link::traffic::frame::hex;
 /// What one register, or a part of it, holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RegisterValues {
-    /// The register.
+    /// Register that the value belongs to.
     pub row: &'static Register,
     /// The part of it that the bytes hold.
     pub span: Span,

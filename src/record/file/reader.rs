@@ -68,6 +68,19 @@ impl From<io::Error> for OpenError {
 }
 
 /// An open session file.
+///
+/// ```no_run
+/// use handscope::record::file::SessionFile;
+/// use handscope::record::file::reader::Stretch;
+/// use std::ops::ControlFlow;
+///
+/// let file = SessionFile::open("session.mcap".as_ref())?;
+/// file.entries(Stretch::WHOLE, |entry| {
+///     println!("{entry:?}");
+///     ControlFlow::Continue(())
+/// })?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct SessionFile {
     path: PathBuf,

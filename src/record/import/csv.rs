@@ -372,7 +372,7 @@ struct CsvRow {
 }
 
 impl CsvRow {
-    /// Takes in a cell; `None` if it cannot stand in its column.
+    /// Reads one cell; `None` if its text is not valid in the column.
     fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
             CsvColumn::Unknown => {}

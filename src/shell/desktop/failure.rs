@@ -58,7 +58,7 @@ pub enum DesktopError {
 }
 
 impl DesktopError {
-    /// From the words of winit, glutin, or a panic inside them.
+    /// From the words of winit, glutin, or a panic inside them: they tell the causes apart by nothing else.
     pub(crate) fn of(words: &str) -> Self {
         let cause = cause_of(words);
         let words = cause.to_lowercase();

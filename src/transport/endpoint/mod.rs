@@ -33,6 +33,15 @@ pub const SCENARIOS: [&str; 9] = [
 ];
 
 /// Where a hand is and how it is spoken to. The spelling is that of [`fmt::Display`] and `FromStr`.
+///
+/// ```
+/// use handscope::transport::Endpoint;
+///
+/// let hand: Endpoint = "tcp:192.168.11.210".parse()?;
+/// assert_eq!(hand.to_string(), "tcp:192.168.11.210:6000?unit=255");
+/// assert!("tcp:192.168.11.210?baud=115200".parse::<Endpoint>().is_err());
+/// # Ok::<(), handscope::transport::EndpointError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Endpoint {
     /// `sim:?seed=7&scenario=grasp`: the built-in hand, in this process.

@@ -98,6 +98,23 @@ fn refuse_what_is_no_port(_place: &str) -> Result<(), TransportError> {
     Ok(())
 }
 
+/// False if it opens and is no terminal, as `/dev/null`.
+#[cfg(unix)]
+fn may_be_port(place: &str) -> bool {
+    use nix::fcntl::OFlag;
+    use std::io::IsTerminal as _;
+    use std::os::unix::fs::OpenOptionsExt as _;
+    let flags = OFlag::O_NONBLOCK | OFlag::O_NOCTTY;
+    let mut options = std::fs::OpenOptions::new();
+    let file = options.read(true).custom_flags(flags.bits()).open(place);
+    file.map_or(true, |file| file.is_terminal())
+}
+
+#[cfg(not(unix))]
+const fn may_be_port(_place: &str) -> bool {
+    true
+}
+
 /// A pseudo-terminal stays marked exclusive until its master closes, so that nobody but root could open it a second time:
 /// there the mark is taken off again. The file lock stays (as a shared one, which still keeps exclusive openers out).
 #[cfg(unix)]
@@ -117,12 +134,10 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
     let text = || place.to_owned();
     match error.kind {
         // The port was seen to exist, so "no device" means that a lock could not be had.
-        ErrorKind::NoDevice if cfg!(unix) || error.description.contains("lock") => {
-            TransportError::Busy {
-                place: text(),
-                holder: holder::find(Path::new(place)),
-            }
-        }
+        ErrorKind::NoDevice if cfg!(unix) => TransportError::Busy {
+            place: text(),
+            holder: holder::find(Path::new(place)),
+        },
         ErrorKind::NoDevice | ErrorKind::Io(NotFound) => TransportError::Missing { place: text() },
         // Windows says "access denied" for a port in use.
         ErrorKind::Io(PermissionDenied) if cfg!(windows) => TransportError::Busy {
@@ -130,11 +145,8 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
             holder: None,
         },
         ErrorKind::Io(PermissionDenied) => denied(text()),
-        _ if error.description.contains("Inappropriate ioctl")
-            || error.description.contains("Not a typewriter") =>
-        {
-            TransportError::NotAPort { place: text() }
-        }
+        // What the system says is lost in serialport but for its words.
+        ErrorKind::Unknown if !may_be_port(place) => TransportError::NotAPort { place: text() },
         kind => io_error(
             place,
             SystemError {

@@ -1,6 +1,7 @@
 //! The samples of a trial as a table of text, written and read back. Opens no file.
 
 use crate::hand::{Dof, Finger, Moment, PerDof, PerFinger};
+use crate::store::{FileCause, FileError};
 use crate::trials::recording::{
     SampleRow, TipSample, TrialEvent, TrialMark, TrialRecording, seconds,
 };
@@ -94,43 +95,23 @@ fn cell(text: &mut String, value: Option<impl Display>) {
     }
 }
 
-/// Why a table is not one of samples.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum TableError {
-    /// The first line is another.
-    #[error("line 1: this is not a table of samples")]
-    Head,
-    /// A line is too long or too short.
-    #[error("line {line}: {got} cells instead of {want}")]
-    Cells {
-        /// From 1.
-        line: usize,
-        /// How many.
-        got: usize,
-        /// How many there should be.
-        want: usize,
-    },
-    /// A cell does not hold what it should.
-    #[error("line {line}: '{text}' is not a valid {column}")]
-    Cell {
-        /// From 1.
-        line: usize,
-        column: String,
-        /// What stands there.
-        text: String,
-    },
+fn error_in(line: usize, cause: FileCause) -> FileError {
+    FileError {
+        line: Some(line),
+        ..cause.into()
+    }
 }
 
 /// Reads a table.
 ///
 /// # Errors
-/// [`TableError`]: the first thing that is wrong.
-pub fn read(csv: &str) -> Result<TrialRecording, TableError> {
+/// [`FileError`]: the first thing that is wrong.
+pub fn read(csv: &str) -> Result<TrialRecording, FileError> {
     let mut lines = csv.lines().enumerate();
     let columns = columns();
     let head = lines.next().map(|(_, head)| head);
     if head != Some(columns.join(",").as_str()) {
-        return Err(TableError::Head);
+        return Err(error_in(1, FileCause::NotSamples));
     }
     let mut recording = TrialRecording::default();
     for (at, text) in lines {
@@ -138,7 +119,8 @@ pub fn read(csv: &str) -> Result<TrialRecording, TableError> {
         let line = at + 1;
         let (got, want) = (cells.len(), columns.len());
         if got != want {
-            return Err(TableError::Cells { line, got, want });
+            let what = format!("{got} cells instead of {want}");
+            return Err(error_in(line, FileCause::Form(what)));
         }
         let mut cells = Cells {
             line,
@@ -160,7 +142,7 @@ struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn read(&mut self, recording: &mut TrialRecording) -> Result<(), TableError> {
+    fn read(&mut self, recording: &mut TrialRecording) -> Result<(), FileError> {
         let seconds = self.next::<f64>()?;
         let after = seconds.map(|seconds| seconds + ZERO.as_secs_f64());
         let after = after.and_then(|after| Duration::try_from_secs_f64(after).ok());
@@ -185,16 +167,15 @@ impl Cells<'_> {
         Ok(())
     }
 
-    fn wrong(&self, at: usize) -> TableError {
-        TableError::Cell {
-            line: self.line,
-            column: self.columns.get(at).cloned().unwrap_or_default(),
-            text: self.cells.get(at).copied().unwrap_or_default().into(),
-        }
+    fn wrong(&self, at: usize) -> FileError {
+        let column = self.columns.get(at).map_or("", String::as_str);
+        let text = self.cells.get(at).copied().unwrap_or_default();
+        let what = format!("'{text}' is not a valid {column}");
+        error_in(self.line, FileCause::Form(what))
     }
 
     /// The next cell; none if it is empty.
-    fn next<T: FromStr>(&mut self) -> Result<Option<T>, TableError> {
+    fn next<T: FromStr>(&mut self) -> Result<Option<T>, FileError> {
         let at = self.at;
         self.at += 1;
         let text = self.cells.get(at).copied().unwrap_or_default();
@@ -205,7 +186,7 @@ impl Cells<'_> {
     }
 
     /// A group of all joints; none if one is missing.
-    fn six<T: FromStr>(&mut self) -> Result<Option<PerDof<T>>, TableError> {
+    fn six<T: FromStr>(&mut self) -> Result<Option<PerDof<T>>, FileError> {
         let mut values: PerDof<Option<T>> = PerDof::from_fn(|_| None);
         for dof in Dof::ALL {
             values[dof] = self.next()?;
@@ -213,7 +194,7 @@ impl Cells<'_> {
         Ok(values.all())
     }
 
-    fn tips(&mut self) -> Result<PerFinger<Option<TipSample>>, TableError> {
+    fn tips(&mut self) -> Result<PerFinger<Option<TipSample>>, FileError> {
         let (normal, tangential) = (self.five()?, self.five()?);
         let direction = self.five()?;
         let proximity: PerFinger<Option<i32>> = self.five()?;
@@ -227,7 +208,7 @@ impl Cells<'_> {
         }))
     }
 
-    fn five<T: FromStr>(&mut self) -> Result<PerFinger<Option<T>>, TableError> {
+    fn five<T: FromStr>(&mut self) -> Result<PerFinger<Option<T>>, FileError> {
         let mut values = PerFinger::from_fn(|_| None);
         for finger in Finger::ALL {
             values[finger] = self.next()?;
@@ -294,14 +275,14 @@ mod tests {
     #[test]
     fn a_spoilt_table_says_where() {
         let csv = write(&sample());
-        assert_eq!(read("a,b\n1,2\n"), Err(TableError::Head));
-        assert_eq!(read(""), Err(TableError::Head));
+        assert_eq!(read("a,b\n1,2\n"), Err(error_in(1, FileCause::NotSamples)));
+        assert_eq!(read(""), Err(error_in(1, FileCause::NotSamples)));
         for (from, to, words) in [
-            ("359", "x", "line 4: 'x' is not a valid direction_deg_index"),
-            ("-4000,-4000", "-4000", "line 4: 57 cells instead of 58"),
-            ("close", "closed", "line 3: 'closed' is not a valid event"),
-            ("-0.100000", "nan", "line 2: 'nan' is not a valid time_s"),
-            ("0.010000", "1e300", "line 4: '1e300' is not a valid time_s"),
+            ("359", "x", "line 4, 'x' is not a valid direction_deg_index"),
+            ("-4000,-4000", "-4000", "line 4, 57 cells instead of 58"),
+            ("close", "closed", "line 3, 'closed' is not a valid event"),
+            ("-0.100000", "nan", "line 2, 'nan' is not a valid time_s"),
+            ("0.010000", "1e300", "line 4, '1e300' is not a valid time_s"),
         ] {
             let error = read(&csv.replacen(from, to, 1)).unwrap_err();
             assert_eq!(error.to_string(), words);

@@ -13,6 +13,7 @@ pub(crate) mod session_tests;
 
 use crate::record::QuirkSheet;
 use crate::store::calendar::day;
+use crate::store::{FileCause, FileError, FileText};
 use crate::trials::plan::TrialPlan;
 use crate::trials::summary::{EarlyEnd, TrialSummary};
 use serde::{Deserialize, Serialize};
@@ -93,14 +94,17 @@ pub struct TrialSessionFile {
 ///
 /// # Errors
 /// What the system or the reader of the format says; another format, or a later version.
-pub fn load(folder: &Path) -> io::Result<TrialSessionFile> {
+pub fn load(folder: &Path) -> Result<TrialSessionFile, FileError> {
     let path = folder.join(SESSION_FILE);
     let text = crate::store::read_text(&path, FILE_LEN_MAX)?;
     let text = text.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))?;
-    let file: TrialSessionFile = toml::from_str(&text).map_err(io::Error::other)?;
-    if file.format != FORMAT || file.version > VERSION {
-        let what = format!("format {} version {}", file.format, file.version);
-        return Err(io::Error::other(format!("{what} cannot be read")));
+    let file: TrialSessionFile = FileText::plain(&text).parse()?;
+    if file.format != FORMAT {
+        let (got, wanted) = (file.format, FORMAT);
+        return Err(FileCause::Format { got, wanted }.into());
+    }
+    if file.version > VERSION {
+        return Err(FileCause::Version { got: file.version }.into());
     }
     Ok(file)
 }

@@ -27,6 +27,20 @@ pub(crate) struct PageLook {
     pub(crate) unit: f32,
 }
 
+/// Words in a colour; their size is in units of the page.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LargeText<'a> {
+    words: &'a str,
+    size: f32,
+    color: Color32,
+}
+
+impl<'a> LargeText<'a> {
+    pub(crate) const fn new(words: &'a str, size: f32, color: Color32) -> Self {
+        Self { words, size, color }
+    }
+}
+
 impl PageLook {
     /// On a screen on which everything stands there.
     pub(crate) fn of(pane: &Pane<'_>, places: &PagePlaces) -> Self {
@@ -42,7 +56,7 @@ impl PageLook {
     }
 
     /// The largest font up to this size in which a text fits.
-    fn fit(self, ui: &Ui, text: &str, (size, width): (f32, f32)) -> FontId {
+    fn fit(self, ui: &Ui, text: &str, size: f32, width: f32) -> FontId {
         let font = self.font(size);
         let wide = kit::text_width(ui, text, font.clone());
         // A little less, for widths that are rounded.
@@ -50,24 +64,24 @@ impl PageLook {
         FontId::proportional((font.size * part).max(FONT_LEAST))
     }
 
-    /// Paints a text of this size in units on one line.
-    pub(crate) fn paint(self, ui: &Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
-        let font = self.fit(ui, text, (size, rect.width()));
-        let label = Label::new(text, color).font(font);
+    /// Paints a text on one line.
+    pub(crate) fn paint(self, ui: &Ui, rect: Rect, text: LargeText<'_>) {
+        let font = self.fit(ui, text.words, text.size, rect.width());
+        let label = Label::new(text.words, text.color).font(font);
         label.center().paint(ui, rect);
     }
 
-    /// A text of this size in units on one line, from the left.
-    pub(crate) fn line(self, ui: &mut Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
-        let font = self.fit(ui, text, (size, rect.width()));
-        Label::new(text, color).font(font).put(ui, rect);
+    /// A text on one line, from the left.
+    pub(crate) fn line(self, ui: &mut Ui, rect: Rect, text: LargeText<'_>) {
+        let font = self.fit(ui, text.words, text.size, rect.width());
+        Label::new(text.words, text.color).font(font).put(ui, rect);
     }
 
-    /// A text of this size in units over as many lines as it needs, from the top.
-    pub(crate) fn lines(self, ui: &mut Ui, rect: Rect, (text, size): (&str, f32), color: Color32) {
+    /// A text over as many lines as it needs, from the top.
+    pub(crate) fn lines(self, ui: &mut Ui, rect: Rect, text: LargeText<'_>) {
         let builder = UiBuilder::new().max_rect(rect);
         ui.scope_builder(builder, |ui| {
-            let label = Label::new(text, color).font(self.font(size));
+            let label = Label::new(text.words, text.color).font(self.font(text.size));
             label.wrap().ui(ui);
         });
     }
@@ -153,15 +167,15 @@ impl<'a> LargeButton<'a> {
                 let center = Align2::CENTER_CENTER;
                 ui.painter().text(rect.center(), center, icon, font, color);
             }
-            (None, "") => page.paint(ui, inner, (self.words, self.size), color),
+            (None, "") => page.paint(ui, inner, LargeText::new(self.words, self.size, color)),
             (None, note) => {
                 // Both together in the middle.
                 let [upper, lower] = [self.size, NOTE].map(|size| page.font(size).size * LINE);
                 let size = vec2(inner.width(), (upper + lower).min(inner.height()));
                 let both = Rect::from_center_size(inner.center(), size);
                 let (upper, lower) = both.split_top_bottom_at_fraction(upper / (upper + lower));
-                page.paint(ui, upper, (self.words, self.size), color);
-                page.paint(ui, lower, (note, NOTE), color);
+                page.paint(ui, upper, LargeText::new(self.words, self.size, color));
+                page.paint(ui, lower, LargeText::new(note, NOTE, color));
             }
         }
         self.disabled.is_none() && kit::pressed(ui, &response)

@@ -15,7 +15,7 @@ use crate::app::settings::{Language, Zoom};
 use crate::app::state::State;
 use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::hand_card::HandCard;
-use crate::ui::exhibit::large::{LargeButton, PageLook};
+use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
 use crate::ui::exhibit::places::PagePlaces;
 use crate::ui::exhibit::staff::StaffView;
 use crate::ui::exhibit::stage::PageWords;
@@ -140,7 +140,11 @@ impl ExhibitPage {
             "" => page.look.say(exhibit::TITLE),
             own => own,
         };
-        page.line(ui, rest, (title, 46.0), page.look.palette.text);
+        page.line(
+            ui,
+            rest,
+            LargeText::new(title, 46.0, page.look.palette.text),
+        );
     }
 
     /// Once: what belongs to the window goes, and the logo is loaded.

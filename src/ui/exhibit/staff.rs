@@ -5,9 +5,9 @@ use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
 use crate::exhibit::pin::PinAnswer;
 use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::keypad::Keypad;
-use crate::ui::exhibit::large::{LargeButton, PageLook};
+use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
 use crate::ui::exhibit::places::{PagePlaces, above};
-use crate::ui::kit::{Label, Look, Pane, Weight};
+use crate::ui::kit::{Label, Pane, Weight};
 use crate::ui::text::{Text, exhibit, notices};
 use egui::{Key, Rect, Role, Sense, Ui, WidgetInfo, vec2};
 use std::mem::Discriminant;
@@ -75,16 +75,20 @@ impl StaffView {
         pane: &mut Pane<'_>,
     ) -> Option<String> {
         let (look, unit) = (page.look, page.unit);
-        let inner = card_ui(ui, page, (rect, words.title));
+        let inner = card_ui(ui, page, rect, words.title);
         let (title, rest) = above(inner, 56.0 * unit, 4.0 * unit);
-        page.line(ui, title, (look.say(words.title), 38.0), look.palette.text);
+        page.line(
+            ui,
+            title,
+            LargeText::new(look.say(words.title), 38.0, look.palette.text),
+        );
         let (note, rest) = above(rest, 44.0 * unit, 0.0);
         let color = if words.is_bad {
             look.palette.bad
         } else {
             look.palette.muted
         };
-        page.line(ui, note, (&words.note, 28.0), color);
+        page.line(ui, note, LargeText::new(&words.note, 28.0, color));
         let last = 84.0 * unit;
         let keys = rest.with_max_y(rest.bottom() - last - 16.0 * unit);
         let locked = words.locked.then_some(words.note.as_str());
@@ -105,7 +109,7 @@ fn card_rect(places: &PagePlaces, size: egui::Vec2) -> Rect {
 }
 
 /// The ground of a card; the place in it.
-fn card_ui(ui: &mut Ui, page: PageLook, (rect, title): (Rect, Text)) -> Rect {
+fn card_ui(ui: &mut Ui, page: PageLook, rect: Rect, title: Text) -> Rect {
     let response = ui.allocate_rect(rect, Sense::hover());
     let name = page.look.say(title);
     response.widget_info(|| WidgetInfo::labeled(Role::Dialog, true, name));
@@ -162,13 +166,12 @@ fn open_ui(
 ) {
     let (look, unit) = (page.look, page.unit);
     let gap = 18.0 * unit;
-    let inner = card_ui(ui, page, (rect, exhibit::STAFF));
+    let inner = card_ui(ui, page, rect, exhibit::STAFF);
     let (title, rest) = above(inner, 56.0 * unit, gap);
     page.line(
         ui,
         title,
-        (look.say(exhibit::STAFF), 38.0),
-        look.palette.text,
+        LargeText::new(look.say(exhibit::STAFF), 38.0, look.palette.text),
     );
     let (left, right) = rest.split_left_right_at_fraction(0.54);
     figures_ui(
@@ -233,26 +236,26 @@ fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
     page.line(
         ui,
         head,
-        (look.say(exhibit::TODAY), 30.0),
-        look.palette.muted,
+        LargeText::new(look.say(exhibit::TODAY), 30.0, look.palette.muted),
     );
     for (text, count) in rows {
         let (row, below) = above(rest, high, 0.0);
         rest = below;
-        figure_ui(ui, page, row, (look, text, count));
+        figure_ui(ui, page, row, (text, count));
     }
     if let Some(trouble) = exhibit.report.troubles().last() {
         let words = notices::notice(look, trouble);
-        page.lines(ui, rest, (&words, 20.0), look.palette.bad);
+        page.lines(ui, rest, LargeText::new(&words, 20.0, look.palette.bad));
     }
 }
 
-fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (look, text, count): (Look, Text, u32)) {
+fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (text, count): (Text, u32)) {
+    let look = page.look;
     let palette = look.palette;
     let line = egui::Stroke::new(1.0, palette.edge);
     ui.painter().hline(row.x_range(), row.top(), line);
     let (name, figure) = row.split_left_right_at_fraction(0.72);
-    page.line(ui, name, (look.say(text), 30.0), palette.text);
+    page.line(ui, name, LargeText::new(look.say(text), 30.0, palette.text));
     let count = count.to_string();
     let label = Label::new(&count, palette.text).font(page.font(34.0));
     label.right().named(look.say(text)).put(ui, figure);

@@ -5,7 +5,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::exhibit::run::{ExhibitStage, HaltReason};
 use crate::record::{Hold, LinkState};
-use crate::ui::exhibit::large::PageLook;
+use crate::ui::exhibit::large::{LargeText, PageLook};
 use crate::ui::kit::{Look, Pane};
 use crate::ui::text::{Text, exhibit, main, window};
 use egui::{Color32, CornerRadius, ProgressBar, Rect, Ui, UiBuilder, WidgetInfo};
@@ -60,9 +60,13 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, exhibit: &ExhibitState, pla
     let inner = rect.with_min_x(bar.right()).shrink(18.0 * unit);
     let (title, note) = inner.split_top_bottom_at_y(inner.top() + 66.0 * unit);
     let color = look.palette.text;
-    page.line(ui, title, (&words.title, 54.0), color);
+    page.line(ui, title, LargeText::new(&words.title, 54.0, color));
     let note = note.with_min_y(note.top() + 6.0 * unit);
-    page.lines(ui, note, (words.note, 31.0), look.palette.muted);
+    page.lines(
+        ui,
+        note,
+        LargeText::new(words.note, 31.0, look.palette.muted),
+    );
     if let Some(left) = words.left {
         let bar = note.with_min_y(note.bottom() - 12.0 * unit);
         left_ui(ui, page, bar, left);

@@ -6,7 +6,7 @@ use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, ExhibitPiece};
 use crate::exhibit::run::{ExhibitWish, HELD_FOR};
 use crate::hand::Angle;
-use crate::ui::exhibit::large::PageLook;
+use crate::ui::exhibit::large::{LargeText, PageLook};
 use crate::ui::exhibit::places::{NAME, PagePlaces};
 use crate::ui::exhibit::stage;
 use crate::ui::hand::panel;
@@ -115,7 +115,7 @@ impl PieceTile<'_> {
         let inner = rect.shrink(8.0 * unit);
         let (picture, words) = inner.split_top_bottom_at_y(rect.bottom() - NAME * unit);
         self.picture_ui(ui, page, picture);
-        page.paint(ui, words, (name, 30.0), color);
+        page.paint(ui, words, LargeText::new(name, 30.0, color));
         self.refusal.is_none() && kit::pressed(ui, &response)
     }
 

@@ -15,7 +15,7 @@ pub(crate) struct EventLine {
     /// When, in seconds since the start of the program.
     pub(crate) at_s: f64,
     pub(crate) text: String,
-    /// Of its mark.
+    /// The same as in the plots.
     pub(crate) color: Color32,
 }
 

@@ -125,7 +125,7 @@ impl Scale {
     }
 
     /// The end of the arrow of this force and direction in degrees, 0 towards the tip, clockwise.
-    fn end(&self, (shear, direction): (f32, f32)) -> Pos2 {
+    fn end(&self, shear: f32, direction: f32) -> Pos2 {
         let length = (shear / FULL_SHEAR_N).clamp(LEAST_SHEAR_PART, 1.0) * LONGEST_MM * self.per_mm;
         self.middle() + Vec2::angled((direction - 90.0).to_radians()) * length
     }
@@ -292,8 +292,8 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
             Stroke::new(theme::FOCUS_LINE, arrow),
         );
     }
-    if let Some(shear) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
-        let by = scale.end(shear) - scale.middle();
+    if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
+        let by = scale.end(shear, direction) - scale.middle();
         let stroke = Stroke::new(2.0, arrow);
         painter.arrow(scale.middle(), by, stroke);
     }
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn an_arrow_turns_clockwise_from_the_tip() {
         let scale = Scale::fit(Rect::from_min_size(Pos2::ZERO, vec2(18.0, 28.0)));
-        let end = |direction| scale.end((5.0, direction)) - scale.middle();
+        let end = |direction| scale.end(5.0, direction) - scale.middle();
         assert!(end(0.0).y < -5.0);
         assert!(end(90.0).x > 5.0);
         assert!(end(180.0).y > 5.0);

@@ -5,6 +5,7 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
+use crate::params::file::SaveVerdict;
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{cards, device, errors, main, notices};
@@ -94,8 +95,8 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     lines.push(match &book.known.saved {
         None => (look.say(device::NEVER_SAVED).into(), palette.muted),
         Some(file) => {
-            let how = match file.verdict.as_str() {
-                "confirmed" => look.say(device::BY_FRAME),
+            let how = match &file.verdict {
+                Some(SaveVerdict::Confirmed) => look.say(device::BY_FRAME),
                 _ => look.say(device::BY_READING),
             };
             let (saved, at) = (look.say(device::SAVED), moment(&file.at));

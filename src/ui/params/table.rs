@@ -302,7 +302,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         let width = ui.available_width() - theme::CONTROL - theme::GAP;
         ui.set_max_width(width);
         let new = match id {
-            ParamId::IpAddress => address_ui(ui, pane, (&name, shown)),
+            ParamId::IpAddress => address_ui(ui, pane, &name, shown),
             ParamId::ReduRatio => speed_ui(ui, &name, shown),
             _ => number_ui(ui, pane, (&name, id), shown),
         };
@@ -350,11 +350,7 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
 }
 
 /// What was typed and is no address stays, with the reason beside it.
-fn address_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (name, value): (&str, Option<Value>),
-) -> Option<Value> {
+fn address_ui(ui: &mut Ui, pane: &mut Pane<'_>, name: &str, value: Option<Value>) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
     let words = pane.look.say(panels::ADDRESS_WRONG);
     let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);

@@ -78,13 +78,13 @@ pub(crate) fn step_ui(
         kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
             panel::pose_ui(ui, look, picture, &shares(&pose.angles));
-            handle_ui(ui, look, (at, &pose.name));
+            handle_ui(ui, look, at, &pose.name);
         });
     }
 }
 
 /// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
-fn handle_ui(ui: &mut Ui, look: Look, (at, name): (usize, &str)) {
+fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
     let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
     let (id, rect) = ui.allocate_space(ui.available_size());

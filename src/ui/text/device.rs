@@ -247,11 +247,11 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
         SaveEnd::NoBackup(why) => look.told(SAVE_NO_BACKUP, errors::backup(look, why)),
         SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
         SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
-        SaveEnd::NotNoted(told, message) => format!(
+        SaveEnd::NotNoted(told, error) => format!(
             "{} {} {}",
             saved(look, told),
             look.say(SAVE_NOT_NOTED),
-            errors::system(look, message)
+            errors::system_error(look, error)
         ),
     }
 }

@@ -15,6 +15,7 @@ use crate::tasks::{BackupError, TaskError};
 use crate::transport::dds::DdsError;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::{Remedy, TransportError, WireFailure};
+use crate::trials::plan_settings::PlanReadError;
 use crate::ui::style::{Look, format};
 use crate::ui::text::inputs;
 use std::fmt::Display;
@@ -25,15 +26,6 @@ fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> Str
     match look.language {
         Language::En => format::sentence(&error.to_string()),
         Language::Zh => zh(error),
-    }
-}
-
-/// A port, interface or address. The built-in hand is none and has a name in words.
-fn place(place: &str) -> &str {
-    if place == "the simulated hand" {
-        "仿真手"
-    } else {
-        place
     }
 }
 
@@ -63,7 +55,7 @@ chinese! {
         TransportError::Unsupported { kind } => "{kind}: 不经过本机的线路：请指定端口、地址或接口。";
         TransportError::LinuxOnly => "can: 连接需要 Linux：请在此使用 slcan: 适配器。";
         TransportError::BitrateRefused { place, bitrate } => "{place} 上的 CAN 适配器不支持 {bitrate} bit/s：请选择其他波特率。";
-        TransportError::Io { place: at, failure } => "{} 出错：{}。", place(at), failure_zh(failure);
+        TransportError::Io { place, failure } => "{place} 出错：{}。", failure_zh(failure);
         TransportError::NoInterface { place } => "没有 CAN 接口 {place}：请插入适配器；可用 'ip link show type can' 查看现有接口。";
         TransportError::NotCan { place } => "{place} 不是 CAN 接口：请从 'ip link show type can' 列出的接口中选择，例如 can0。";
         TransportError::InterfaceDown { place } => "CAN 接口 {place} 未启用：请运行 'sudo ip link set {place} up type can bitrate 1000000'。";
@@ -90,8 +82,8 @@ chinese! {
 
     fn trouble_zh(&LinkTrouble) {
         LinkTrouble::Transport(error) => "{}", transport_zh(error);
-        LinkTrouble::Garbled { place: at, id } => "{} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。", place(at);
-        LinkTrouble::Mute { place: at, unit } => "{} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。", place(at);
+        LinkTrouble::Garbled { place, id } => "{place} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。";
+        LinkTrouble::Mute { place, unit } => "{place} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。";
         LinkTrouble::NoAnswer { id } => "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。";
         LinkTrouble::Silent { silent } => "灵巧手停止应答：连续 {silent} 次请求没有应答。";
         LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。";
@@ -205,7 +197,9 @@ chinese! {
     }
 
     fn file_cause_zh(&FileCause) {
-        FileCause::Toml(_) => "格式不对";
+        FileCause::Form(_) => "格式不对";
+        FileCause::NotSamples => "不是采样表";
+        FileCause::Picture(_) => "图片格式不对";
         FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
         FileCause::Version { got } => "无法读取版本 {got}";
         FileCause::Value { got, .. } => "值 {got} 不允许";
@@ -215,7 +209,15 @@ chinese! {
         FileCause::NotPrivate { path } => "其他用户可以读取此文件，请运行 chmod 600 {path}";
         FileCause::Outside { got } => "{got} 不在此文件所在的文件夹内";
         FileCause::Empty => "文件中没有内容";
-        FileCause::Unreadable(message) => "{}", system_zh(message);
+        FileCause::Unreadable(error) if error.kind == ErrorKind::InvalidData => "不是文本文件";
+        FileCause::Unreadable(error) if error.kind == ErrorKind::InvalidInput => "不是文件";
+        FileCause::Unreadable(error) => "{}", system_error_zh(error);
+        FileCause::Named { path, error } => "{path}：{}", file_zh(error);
+    }
+
+    fn plan_zh(&PlanReadError) {
+        PlanReadError::Form(_) => "格式不对";
+        PlanReadError::Range(key) => "{key} 超出范围";
     }
 }
 
@@ -281,12 +283,22 @@ pub(crate) fn task(look: Look, error: &TaskError) -> String {
 
 /// Why a file was not taken.
 pub(crate) fn file(look: Look, error: &FileError) -> String {
-    told(look, error, |error| {
-        let line = error.line.map(|line| format!("第 {line} 行，"));
-        let field = error.field.as_ref().map(|field| format!("{field}："));
-        let (line, field) = (line.unwrap_or_default(), field.unwrap_or_default());
-        format!("{line}{field}{}。", file_cause_zh(&error.cause))
-    })
+    told(look, error, |error| file_zh(error) + "。")
+}
+
+fn file_zh(error: &FileError) -> String {
+    let line = error.line.map(|line| format!("第 {line} 行，"));
+    let field = error.field.as_ref().map(|field| format!("{field}："));
+    let (line, field) = (line.unwrap_or_default(), field.unwrap_or_default());
+    format!("{line}{field}{}", file_cause_zh(&error.cause))
+}
+
+/// Why the plan of the settings was not taken.
+pub(crate) fn plan(look: Look, error: &PlanReadError) -> String {
+    match look.language {
+        Language::En => error.to_string(),
+        Language::Zh => plan_zh(error),
+    }
 }
 
 /// Why there is no backup.
@@ -345,55 +357,10 @@ const fn system_kind_zh(kind: ErrorKind) -> Option<&'static str> {
         ErrorKind::HostUnreachable => "无法到达主机",
         ErrorKind::ConnectionReset => "连接被对方重置",
         ErrorKind::FileTooLarge => "文件过大",
+        ErrorKind::InvalidData => "格式不对",
         // The library's list is open.
         _ => return None,
     })
-}
-
-/// What the system or a reader said of a file, where only its words are left.
-pub(crate) fn system(look: Look, message: &str) -> String {
-    match look.language {
-        Language::En => message.to_owned(),
-        Language::Zh => system_zh(message),
-    }
-}
-
-/// Words of systems and of the readers of files, as they stand somewhere in a message.
-const SYSTEM: [(&str, &str); 19] = [
-    ("Permission denied", "权限不足"),
-    ("Access is denied", "权限不足"),
-    ("Operation not permitted", "不允许此操作"),
-    ("No such file", "文件或文件夹不存在"),
-    ("cannot find", "文件或文件夹不存在"),
-    ("No space left", "磁盘空间不足"),
-    ("quota exceeded", "磁盘空间不足"),
-    ("Read-only file system", "文件系统只读"),
-    ("Is a directory", "这是文件夹，不是文件"),
-    ("Not a directory", "路径中有一项不是文件夹"),
-    ("File exists", "文件已存在"),
-    ("File name too long", "文件名过长"),
-    ("Input/output error", "读写出错"),
-    ("Too many open files", "打开的文件过多"),
-    ("valid UTF-8", "不是文本文件"),
-    ("is not a table of samples", "不是采样表"),
-    ("too large", "文件过大"),
-    ("has more than", "文件过大"),
-    ("is not a file", "不是文件"),
-];
-
-fn system_zh(message: &str) -> String {
-    let known = SYSTEM.iter().find(|(en, _)| message.contains(en));
-    let number = |before: &str| {
-        let (_, rest) = message.split_once(before)?;
-        let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
-        (!digits.is_empty()).then_some(digits)
-    };
-    match (known, number("line "), number("os error ")) {
-        (Some((_, zh)), ..) => (*zh).to_owned(),
-        (None, Some(line), _) => format!("第 {line} 行格式不对"),
-        (None, None, Some(code)) => format!("系统错误 {code}"),
-        (None, None, None) => format!("系统信息为“{message}”"),
-    }
 }
 
 /// Why the write of a gateway's client was not done.
@@ -436,6 +403,7 @@ mod tests {
     use crate::link::Owner;
     use crate::params::rows::ParamId;
     use crate::record::ArmRefusal;
+    use crate::store::toml_file;
     use crate::tasks::Risks;
     use crate::ui::theme::Palette;
     use std::collections::HashSet;
@@ -613,10 +581,6 @@ mod tests {
                 place: place(),
                 id: 7,
             },
-            LinkTrouble::Garbled {
-                place: "the simulated hand".into(),
-                id: 7,
-            },
             LinkTrouble::Mute {
                 place: place(),
                 unit: 255,
@@ -680,9 +644,10 @@ mod tests {
             cause,
         };
         let name = || "fist".to_owned();
-        let denied = || std::io::Error::from_raw_os_error(13).to_string();
         let all = [
-            FileCause::Toml("invalid type".into()),
+            FileCause::Form("invalid type".into()),
+            FileCause::NotSamples,
+            FileCause::Picture("bad signature".into()),
             FileCause::Format {
                 got: name(),
                 wanted: "handscope-poses",
@@ -698,12 +663,54 @@ mod tests {
             FileCause::NotPrivate { path: name() },
             FileCause::Outside { got: name() },
             FileCause::Empty,
-            FileCause::Unreadable(denied()),
+            FileCause::Unreadable(system(13)),
+            FileCause::Named {
+                path: "logo.png".into(),
+                error: Box::new(FileCause::Empty.into()),
+            },
         ];
         let source = include_str!("../../store/toml_file.rs");
         check(&all, (source, "FileCause"), |cause| {
             file(chinese(), &at(cause.clone()))
         });
+    }
+
+    #[test]
+    fn chinese_does_not_depend_on_the_words_of_an_error() {
+        let said = |kind, words: &str| SystemError::from(std::io::Error::new(kind, words));
+        for (kind, zh) in [
+            (ErrorKind::PermissionDenied, "权限不足。"),
+            (ErrorKind::NotFound, "文件或文件夹不存在。"),
+            (ErrorKind::StorageFull, "磁盘空间不足。"),
+            (ErrorKind::InvalidData, "不是文本文件。"),
+            (ErrorKind::InvalidInput, "不是文件。"),
+        ] {
+            let error = FileCause::Unreadable(said(kind, "mot inconnu")).into();
+            assert_eq!(file(chinese(), &error), zh);
+        }
+        let path = std::path::Path::new;
+        let folder = toml_file::load(path("."), 1, |_| Ok(())).unwrap_err();
+        assert_eq!(file(chinese(), &folder), "这是文件夹，不是文件。");
+        let none = toml_file::load(path("no/such"), 1, |_| Ok(())).unwrap_err();
+        assert_eq!(file(chinese(), &none), "文件或文件夹不存在。");
+        let cells = FileError {
+            line: Some(4),
+            ..FileCause::Form("57 cells instead of 58".into()).into()
+        };
+        let named = cells.of_named("'trial-1.csv'".into());
+        assert_eq!(
+            named.to_string(),
+            "it cannot be read: 'trial-1.csv': line 4, 57 cells instead of 58"
+        );
+        assert_eq!(
+            file(chinese(), &named),
+            "'trial-1.csv'：第 4 行，格式不对。"
+        );
+        // A file error stays what it is through an error of the system's type.
+        let wrapped: std::io::Error = named.into();
+        assert_eq!(system_error(chinese(), &wrapped.into()), "格式不对");
+        let range = PlanReadError::Range("speeds");
+        assert_eq!(plan(chinese(), &range), "speeds 超出范围");
     }
 
     #[test]

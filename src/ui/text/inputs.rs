@@ -46,7 +46,7 @@ texts! {
     DDS: "DDS", "DDS", "As Unitree's driver and ROS 2 have it ('handscope help dds'): tells this hand's state, and listens for commands. Both at this interface, a name or an address.", "与宇树驱动和 ROS 2 一致（'handscope help dds'）：发布状态，并接收指令。在此网络接口（名称或地址）上进行。";
     DDS_AT: "Interface of DDS", "DDS 网络接口";
     JOIN: "Join", "加入", "Publishes at this interface, and listens; nothing moves by that.", "在此接口上发布并接收；不会移动灵巧手。";
-    STATES: "States told", "已发布状态";
+    STATES: "States published", "已发布状态";
     COMMANDS: "Commands taken", "已接收指令";
     REFUSED: "Refused", "已拒绝";
     VIEWERS: "Live viewers", "实时查看", "Foxglove, PlotJuggler and their like ('handscope help share'): the topics of a recording as they happen. They only look.", "Foxglove、PlotJuggler 等（'handscope help share'）：实时显示记录的话题。它们只能查看。";
@@ -61,7 +61,7 @@ texts! {
     READ_PAD: "Read gamepad", "读取手柄", "Looks for a gamepad on this computer.", "在本机上查找手柄。";
     PLUG_IN: "No gamepad yet: plug one in, or pair it.", "尚无手柄：请插入或配对。";
     PHASE: "State", "状态";
-    LEAD_NOW: "Ahead of the joints", "领先关节";
+    LEAD_NOW: "Lead over the joints", "领先关节";
     DELAY: "Input to wire, 99 %", "输入到线路（99 %）";
     LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先关节的量（满程 1000）：";
     FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";

@@ -95,20 +95,33 @@ fn asked(look: Look, what: RequestKind) -> String {
     }
 }
 
-fn disarmed(look: Look, why: Disarmed) -> &'static str {
-    look.say(match why {
-        Disarmed::Stop => panels::DISARMED_STOP,
-        Disarmed::Person => panels::DISARMED_PERSON,
-        Disarmed::Fault => panels::DISARMED_FAULT,
-        Disarmed::LinkLost => panels::DISARMED_LOST,
-        Disarmed::Stale => panels::DISARMED_STALE,
-        Disarmed::OtherController => panels::DISARMED_OTHER_CONTROLLER,
-        Disarmed::FrozenFeedback => panels::DISARMED_FROZEN,
-        Disarmed::Resume => panels::DISARMED_RESUME,
-        Disarmed::Released => panels::DISARMED_RELEASED,
-        Disarmed::Silent => panels::DISARMED_SILENT,
-        Disarmed::Hot => panels::DISARMED_HOT,
-    })
+fn disarmed(look: Look, why: Disarmed) -> String {
+    match (look.language, why) {
+        (Language::Zh, why) => disarmed_zh(why).into(),
+        (Language::En, Disarmed::Person) => "Not armed any more.".into(),
+        (Language::En, Disarmed::OtherController) => {
+            format!("Not armed any more: {why}. Arm again if you want both.")
+        }
+        (Language::En, why) => format!("Not armed any more: {why}."),
+    }
+}
+
+const fn disarmed_zh(why: Disarmed) -> &'static str {
+    match why {
+        Disarmed::Stop => "已取消使能：按下了停止。",
+        Disarmed::Person => "已取消使能。",
+        Disarmed::Fault => "已取消使能：驱动器报告故障。",
+        Disarmed::LinkLost => "已取消使能：连接断开。",
+        Disarmed::Stale => "已取消使能：反馈过时。",
+        Disarmed::OtherController => {
+            "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。"
+        }
+        Disarmed::FrozenFeedback => "已取消使能：已发出运动指令，但灵巧手的反馈毫无变化。",
+        Disarmed::Resume => "已取消使能：本机曾休眠。",
+        Disarmed::Released => "未使能：没有按住需要按住的键。",
+        Disarmed::Silent => "已取消使能：控制来源已无数据。",
+        Disarmed::Hot => "已取消使能：有驱动器达到 70 °C。",
+    }
 }
 
 /// What a latency timer does, and the one line that cures it.
@@ -146,7 +159,6 @@ pub(crate) fn notice_of(look: Look, notice: &Notice) -> String {
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     let said = |text| look.say(text).to_owned();
     let told = |text: Text, more: &str| look.told(text, more);
-    let system = |text: Text, message: &str| told(text, &errors::system(look, message));
     let of = |text: Text, path: &Path, why: &str| {
         look.pair(&told(text, &path.display().to_string()), why)
     };
@@ -169,7 +181,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
                 }
             }
         }
-        NoticeKind::Disarmed(why) => disarmed(look, *why).into(),
+        NoticeKind::Disarmed(why) => disarmed(look, *why),
         NoticeKind::DisarmedByOther(conflict) => {
             let what = words::setpoint(look, conflict);
             look.fill(panels::DISARMED_BY_OTHER, &[&what])
@@ -245,8 +257,8 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             let path = path.display().to_string();
             format!("{} ({entries})", told(window::SAVED, &path))
         }
-        NoticeKind::NotSaved { path, message } => {
-            of(window::NOT_SAVED, path, &errors::system(look, message))
+        NoticeKind::NotSaved { path, error } => {
+            of(window::NOT_SAVED, path, &errors::system_error(look, error))
         }
         NoticeKind::NotDeleted { path, error } => of(
             sessions::NOT_DELETED,
@@ -274,7 +286,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.fill(sessions::PLANNED, &[count, &size, first, last, due])
         }
         NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
-        NoticeKind::PlanIgnored { message } => system(tune::PLAN_IGNORED, message),
+        NoticeKind::PlanIgnored { error } => told(tune::PLAN_IGNORED, &errors::plan(look, error)),
     }
 }
 

@@ -89,20 +89,9 @@ texts! {
     NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     NOTICE_UNGUARDED: "If this program is killed nothing stops the hand but the 24 V switch, as no process could be started for it:", "无法启动备用进程：若本程序被强行终止，只有切断 24 V 电源才能让灵巧手停下：";
-    DISARMED_STOP: "Not armed any more: stop was pressed.", "已取消使能：按下了停止。";
-    DISARMED_PERSON: "Not armed any more.", "已取消使能。";
-    DISARMED_FAULT: "Not armed any more: a drive reports a fault.", "已取消使能：驱动器报告故障。";
-    DISARMED_LOST: "Not armed any more: the link was lost.", "已取消使能：连接断开。";
-    DISARMED_STALE: "Not armed any more: feedback grew old.", "已取消使能：反馈过时。";
-    DISARMED_OTHER_CONTROLLER: "Not armed any more: another controller talks to this hand. Arm again if you want both.", "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。";
-    DISARMED_FROZEN: "Not armed any more: motion was asked for, and nothing that the hand tells changed.", "已取消使能：已发出运动指令，但灵巧手的反馈毫无变化。";
     DISARMED_BY_OTHER: "Not armed any more: another controller wrote {}. Arm again if you want both.", "已取消使能：另有控制器写入 {}。再次使能以确认继续。";
-    DISARMED_RESUME: "Not armed any more: this computer was asleep.", "已取消使能：本机曾休眠。";
-    DISARMED_RELEASED: "Not armed: nobody holds what has to be held.", "未使能：没有按住需要按住的键。";
     LEADER_STOPPED: "The hand that led this one was stopped, too.", "带动此手的那只手也已停下。";
     SOURCE_SILENT: "{} fell silent: the hand was stopped.", "{} 已无数据：灵巧手已停下。";
-    DISARMED_SILENT: "Not armed any more: who moved the hand fell silent.", "已取消使能：控制来源已无数据。";
-    DISARMED_HOT: "Not armed any more: a drive is at 70 °C or more.", "已取消使能：有驱动器达到 70 °C。";
 
     GESTURE: "Gesture", "手势";
     GESTURES_FIXED: "1 to 13 fixed", "1 至 13 固定";

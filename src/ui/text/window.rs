@@ -15,7 +15,7 @@ texts! {
     END: "End", "结束", "Ends it and holds the hand where it is.", "结束并保持灵巧手当前位置。";
     STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出", "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
     LEAVE_TITLE: "Close Handscope?", "关闭 Handscope？";
-    LEAVE_SERIES: "A series of trials runs. It would end here, and the hand would be held; what was measured is kept.", "正在运行抓取试验。关闭后试验将结束并保持灵巧手；已测得的数据会保留。";
+    LEAVE_SERIES: "A trial series is running. It would end here, and the hand would be held; what was measured is kept.", "正在运行抓取试验。关闭后试验将结束并保持灵巧手；已测得的数据会保留。";
     LEAVE_EDITS: "{} staged values were not applied. They would be forgotten.", "有 {} 个暂存值尚未写入，将会丢失。";
     STAY: "Keep it open", "保持打开";
     LEAVE: "Close the window", "关闭窗口";

@@ -182,13 +182,13 @@ impl<'a> TrialSheet<'a, '_> {
     fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
         let numbers = shown().map(|(column, title)| (By::Number(column.metric), title));
         let heads = [(By::Trial, tune::COLUMN_TRIAL)].into_iter().chain(numbers);
-        for head in heads.chain([(By::End, tune::COLUMN_END)]) {
-            row.col(|ui| self.head_cell_ui(ui, head, sorting));
+        for (by, title) in heads.chain([(By::End, tune::COLUMN_END)]) {
+            row.col(|ui| self.head_cell_ui(ui, by, title, sorting));
         }
     }
 
     /// The head of a column over its unit. A click sorts by it.
-    fn head_cell_ui(&self, ui: &mut Ui, (by, title): (By, Text), sorting: &mut Sorting) {
+    fn head_cell_ui(&self, ui: &mut Ui, by: By, title: Text, sorting: &mut Sorting) {
         let look = self.pane.look;
         let text = look.say(title);
         let is_own = sorting.by == by;

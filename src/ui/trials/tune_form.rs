@@ -286,12 +286,7 @@ impl Pass<'_, '_> {
     }
 
     /// A time in a row of its own, over what is wrong with it.
-    fn time_ui(
-        &mut self,
-        ui: &mut Ui,
-        (field, text): (PlanField, Text),
-        time: Duration,
-    ) -> Duration {
+    fn time_ui(&mut self, ui: &mut Ui, field: PlanField, text: Text, time: Duration) -> Duration {
         let look = self.pane.look;
         let number = NumberField::new(look.say(text), look.tip(text), 0.0..=600.0);
         let number = number.decimals(1).disabled(self.disabled);
@@ -338,8 +333,8 @@ impl Pass<'_, '_> {
 
     fn times_ui(&mut self, ui: &mut Ui) {
         let (dwell, rest) = (self.plan.dwell, self.plan.grid.rest);
-        self.plan.dwell = self.time_ui(ui, (PlanField::Dwell, tune::DWELL), dwell);
-        self.plan.grid.rest = self.time_ui(ui, (PlanField::Rest, tune::REST), rest);
+        self.plan.dwell = self.time_ui(ui, PlanField::Dwell, tune::DWELL, dwell);
+        self.plan.grid.rest = self.time_ui(ui, PlanField::Rest, tune::REST, rest);
     }
 
     fn limits_ui(&mut self, ui: &mut Ui) {

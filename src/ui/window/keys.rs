@@ -279,10 +279,12 @@ pub(crate) fn take(ui: &Ui, escape: Escape) -> Vec<Wish> {
 pub(crate) fn hold_key(ui: &Ui, wishes: &[Wish]) -> HoldKey {
     let typing = ui.ctx().text_edit_focused();
     let is_down = ui.input(|input| input.focused && input.key_down(HOLD_TO_RUN));
-    match is_down && !typing {
-        true if wishes.contains(&Wish::HoldToRun) => HoldKey::Pressed,
-        true => HoldKey::Held,
-        false => HoldKey::LetGo,
+    if !is_down || typing {
+        HoldKey::LetGo
+    } else if wishes.contains(&Wish::HoldToRun) {
+        HoldKey::Pressed
+    } else {
+        HoldKey::Held
     }
 }
 

@@ -34,6 +34,7 @@ use handscope::record::file::writer::SessionWriter;
 use handscope::record::file::{Opening, SessionFile};
 use handscope::record::import::csv::{CsvValues, ImportError};
 use handscope::record::{Direction, Entry, Event, EventKind, LinkState, Piece, PieceKind, Record};
+use handscope::store::FileCause;
 use handscope::transport::Endpoint;
 use std::io::{Seek as _, Write as _};
 use std::ops::ControlFlow;
@@ -494,7 +495,8 @@ fn exhibit_file(state: &mut State, bytes: &[u8]) {
         }
     }
     for named in poses.into_iter().chain(logo) {
-        assert!(!named.refused(&"why").to_string().is_empty(), "{text}");
+        let told = named.refused(FileCause::Empty.into()).to_string();
+        assert!(!told.is_empty(), "{text}");
     }
 }
 

@@ -2,10 +2,9 @@
 //! under another name. All in virtual time.
 
 use crate::setup::body::Quirks;
-use crate::setup::client::{Client, Request};
 use crate::setup::device;
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::hand::Setpoints;
@@ -372,8 +371,8 @@ async fn replies_at_the_ticks_of_a_latency_timer_are_told_unless_the_system_know
         until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
         // The plan may ask for long windows alone; short ones are what someone looks up, or the doctor.
         for _ in 0..50 {
-            while link.try_event().is_some() {}
-            link.ask(Request::Read(register::HAND_ID.span())).unwrap();
+            while link.records.try_next().is_some() {}
+            drop(link.begin(|link| async move { link.read(register::HAND_ID.span()).await }));
             sleep(Duration::from_millis(100)).await;
         }
         let status = link.status();

@@ -1,15 +1,14 @@
 //! The link over CAN in virtual time: through two adapters' text and packets and through Linux's frames, with good and odd
 //! adapters, and with replies that come late or twice. Frames are checked by the manual's rules, not by our encoder.
 
-use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::hand::{numbered, shared};
-use crate::setup::link::{self, ask, event, live, pass};
+use crate::setup::link::{self, Client, ended, live, pass};
 use handscope::hand::Setpoints;
 use handscope::hand::{
     Angle, Dof, Force, HandCommand, Moment, PerDof, Register, Speed, Target, register,
 };
 use handscope::link::{ArmRequest, Clock, LinkConfig, LinkTrouble, RequestError};
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use handscope::sim::SharedHand;
 use handscope::sim::serve::{can, slcan, usbcan};
 use handscope::transport::{Pipe, TransportError, pair};
@@ -22,10 +21,7 @@ fn connect(endpoint: &str, far: impl Fn(Pipe) + Send + Sync + 'static) -> Client
 }
 
 async fn read(link: &mut Client, register: &Register) -> Result<Vec<u8>, RequestError> {
-    match ask(link, Request::Read(register.span())).await? {
-        Outcome::Memory { bytes, .. } => Ok(bytes),
-        other => panic!("{other:?}"),
-    }
+    ended(link.read(register.span())).await
 }
 
 async fn trouble(link: &Client) -> LinkTrouble {
@@ -74,11 +70,9 @@ async fn setpoints_arrive_whole_though_six_shorts_take_two_frames() {
             force: PerDof::splat(Force::GENTLE),
         });
         let armed = LinkState::Armed;
-        event(
-            &mut link,
-            |event| matches!(event, LinkEvent::State { state, .. } if *state == armed),
-        )
-        .await;
+        let is_armed =
+            |record: &Record| matches!(record, Record::State { state, .. } if *state == armed);
+        link::record(&mut link, is_armed).await;
         link.set(&Setpoints {
             epoch: link.status().armed.unwrap(),
             angle: PerDof::splat(Some(Target::Go(Angle::nearest(angle)))),
@@ -95,7 +89,7 @@ async fn setpoints_arrive_whole_though_six_shorts_take_two_frames() {
         link.stop();
         pass(&mut link, Duration::from_millis(500)).await;
         link.disarm();
-        let cleared = ask(&mut link, Request::Command(HandCommand::ClearErrors)).await;
+        let cleared = ended(link.write(HandCommand::ClearErrors)).await;
         assert!(cleared.is_ok(), "{cleared:?}");
     }
 }
@@ -255,7 +249,7 @@ async fn echoes_silent_adapters_and_time_stamps_are_coped_with() {
         // The request for this one byte looks like the answer of a hand with id 1.
         assert_eq!(read(&mut link, &register::HAND_ID).await, Ok(vec![7]));
         // The request and the reply of this write are the same frame.
-        let cleared = ask(&mut link, Request::Command(HandCommand::ClearErrors)).await;
+        let cleared = ended(link.write(HandCommand::ClearErrors)).await;
         assert!(cleared.is_ok(), "{cleared:?}");
         pass(&mut link, Duration::from_secs(1)).await;
         let stats = link.stats();
@@ -381,8 +375,8 @@ async fn no_late_or_doubled_piece_is_taken_for_a_fresh_one() {
         });
         let until = Instant::now() + Duration::from_secs(5);
         let mut seen = 0;
-        while let Ok(event) = tokio::time::timeout_at(until, link.event()).await {
-            let Some(LinkEvent::Sample { sample, .. }) = event else {
+        while let Ok(event) = tokio::time::timeout_at(until, link.records.next()).await {
+            let Some(Record::Reading { sample, .. }) = event else {
                 continue;
             };
             let Some(angle) = sample.angle else { continue };

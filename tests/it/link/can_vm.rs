@@ -1,9 +1,8 @@
 //! SocketCAN for real: the simulated hand and the link on an interface `vcan0`. Where there is none they are skipped;
 //! `.ci/run` runs this inside a small guest that has one.
 
-use crate::setup::client::{Client, Outcome, Request};
 use crate::setup::hand;
-use crate::setup::link::{self, ask, pass};
+use crate::setup::link::{self, Client, ended, pass};
 use crate::setup::skipped::{can_interface, skipped};
 use handscope::codec::can::RECORD_LEN;
 use handscope::hand::{HandId, register};
@@ -55,11 +54,8 @@ async fn a_hand_on_a_real_interface_is_read_whole() {
     let stats = read.await.unwrap();
     println!("{stats:?}");
     assert_eq!(stats.foreign_replies, 0, "own frames come back: {stats:?}");
-    let told = ask(&mut link, Request::Read(register::HAND_ID.span())).await;
-    let Ok(Outcome::Memory { bytes, .. }) = told else {
-        panic!("no answer");
-    };
-    assert_eq!(bytes, [7]);
+    let told = ended(link.read(register::HAND_ID.span())).await;
+    assert_eq!(told, Ok(vec![7]));
 }
 
 #[tokio::test]

@@ -1,8 +1,7 @@
 //! Feedback that freezes while the hand moves: valid frames, old values. Judged by where the hand's joints really are.
 
-use crate::setup::client::Client;
 use crate::setup::hand;
-use crate::setup::link::{self, pass};
+use crate::setup::link::{self, Client, pass};
 use handscope::hand::{Angle, Dof, PerDof, Setpoints, Target};
 use handscope::link::LinkStatus;
 use handscope::record::{Disarmed, Hold, LinkState, Rest};

@@ -1,7 +1,6 @@
 //! Getting to know a hand: bounded in time on the slowest line, and no match for a stop.
 
-use crate::setup::client::Client;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::codec::rs485::{RequestDecoder, Rs485Request, encode_read_reply, encode_write_ack};
 use handscope::hand::Span;
 use handscope::link::Quirks;

@@ -1,10 +1,9 @@
 //! Who else is on the line: adapters that give back what is sent, and other controllers. On a virtual bus, in virtual time.
 
 use crate::setup::body::Quirks;
-use crate::setup::client::{Client, Outcome, Request};
 use crate::setup::device;
 use crate::setup::hand;
-use crate::setup::link::{self, ask, pass};
+use crate::setup::link::{self, Client, ended, pass};
 use handscope::codec::can::{read_request, to_record};
 use handscope::hand::Setpoints;
 use handscope::hand::{
@@ -18,7 +17,7 @@ use handscope::transport::{Dial, Endpoint, Pipe, pair};
 use std::sync::{Arc, Mutex};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::sync::mpsc;
-use tokio::time::{Duration, timeout};
+use tokio::time::Duration;
 
 const SOON: Duration = Duration::from_secs(3);
 /// Another controller that is not heard of any more is forgotten after five seconds.
@@ -153,11 +152,6 @@ async fn arm(link: &mut Client) {
     until(link, |status| status.armed.is_some()).await;
 }
 
-async fn asked(link: &mut Client, command: HandCommand) -> Result<Outcome, RequestError> {
-    let done = timeout(SOON, ask(link, Request::Command(command))).await;
-    done.unwrap()
-}
-
 #[tokio::test(start_paused = true)]
 async fn an_adapter_that_echoes_is_recognised_and_its_echoes_are_left_out_however_they_are_cut() {
     for wire in ["rs485:test", "rtu:test"] {
@@ -169,8 +163,8 @@ async fn an_adapter_that_echoes_is_recognised_and_its_echoes_are_left_out_howeve
             setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(500)));
             link.set(&setpoints);
             // Over RTU this is function 06, whose reply is like its request.
-            let cleared = asked(&mut link, HandCommand::ClearErrors).await;
-            assert_eq!(cleared, Ok(Outcome::Acknowledged), "{wire} {piece}");
+            let cleared = ended(link.write(HandCommand::ClearErrors)).await;
+            assert_eq!(cleared, Ok(()), "{wire} {piece}");
             pass(&mut link, Duration::from_secs(2)).await;
             let (status, stats) = (link.status(), link.stats());
             assert_eq!(status.echoes, echo, "{wire} {piece}");
@@ -203,7 +197,7 @@ async fn an_echo_is_never_taken_for_the_hands_acknowledgement() {
         let mut link = open(&bus, wire);
         until(&mut link, |status| status.echoes).await;
         *bus.mute.lock().unwrap() = true;
-        let cleared = asked(&mut link, HandCommand::ClearErrors).await;
+        let cleared = ended(link.write(HandCommand::ClearErrors)).await;
         assert!(
             matches!(
                 cleared,
@@ -314,7 +308,7 @@ async fn what_we_do_ourselves_is_no_other_controller() {
             pass(&mut link, Duration::from_millis(60)).await;
         }
         let gesture = HandCommand::Gesture(Gesture::nearest(3), GestureRoute::default());
-        asked(&mut link, gesture).await.unwrap();
+        ended(link.write_as(link.lease(), gesture)).await.unwrap();
         pass(&mut link, FORGOTTEN).await;
         let status = link.status();
         assert!(

@@ -1,17 +1,19 @@
 //! Single bytes over Modbus TCP: the link finds out at connect, by reading only, how this hand packs them.
 
-use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::hand::register::BytePacking;
 use handscope::hand::{Dof, Fault, HandCommand, PerDof, TemperatureReading};
 use handscope::link::RequestError;
+use handscope::record::Record;
 use handscope::sim::serve::modbus_tcp;
 use handscope::sim::{ByteWords, Personality, SharedHand};
 use handscope::transport::SystemDial;
 use std::sync::Arc;
 use tokio::net::TcpListener;
 use tokio::time::{Duration, timeout};
+
+const SOON: Duration = Duration::from_secs(5);
 
 async fn open(byte_words: ByteWords) -> (Client, SharedHand) {
     let hand = hand::shared(hand::like(Personality {
@@ -28,15 +30,11 @@ async fn open(byte_words: ByteWords) -> (Client, SharedHand) {
     (link::connect(&endpoint, Arc::new(SystemDial)), hand)
 }
 
-async fn event(link: &mut Client) -> LinkEvent {
-    let soon = timeout(Duration::from_secs(5), link.event());
-    soon.await.unwrap().unwrap()
-}
-
-async fn check(byte_words: ByteWords, packing: BytePacking) -> Result<Outcome, RequestError> {
+async fn check(byte_words: ByteWords, packing: BytePacking) -> Result<(), RequestError> {
     let (mut link, hand) = open(byte_words).await;
     let sample = loop {
-        if let LinkEvent::Sample { sample, .. } = event(&mut link).await
+        let record = timeout(SOON, link.records.next()).await;
+        if let Ok(Some(Record::Reading { sample, .. })) = record
             && sample.temperature.is_some()
         {
             break sample;
@@ -56,21 +54,15 @@ async fn check(byte_words: ByteWords, packing: BytePacking) -> Result<Outcome, R
         hand.with(|hand, _| hand.journal().is_empty()),
         "connecting writes nothing"
     );
-    let asked = link
-        .ask(Request::Command(HandCommand::ClearErrors))
-        .unwrap();
-    loop {
-        if let LinkEvent::Done { ticket, result } = event(&mut link).await {
-            assert_eq!(ticket, asked);
-            return result;
-        }
-    }
+    timeout(SOON, link.write(HandCommand::ClearErrors))
+        .await
+        .unwrap()
 }
 
 #[tokio::test]
 async fn packed_bytes_are_read_and_written() {
     let cleared = check(ByteWords::Packed, BytePacking::LowFirst).await;
-    assert_eq!(cleared, Ok(Outcome::Acknowledged));
+    assert_eq!(cleared, Ok(()));
 }
 
 #[tokio::test]

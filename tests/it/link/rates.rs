@@ -1,12 +1,11 @@
 //! An open link reads faster when it is told to, and slower again, without writing anything; also after a loss. All in
 //! virtual time.
 
-use crate::setup::client::{Client, LinkEvent};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::hand::{Finger, Group};
 use handscope::link::PollRates;
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use handscope::sim::SharedHand;
 use handscope::tasks::series::RATES;
 use std::sync::{Arc, Mutex};
@@ -47,12 +46,12 @@ async fn live(link: &mut Client) {
 
 /// Readings of angles and of the thumb's fingertip in a second.
 async fn in_a_second(link: &mut Client) -> (u32, u32) {
-    while link.try_event().is_some() {}
+    while link.records.try_next().is_some() {}
     let end = Instant::now() + Duration::from_secs(1);
     let mut counts = (0, 0);
     while Instant::now() < end {
-        while let Some(event) = link.try_event() {
-            let LinkEvent::Sample { fresh, .. } = event else {
+        while let Some(event) = link.records.try_next() {
+            let Record::Reading { fresh, .. } = event else {
                 continue;
             };
             counts.0 += u32::from(fresh.contains(Group::Angle));

@@ -1,16 +1,16 @@
 //! Settings, SAVE and reset over every wire, in virtual time, against a hand and a line that fail in every way: what is said
 //! of a write is true of the hand.
 
-use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::line::{Dialled, IP, Line, Trouble, some_save_answer};
-use crate::setup::link::{self, ask, pass};
+use crate::setup::link::{self, Client, ended, pass};
 use handscope::hand::{Dof, HandId, PerDof, SerialSpeed, Setting, Speed};
 use handscope::hand::{Force, Refusal, Span, register};
 use handscope::link::RequestError;
 use handscope::params::backups::Backups;
 use handscope::params::values::Params;
 use handscope::record::{
-    ArmRefusal, Calibrated, Doubt, LinkState, NotSent, Reset, SaveDoubt, Saved, Verdict, Written,
+    ArmRefusal, Calibrated, Doubt, LinkState, NotSent, Record, Reset, SaveDoubt, Saved, Verdict,
+    Written,
 };
 use handscope::sim::{DefaultsWrite, FlashWrite, Personality, SaveAnswer};
 use std::sync::Arc;
@@ -38,17 +38,11 @@ async fn live(link: &mut Client) {
 }
 
 async fn set(link: &mut Client, setting: Setting) -> Written {
-    match ask(link, Request::Set(setting)).await.unwrap() {
-        Outcome::Written(written) => written,
-        other => panic!("{other:?}"),
-    }
+    ended(link.set_kept(setting)).await.unwrap()
 }
 
 async fn save(link: &mut Client) -> Saved {
-    match ask(link, Request::Save).await.unwrap() {
-        Outcome::Saved(saved) => saved,
-        other => panic!("{other:?}"),
-    }
+    ended(link.save()).await.unwrap()
 }
 
 fn speeds(speed: i16) -> Setting {
@@ -179,7 +173,7 @@ async fn refused_arming(link: &mut Client) -> ArmRefusal {
     link.arm(link::gentle());
     let refused = timeout(Duration::from_millis(90), async {
         loop {
-            if let LinkEvent::ArmRefused { reason, .. } = link.event().await.unwrap() {
+            if let Record::ArmRefused { reason, .. } = link.records.next().await.unwrap() {
                 return reason;
             }
         }
@@ -192,7 +186,7 @@ async fn the_line_is_left_to_a_hand_that_saves() {
     let line = line_to(Personality::default(), 0, Trouble::None);
     let mut link = open(&line, "rs485:x").await;
     let before = link.stats().state_reads;
-    link.ask(Request::Save).unwrap();
+    drop(link.begin(|link| async move { link.save().await }));
     pass(&mut link, Duration::from_millis(900)).await;
     let during = link.stats().state_reads - before;
     assert!(during <= 4, "{during} reads while the hand saves");
@@ -259,7 +253,7 @@ async fn a_stop_passes_while_the_hand_saves_and_the_result_is_still_told() {
         let line = line_to(Personality::default(), 0, Trouble::None);
         let mut link = open(&line, wire).await;
         set(&mut link, speeds(700)).await;
-        let asked = link.ask(Request::Save).unwrap();
+        let saving = link.begin(|link| async move { link.save().await });
         pass(&mut link, Duration::from_millis(500)).await;
         assert_eq!(line.writes_to(1486), 0);
         let pressed = Instant::now();
@@ -268,17 +262,8 @@ async fn a_stop_passes_while_the_hand_saves_and_the_result_is_still_told() {
             sleep(Duration::from_millis(1)).await;
         }
         assert!(pressed.elapsed() <= Duration::from_millis(10), "{wire}");
-        let mut end = None;
-        while end.is_none() {
-            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap() {
-                assert_eq!(ticket, asked);
-                end = Some(result.unwrap());
-            }
-        }
-        let told = matches!(
-            end,
-            Some(Outcome::Saved(Saved::Confirmed | Saved::ReadBack))
-        );
+        let end = saving.await.unwrap();
+        let told = matches!(end, Ok(Saved::Confirmed | Saved::ReadBack));
         assert!(told, "{wire} {end:?}");
     }
 }
@@ -337,8 +322,8 @@ async fn nothing_is_set_saved_or_reset_while_armed() {
         Verdict::NotSent(armed)
     );
     assert_eq!(save(&mut link).await, Saved::NotSent(armed));
-    let reset = ask(&mut link, Request::Reset).await;
-    assert_eq!(reset, Ok(Outcome::Reset(Reset::NotSent(armed))));
+    let reset = ended(link.reset()).await;
+    assert_eq!(reset, Ok(Reset::NotSent(armed)));
     let moved = link.set_unread(Setting::Id(HandId::nearest(7))).await;
     assert_eq!(moved, Err(RequestError::NotNow(armed)));
     assert_eq!(
@@ -353,8 +338,8 @@ async fn a_reset_returns_to_the_factorys_parameters() {
         let line = line_to(Personality::default(), 0, Trouble::None);
         let mut link = open(&line, wire).await;
         set(&mut link, speeds(700)).await;
-        let reset = ask(&mut link, Request::Reset).await;
-        assert_eq!(reset, Ok(Outcome::Reset(Reset::Acknowledged)), "{wire}");
+        let reset = ended(link.reset()).await;
+        assert_eq!(reset, Ok(Reset::Acknowledged), "{wire}");
         assert_eq!(line.wakes_up_with(SPEEDS), 1000);
     }
 }
@@ -511,22 +496,13 @@ async fn schedule(seed: u64) -> &'static str {
     backups
         .note_attempt(&params, Duration::from_secs(1))
         .unwrap();
-    let saved = match link.ask(Request::Save) {
-        Err(_) => return "save not sent",
-        Ok(_) if !link.status().state.is_live() => return "save not sent",
-        Ok(asked) => loop {
-            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap()
-                && ticket == asked
-            {
-                break match result {
-                    Ok(Outcome::Saved(saved)) => saved,
-                    Err(RequestError::NotConnected | RequestError::LinkLost) => {
-                        return "save not sent";
-                    }
-                    other => panic!("{case}: {other:?}"),
-                };
-            }
-        },
+    if !link.status().state.is_live() {
+        return "save not sent";
+    }
+    let saved = match link.save().await {
+        Ok(saved) => saved,
+        Err(RequestError::NotConnected | RequestError::LinkLost) => return "save not sent",
+        Err(error) => panic!("{case}: {error:?}"),
     };
     backups.note_result(&saved).unwrap();
     pass(&mut link, Duration::from_secs(2)).await;
@@ -577,7 +553,7 @@ async fn a_calibration_is_told_by_its_frame_or_by_quiet_and_nothing_arms_meanwhi
     for wire in WIRES {
         let line = line_to(Personality::default(), 0, Trouble::None);
         let mut link = open(&line, wire).await;
-        let asked = link.ask(Request::Calibrate).unwrap();
+        let calibrating = link.begin(|link| async move { link.calibrate().await });
         pass(&mut link, Duration::from_secs(1)).await;
         link.arm(link::gentle());
         pass(&mut link, Duration::from_secs(1)).await;
@@ -587,19 +563,13 @@ async fn a_calibration_is_told_by_its_frame_or_by_quiet_and_nothing_arms_meanwhi
         while line.writes_to(register::ANGLE_SET.address) == 0 {
             sleep(Duration::from_millis(1)).await;
         }
-        let mut end = None;
-        while end.is_none() {
-            if let LinkEvent::Done { ticket, result } = link.event().await.unwrap() {
-                assert_eq!(ticket, asked);
-                end = Some(result.unwrap());
-            }
-        }
+        let end = calibrating.await.unwrap();
         let expected = if wire == "rs485:x" {
             Calibrated::Finished
         } else {
             Calibrated::Quiet
         };
-        assert_eq!(end, Some(Outcome::Calibrated(expected)), "{wire}");
+        assert_eq!(end, Ok(expected), "{wire}");
         assert_eq!(
             line.writes_to(register::GESTURE_FORCE_CLB.address),
             1,
@@ -617,18 +587,18 @@ async fn what_is_not_known_of_a_calibration_is_said() {
             (Trouble::Mute, SaveDoubt::Unanswered),
         ] {
             let line = line_to(Personality::default(), clb, trouble);
-            let mut link = open(&line, wire).await;
-            let end = ask(&mut link, Request::Calibrate).await;
+            let link = open(&line, wire).await;
+            let end = ended(link.calibrate()).await;
             let unknown = Calibrated::Unknown { why };
-            assert_eq!(end, Ok(Outcome::Calibrated(unknown)), "{wire} {trouble:?}");
+            assert_eq!(end, Ok(unknown), "{wire} {trouble:?}");
         }
         let line = line_to(Personality::default(), 0, Trouble::None);
         let mut link = open(&line, wire).await;
         link.arm(link::gentle());
         pass(&mut link, Duration::from_millis(500)).await;
-        let end = ask(&mut link, Request::Calibrate).await;
+        let end = ended(link.calibrate()).await;
         let refused = Calibrated::NotSent(NotSent::Armed);
-        assert_eq!(end, Ok(Outcome::Calibrated(refused)), "{wire}");
+        assert_eq!(end, Ok(refused), "{wire}");
         assert_eq!(line.writes_to(clb), 0);
     }
 }

@@ -1,13 +1,12 @@
 //! Several simulated hands on one wire, in memory: what one is told the others do not do, and what the others say
 //! does not upset a link. Virtual time.
 
-use crate::setup::client::{Client, LinkEvent, Request};
 use crate::setup::hand::{free, numbered};
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::codec::rs485::{encode_read, encode_write};
 use handscope::hand::register::{ANGLE_ACT, STATE};
 use handscope::hand::{Angle, HandCommand, HandId, PerDof, Target};
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use handscope::sim::serve::rs485;
 use handscope::sim::{SharedHand, SimConfig, SimHands};
 use handscope::transport::pair;
@@ -93,8 +92,8 @@ async fn replies_of_another_hand_are_counted_and_never_taken() {
         let mut link = open(hands.clone(), id);
         let end = Instant::now() + Duration::from_secs(5);
         let mut seen = 0;
-        while let Ok(Some(event)) = timeout(end - Instant::now(), link.event()).await {
-            let LinkEvent::Sample { sample, .. } = event else {
+        while let Ok(Some(event)) = timeout(end - Instant::now(), link.records.next()).await {
+            let Record::Reading { sample, .. } = event else {
                 continue;
             };
             for (_, angle) in sample.angle.iter().flat_map(|angle| angle.value.iter()) {
@@ -109,6 +108,6 @@ async fn replies_of_another_hand_are_counted_and_never_taken() {
         if id == 1 {
             assert!(stats.foreign_replies > 100, "{stats:?}");
         }
-        assert!(link.ask(Request::Read(STATE)).is_ok());
+        assert!(link.read(STATE).await.is_ok());
     }
 }

@@ -2,16 +2,15 @@
 //! their time: all wires, all bauds, hands of 3 to 15 ms, at rest, in the hands of another controller, and while a
 //! person drags. `HANDSCOPE_SEEDS=n` runs more.
 
-use crate::setup::client::{Client, LinkEvent};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use crate::setup::time::in_virtual_time;
 use futures::FutureExt as _;
 use handscope::codec::can::{CanFunction, CanId, CanRecord, frame, from_record, to_record};
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Span, Target};
 use handscope::link::{LinkConfig, PollRates};
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use handscope::sim::{Scenario, SharedHand, SimConfig};
 use handscope::transport::{Pipe, pair};
 use std::ops::RangeInclusive;
@@ -300,7 +299,7 @@ impl Stage {
     async fn until(&mut self, wanted: LinkState) {
         let end = Instant::now() + Duration::from_secs(20);
         while self.link.status().state != wanted {
-            timeout_at(end, self.link.event())
+            timeout_at(end, self.link.records.next())
                 .await
                 .expect("in time")
                 .unwrap();
@@ -322,7 +321,7 @@ impl Stage {
                 self.link.set(&wish);
             }
             sleep(Duration::from_millis(5).min(end - Instant::now())).await;
-            while self.link.try_event().is_some() {}
+            while self.link.records.try_next().is_some() {}
         }
     }
 
@@ -332,12 +331,12 @@ impl Stage {
         while self.link.status().state != LinkState::Armed {
             assert!(Instant::now() < end, "{:?}", self.link.status());
             self.link.arm(request);
-            let mut event = self.link.event().await;
+            let mut event = self.link.records.next().await;
             while !matches!(
                 event,
-                Some(LinkEvent::State { .. } | LinkEvent::ArmRefused { .. }) | None
+                Some(Record::State { .. } | Record::ArmRefused { .. }) | None
             ) {
-                event = self.link.event().await;
+                event = self.link.records.next().await;
             }
         }
     }

@@ -1,10 +1,9 @@
 //! The tap: what went over each wire, cut into frames, with what is wrong about the wrong ones. Frames are the manual's
 //! or reckoned by hand, not made by our encoder; live links run in virtual time.
 
-use crate::setup::client::Client;
 use crate::setup::faulty::{FaultOdds, FaultPlan, faulty_pair};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::hand::{Moment, Span};
 use handscope::link::tap::WireTap;
 use handscope::link::traffic::fields::FieldName;

@@ -3,9 +3,8 @@
 use crate::seams::hand::{InMemory, SeamHand};
 use crate::seams::mover::Mover;
 use crate::setup::body::Protocol;
-use crate::setup::client::Client;
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use crate::setup::program::{Program, env};
 use crate::setup::time::Time;
 use handscope::app::action::Action;

@@ -1,16 +1,19 @@
 //! A link to whatever a test puts behind a wire in memory, and what every test does with one.
 
-use crate::setup::client;
-use crate::setup::client::{Client, LinkEvent, Outcome, Request};
 use crate::setup::hand;
 use futures::FutureExt as _;
 use futures::future::{BoxFuture, ready};
-use handscope::hand::{Force, PerDof, Speed};
-use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus, PollRates, RequestError};
-use handscope::record::LinkState;
+use handscope::hand::{Force, PerDof, Setpoints, Speed};
+use handscope::link::{self, ArmRequest, Clock, Lease, LinkConfig, LinkHandle, LinkStatus};
+use handscope::link::{Owner, PollRates, Records};
+use handscope::record::{LinkState, Record};
 use handscope::sim::SimHands;
 use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, Wire, pair};
+use std::cell::Cell;
+use std::ops::Deref;
 use std::sync::Arc;
+use tokio::runtime::Handle;
+use tokio::task::JoinHandle;
 use tokio::time::{Duration, sleep, timeout};
 
 /// Far more than anything takes that a test waits for without a limit of its own.
@@ -73,8 +76,55 @@ pub(crate) fn config(endpoint: &str, dial: Arc<dyn Dial>) -> LinkConfig {
     }
 }
 
+/// An open link, and what the person who opened it has of it.
+pub(crate) struct Client {
+    link: LinkHandle,
+    pub(crate) records: Records,
+    lease: Cell<Lease>,
+}
+
 pub(crate) fn open(config: LinkConfig) -> Client {
-    client::open(config)
+    let (link, records) = link::open(config, &Handle::current());
+    Client {
+        lease: Cell::new(link.grant(Owner::Person)),
+        link,
+        records,
+    }
+}
+
+impl Deref for Client {
+    type Target = LinkHandle;
+
+    fn deref(&self) -> &LinkHandle {
+        &self.link
+    }
+}
+
+impl Client {
+    pub(crate) fn lease(&self) -> Lease {
+        self.lease.get()
+    }
+
+    pub(crate) fn set(&self, setpoints: &Setpoints) {
+        // One that ended is refused, and that is what is tried.
+        let _set = self.link.set(self.lease(), setpoints);
+    }
+
+    /// A person grants the right to move the hand, and arms.
+    pub(crate) fn arm(&self, request: ArmRequest) {
+        if self.link.check(self.lease()).is_err() {
+            self.lease.set(self.link.grant(Owner::Person));
+        }
+        self.link.arm(self.lease(), request).unwrap();
+    }
+
+    /// Asks while the test goes on.
+    pub(crate) fn begin<F: Future<Output: Send> + Send + 'static>(
+        &self,
+        ask: impl FnOnce(LinkHandle) -> F,
+    ) -> JoinHandle<F::Output> {
+        tokio::spawn(ask(self.link.clone()))
+    }
 }
 
 /// Opens a link as the program does it.
@@ -94,7 +144,7 @@ pub(crate) async fn until(
             if wanted(&status) {
                 return status;
             }
-            while link.try_event().is_some() {}
+            while link.records.try_next().is_some() {}
             sleep(Duration::from_millis(1)).await;
         }
     })
@@ -110,34 +160,26 @@ pub(crate) async fn live(link: &mut Client) {
     .await;
 }
 
-/// Time passes, and events are taken.
+/// Time passes, and records are taken.
 pub(crate) async fn pass(link: &mut Client, length: Duration) {
-    let _over = timeout(length, async { while link.event().await.is_some() {} }).await;
+    let _over = timeout(length, async {
+        while link.records.next().await.is_some() {}
+    })
+    .await;
 }
 
-/// The next event that is as wanted.
-pub(crate) async fn event(link: &mut Client, wanted: impl Fn(&LinkEvent) -> bool) -> LinkEvent {
+/// Waits for a record that is as wanted.
+pub(crate) async fn record(link: &mut Client, wanted: impl Fn(&Record) -> bool) {
     let found = timeout(PATIENCE, async {
-        loop {
-            let event = link.event().await.unwrap();
-            if wanted(&event) {
-                return event;
-            }
-        }
+        while !wanted(&link.records.next().await.unwrap()) {}
     });
-    found.await.expect("the event comes")
+    found.await.expect("the record comes");
 }
 
-/// What becomes of a request that has a place in the queue.
-pub(crate) async fn ask(link: &mut Client, request: Request) -> Result<Outcome, RequestError> {
-    let ours = link.ask(request).unwrap();
-    let is_ours =
-        |event: &LinkEvent| matches!(event, LinkEvent::Done { ticket, .. } if *ticket == ours);
-    let done = timeout(ENDS_WITHIN, event(link, is_ours)).await;
-    match done.expect("every request comes to an end") {
-        LinkEvent::Done { result, .. } => result,
-        other => panic!("{other:?}"),
-    }
+/// What becomes of a request.
+pub(crate) async fn ended<T>(request: impl Future<Output = T>) -> T {
+    let ended = timeout(ENDS_WITHIN, request).await;
+    ended.expect("every request comes to an end")
 }
 
 /// Asks for an arming with gentle limits.

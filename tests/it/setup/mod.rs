@@ -3,7 +3,6 @@
 
 pub(crate) mod between;
 pub(crate) mod body;
-pub(crate) mod client;
 pub(crate) mod device;
 pub(crate) mod faulty;
 pub(crate) mod hand;

@@ -116,7 +116,10 @@ fn the_end_of_a_client_is_told_and_the_next_may() {
     assert_eq!(write(&mut client, INDEX, 500), None);
     assert!(share.complaint().contains("may move the hand"));
     let told = share.complaint();
-    assert!(told.contains("asked nothing for too long"), "{told}");
+    assert!(
+        told.contains("nothing was asked of it for too long"),
+        "{told}"
+    );
     assert_eq!(write(&mut client, INDEX, 500), Some(BUSY));
     let mut next = TcpStream::connect(&address).unwrap();
     while write(&mut next, INDEX, 500) == Some(BUSY) {

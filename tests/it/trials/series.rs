@@ -1,12 +1,11 @@
 //! Grasp trials on the simulated hand through the whole link, in virtual time: the published overshoot and its cure, and
 //! what ends a series.
 
-use crate::setup::client::{Client, LinkEvent};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
 use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus};
-use handscope::record::{Hold, LinkState};
+use handscope::record::{Hold, LinkState, Record};
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
 use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
@@ -69,8 +68,8 @@ impl Bench {
 
     /// Takes the next event, or 10 ms.
     async fn next(&mut self, series: &mut Option<TrialSeries>) {
-        let event = timeout(Duration::from_millis(10), self.link.event()).await;
-        if let Ok(Some(LinkEvent::Sample { sample, fresh })) = event {
+        let event = timeout(Duration::from_millis(10), self.link.records.next()).await;
+        if let Ok(Some(Record::Reading { sample, fresh })) = event {
             self.sample = *sample;
             if let Some(series) = series {
                 series.take(&sample, fresh);

@@ -3,13 +3,14 @@
 use crate::link::faults::order::{Story, Wish};
 use crate::link::faults::tap::{Log, Sent};
 use crate::setup::body::{Protocol, STAMPS_END, stamped};
-use crate::setup::client::{Client, LinkEvent, Outcome, Request, Ticket};
+use crate::setup::link::Client;
 use handscope::hand::register::{Access, Element, by_address};
 use handscope::hand::{
-    AngleReading, Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Target, Timed,
+    AngleReading, Dof, Finger, Group, Groups, HandCommand, HandSample, Moment, PerDof, Span,
+    Target, Timed,
 };
-use handscope::link::{LinkStatus, RequestError};
-use handscope::record::{Disarmed, Hold, LinkState};
+use handscope::link::{Lease, LinkHandle, LinkStatus, RequestError};
+use handscope::record::{Disarmed, Hold, LinkState, Record};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -33,6 +34,27 @@ const RESTS_WITHIN: f64 = 60.0;
 const UNSEEN_MOVE: Duration = Duration::from_secs(2);
 /// Writes through a wire that is gone may act so long afterwards.
 const LATE: Duration = Duration::from_millis(2500);
+
+/// One thing asked of the hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Request {
+    Command(HandCommand),
+    Read(Span),
+}
+
+/// The bytes that were read; none of a command.
+pub(crate) type Answer = Result<Vec<u8>, RequestError>;
+
+impl Request {
+    pub(crate) async fn answer(self, link: LinkHandle, lease: Lease) -> Answer {
+        match self {
+            Self::Command(command) if command.is_motion() => link.write_as(lease, command).await?,
+            Self::Command(command) => link.write(command).await?,
+            Self::Read(span) => return link.read(span).await,
+        }
+        Ok(Vec::new())
+    }
+}
 
 /// How often the oracles had something to judge.
 #[derive(Debug, Clone, Default)]
@@ -100,7 +122,7 @@ pub(crate) struct Witness {
     poses: Vec<(Moment, PerDof<AngleReading>)>,
     newest: HandSample,
     stops: Vec<Moment>,
-    open: BTreeMap<Ticket, (Moment, Request)>,
+    open: BTreeMap<u64, (Moment, Request)>,
     jobs: Vec<(Moment, Moment)>,
     wishes: Vec<Wish>,
     quiet: Moment,
@@ -256,20 +278,19 @@ impl Witness {
         }
     }
 
-    pub(crate) fn asked(&mut self, ticket: Ticket, request: Request, now: Moment) {
-        self.open.insert(ticket, (now, request));
+    pub(crate) fn asked(&mut self, number: u64, request: Request, now: Moment) {
+        self.open.insert(number, (now, request));
     }
 
-    pub(crate) fn event(&mut self, event: &LinkEvent, now: Moment) {
-        match event {
-            LinkEvent::Sample { sample, fresh } => self.sample(sample, *fresh, now),
-            LinkEvent::State { at, state } => {
+    pub(crate) fn record(&mut self, record: &Record, now: Moment) {
+        match record {
+            Record::Reading { sample, fresh } => self.sample(sample, *fresh, now),
+            Record::State { at, state } => {
                 let (_, before) = *self.states.last().unwrap();
                 self.transition(before, *state);
                 self.states.push((*at, *state));
             }
-            LinkEvent::ArmRefused { .. } => {}
-            LinkEvent::Done { ticket, result } => self.done(*ticket, result, now),
+            Record::ArmRefused { .. } | Record::Sent { .. } | Record::Answered { .. } => {}
         }
     }
 
@@ -335,21 +356,13 @@ impl Witness {
         );
     }
 
-    fn done(&mut self, ticket: Ticket, result: &Result<Outcome, RequestError>, now: Moment) {
-        let Some((since, request)) = self.open.remove(&ticket) else {
-            panic!(
-                "seed {}: {ticket:?} answered twice or never asked",
-                self.seed
-            )
+    pub(crate) fn answered(&mut self, number: u64, answer: &Answer, now: Moment) {
+        let Some((since, request)) = self.open.remove(&number) else {
+            panic!("seed {}: {number} answered twice or never asked", self.seed)
         };
         self.jobs.push((since, now));
-        if let (Request::Read(asked), Ok(Outcome::Memory { span, bytes })) = (request, result) {
-            assert_eq!(
-                (asked, usize::from(asked.len)),
-                (*span, bytes.len()),
-                "seed {}",
-                self.seed
-            );
+        if let (Request::Read(span), Ok(bytes)) = (request, answer) {
+            assert_eq!(usize::from(span.len), bytes.len(), "seed {}", self.seed);
         }
         self.seen.answers += 1;
     }

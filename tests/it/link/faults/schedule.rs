@@ -1,19 +1,21 @@
 //! One schedule: a wire with seeded faults, a hand, and somebody who arms, drags, asks and stops; then quiet.
 
 use crate::link::faults::dial::FaultyDial;
-use crate::link::faults::oracle::{Seen, Witness};
+use crate::link::faults::oracle::{Answer, Request, Seen, Witness};
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Adapter, Protocol, Quirks};
-use crate::setup::client::{Client, LinkEvent, Request};
 use crate::setup::faulty::{FaultOdds, FaultPlan, LineSpeed};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use crate::setup::time::in_virtual_time;
+use futures::future::BoxFuture;
+use futures::stream::FuturesUnordered;
+use futures::{FutureExt as _, StreamExt as _};
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, HandCommand, Span, Target};
 use handscope::link::handle::REQUESTS_MAX;
 use handscope::link::{Clock, LinkConfig, PollRates, RequestError};
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
@@ -65,6 +67,9 @@ struct Schedule {
     hand: SharedHand,
     dial: Arc<FaultyDial>,
     link: Client,
+    /// Requests under way, with their numbers.
+    asked: FuturesUnordered<BoxFuture<'static, (u64, Answer)>>,
+    numbers: u64,
     witness: Witness,
     sabotage: Sabotage,
 }
@@ -218,6 +223,8 @@ impl Schedule {
             hand,
             dial,
             link,
+            asked: FuturesUnordered::new(),
+            numbers: 0,
             witness,
             sabotage,
         }
@@ -251,22 +258,26 @@ impl Schedule {
     async fn drain_for(&mut self, length: Duration) {
         let until = Instant::now() + length;
         loop {
-            let event = tokio::select! {
+            let mut is_armed = false;
+            tokio::select! {
                 biased;
-                event = self.link.event() => event.expect("the session lives as long as its handle"),
+                record = self.link.records.next() => {
+                    let record = record.expect("the session lives as long as its handle");
+                    let armed = LinkState::Armed;
+                    is_armed = matches!(record, Record::State { state, .. } if state == armed);
+                    self.witness.record(&record, self.clock.now());
+                }
+                Some((number, answer)) = self.asked.next() => {
+                    self.witness.answered(number, &answer, self.clock.now());
+                }
                 () = sleep_until(until) => return,
-            };
-            self.witness.event(&event, self.clock.now());
+            }
             let joints = self.hand.with(|hand, now| {
                 hand.advance_to(now);
                 hand.true_angles()
             });
             self.witness.reality(joints, self.clock.now());
-            if let LinkEvent::State {
-                state: LinkState::Armed,
-                ..
-            } = event
-            {
+            if is_armed {
                 self.set();
             }
         }
@@ -348,10 +359,18 @@ impl Schedule {
     }
 
     fn ask(&mut self, request: Request) {
-        match self.link.ask(request) {
-            Ok(ticket) => self.witness.asked(ticket, request, self.clock.now()),
-            Err(RequestError::Full { .. }) => self.witness.seen.full += 1,
-            Err(error) => assert_eq!(error, RequestError::NotConnected),
+        let mut answer = Box::pin(request.answer(self.link.clone(), self.link.lease()));
+        match answer.as_mut().now_or_never() {
+            None => {
+                let number = self.numbers;
+                self.numbers += 1;
+                self.witness.asked(number, request, self.clock.now());
+                let answer = answer.map(move |answer| (number, answer));
+                self.asked.push(answer.boxed());
+            }
+            Some(Ok(_)) => panic!("a hand answers not before it is asked"),
+            Some(Err(RequestError::Full { .. })) => self.witness.seen.full += 1,
+            Some(Err(error)) => assert_eq!(error, RequestError::NotConnected),
         }
     }
 

@@ -3,14 +3,13 @@
 use crate::link::faults::dial::FaultyDial;
 use crate::link::faults::tap::{Lie, Log};
 use crate::setup::body::{Protocol, Quirks};
-use crate::setup::client::{Client, LinkEvent};
 use crate::setup::faulty::{FaultPlan, LineSpeed};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Target};
 use handscope::link::{Clock, LinkConfig};
-use handscope::record::LinkState;
+use handscope::record::{LinkState, Record};
 use std::sync::{Arc, Mutex};
 use tokio::time::{Duration, Instant, sleep_until};
 
@@ -40,11 +39,11 @@ async fn armed_on(baud: u32, turnaround: Duration) -> (Client, Log, Clock) {
         ..link::config(&endpoint, dial)
     });
     loop {
-        match link.event().await.unwrap() {
-            LinkEvent::Sample { .. } if link.status().state == LinkState::Monitoring => {
+        match link.records.next().await.unwrap() {
+            Record::Reading { .. } if link.status().state == LinkState::Monitoring => {
                 link.arm(link::gentle());
             }
-            LinkEvent::State {
+            Record::State {
                 state: LinkState::Armed,
                 ..
             } => return (link, log, clock),
@@ -64,7 +63,7 @@ async fn drag(link: &mut Client) -> i16 {
         let mut wish = Setpoints::none(epoch);
         wish.angle[Dof::Index] = Some(Target::Go(Angle::nearest(last)));
         link.set(&wish);
-        while link.try_event().is_some() {}
+        while link.records.try_next().is_some() {}
     }
     last
 }

@@ -1,15 +1,14 @@
 //! One row on one wire: connect, read all, arm, move, stop, and what must have held meanwhile.
 
-use crate::setup::client::{Client, LinkEvent};
 use crate::setup::hand;
-use crate::setup::link;
+use crate::setup::link::{self, Client};
 use crate::setup::time::in_virtual_time;
 use crate::sim::personalities::wire::{self, Noted, Notes, Protocol};
 use handscope::hand::Setpoints;
 use handscope::hand::register::{Access, Element, by_address};
 use handscope::hand::{Angle, Dof, Finger, Force, HandSample, Moment, PerDof, Speed, Target};
 use handscope::link::{ArmRequest, Clock};
-use handscope::record::{Hold, LinkState};
+use handscope::record::{Hold, LinkState, Record};
 use handscope::sim::{
     JournalEntry, Personality, ReplyUnit, SWITCHES, Scenario, SharedHand, SimConfig,
 };
@@ -134,12 +133,12 @@ impl Run {
             }
             let event = tokio::select! {
                 biased;
-                event = self.link.event() => event.expect("the session lives as long as its handle"),
+                event = self.link.records.next() => event.expect("the session lives as long as its handle"),
                 () = sleep_until(end) => return done(self),
             };
             match event {
-                LinkEvent::Sample { sample, .. } => self.sample = *sample,
-                LinkEvent::State { at, state } => self.states.push((at, state)),
+                Record::Reading { sample, .. } => self.sample = *sample,
+                Record::State { at, state } => self.states.push((at, state)),
                 _ => {}
             }
         }
