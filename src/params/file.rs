@@ -64,17 +64,10 @@ pub enum SaveVerdict {
 impl SaveVerdict {
     /// Whether flash may hold what was to be saved, and may not.
     pub const fn is_in_doubt(&self) -> bool {
-        match self {
-            Self::Confirmed | Self::ReadBack | Self::Failed | Self::Refused | Self::NotSent => {
-                false
-            }
-            Self::UnderWay
-            | Self::NoResult
-            | Self::Unanswered
-            | Self::NotReadBack
-            | Self::LinkLost
-            | Self::Other(_) => true,
-        }
+        !matches!(
+            self,
+            Self::Confirmed | Self::ReadBack | Self::Failed | Self::Refused | Self::NotSent
+        )
     }
 }
 

@@ -44,11 +44,6 @@ pub fn names(span: Span) -> String {
     }
 }
 
-/// True if one of the registers has this in its name, in lower case.
-pub fn has_name(span: Span, part: &str) -> bool {
-    rows(span).any(|(row, _)| row.name.to_ascii_lowercase().contains(part))
-}
-
 /// What the registers hold that lie in these bytes.
 pub fn held(span: Span, memory: &[u8]) -> Vec<RegisterValues> {
     rows(span)

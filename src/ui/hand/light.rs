@@ -4,6 +4,7 @@ use crate::hand::kinematics::SegmentFrames;
 use crate::ui::hand::bars::{Bars, Near};
 use crate::ui::hand::camera::{Camera, EYE_MM};
 use crate::ui::hand::part::{Coat, Part};
+use crate::ui::hand::shape::rings::step;
 use crate::ui::hand::solid::Skin;
 use crate::ui::theme::{self, Material, Studio};
 use egui::Color32;
@@ -113,9 +114,4 @@ impl Shade<'_> {
 /// What polished metal mirrors: a wide soft box above, a narrow one at each side, a dark floor.
 fn soft_boxes(way: Vec3) -> f32 {
     step(-0.1, 0.55, way.y) * 0.75 + step(0.55, 0.95, way.x) * 0.35 + step(0.5, 0.9, -way.x) * 0.25
-}
-
-fn step(from: f32, to: f32, at: f32) -> f32 {
-    let part = ((at - from) / (to - from)).clamp(0.0, 1.0);
-    part * part * (3.0 - 2.0 * part)
 }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 mod finger;
 mod held;
 mod palm;
-mod rings;
+pub(crate) mod rings;
 mod thumb;
 
 pub(crate) use held::{Held, arrow, held};
