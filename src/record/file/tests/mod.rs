@@ -332,3 +332,32 @@ fn a_stretch_begins_with_what_was_known_before_it() {
     }
     assert!(missing.is_empty());
 }
+
+/// Files of the versions until 0.1.0 of 24 November 2026, with an own list of chunks each minute: one that was ended, and one of a
+/// program that was killed while it wrote.
+#[test]
+fn files_with_lists_of_chunks_still_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    let check = |bytes: &[u8], wanted: (usize, u64), bytes_lost: u64| {
+        std::fs::write(&path, bytes).unwrap();
+        let (all, file, damage) = read(&path).unwrap();
+        let counts = file.overview().counts;
+        assert_eq!((all.len(), counts.faults), wanted);
+        assert_eq!((counts.states, counts.touch_blocks), (14, 39));
+        assert_eq!((counts.notes, counts.missing), (175, 0));
+        assert_eq!(file.overview().seconds(), Some((2, 71)));
+        assert_eq!(file.last(), Moment::from_micros(71_614_700));
+        assert_eq!(
+            (file.opening(), file.remarks()),
+            (&opening(), [].as_slice())
+        );
+        let lost = Damage {
+            bytes: bytes_lost,
+            ..Damage::default()
+        };
+        assert_eq!((damage, file.is_closed()), (lost, bytes_lost == 0));
+    };
+    check(include_bytes!("listed-ended.mcap"), (302, 121), 0);
+    check(include_bytes!("listed-killed.mcap"), (302, 134), 7);
+}
