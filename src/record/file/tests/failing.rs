@@ -359,7 +359,9 @@ fn on_500_disks_that_fail_no_value_differs_and_all_that_is_missing_is_counted() 
         let room = if random.bool() { 16_384 } else { 100 };
         let mut schedule = Schedule::new(seed, troubles.clone(), room);
         if seed % 2 == 0 {
-            schedule.recording = schedule.recording.with_part_length(Duration::from_secs(3));
+            // What ends a file and begins the next takes room, too.
+            let recording = schedule.recording.with_pending_max(60_000 + room * 40);
+            schedule.recording = recording.with_part_length(Duration::from_secs(3));
         }
         let status = schedule.run();
         let (found, told) = schedule.found(folder.path());
