@@ -33,7 +33,7 @@ pub struct Opening {
     pub side: Side,
     /// The program's version.
     pub version: String,
-    /// `None` if it was not recorded, but made of something else.
+    /// `None` if it is all there is: of a version without parts, or not recorded, but made of something else.
     pub part: Option<Part>,
 }
 
