@@ -56,7 +56,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let before = mib("VmRSS:")?;
     end(&mut writer, &mut file)?;
     let what = "  memory that ending it took";
-    report.row(what, mib("VmRSS:")? - before, "MiB", Aim::AtMost(16.0))?;
+    report.row(what, mib("VmRSS:")? - before, "MiB", Aim::AtMost(24.0))?;
     drop((writer, file));
     opened(report, &long, &format!("{hours} h, ended"))
 }
