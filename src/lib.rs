@@ -11,7 +11,7 @@
 //! | 0 | [`system`] | what the operating system said, as a value |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
-//! | 1 | [`record`] | what happened at a hand, as typed values; session files, written by a thread of its own and read back; the formats of others |
+//! | 1 | [`record`] | what happened at a hand, as typed values; session files, one for each hour, written by a thread of its own and read back; the formats of others |
 //! | 1 | [`store`] | files, and the calendar that their names use |
 //! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |

@@ -186,7 +186,12 @@ impl SessionPlayer {
         player
     }
 
-    /// The file that is replayed.
+    /// True if this file is replayed, or another of the same recording.
+    pub(crate) fn holds(&self, path: &Path) -> bool {
+        self.file.paths().any(|file| file == path)
+    }
+
+    /// The file that is replayed, or the first of several.
     pub(crate) fn path(&self) -> &Path {
         self.file.path()
     }

@@ -287,7 +287,7 @@ impl SessionWork {
 
     /// Opens a file, unless it is shown already and only another stretch of it is wanted.
     fn open(&mut self, path: PathBuf, stretch: Option<(Moment, Moment)>, env: &Env) {
-        let shown = self.player.as_mut().filter(|player| player.path() == path);
+        let shown = self.player.as_mut().filter(|player| player.holds(&path));
         if let (Some(player), Some(stretch)) = (shown, stretch) {
             return player.show_stretch(stretch, env);
         }

@@ -3,6 +3,7 @@
 
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::item::SessionItem;
+use crate::record::file::parts;
 use crate::store::toml_file::{self, FileText};
 use crate::store::{calendar, replace};
 use serde::{Deserialize, Serialize};
@@ -20,9 +21,9 @@ const FILE_LEN_MAX: u64 = 1024 * 1024;
 /// A session that is to make room, and since when that is told.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlannedDeletion {
-    /// The file.
+    /// The file, or the first of several.
     pub path: PathBuf,
-    /// Its size when it was told: one that grew since is another.
+    /// The size of all when it was told: one that grew since is another.
     pub bytes: u64,
     /// When it was told, in seconds since 1970.
     pub told_unix_s: u64,
@@ -56,10 +57,12 @@ impl PlannedDeletion {
         stamp.replace('T', " ").chars().take(16).collect()
     }
 
-    /// Deletes the file and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
+    /// Deletes the files and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
     pub(crate) fn carry_out(&self) -> io::Result<bool> {
-        let is_same = match std::fs::metadata(&self.path) {
-            Ok(file) => file.len() == self.bytes,
+        let sizes = parts::of(&self.path).into_iter();
+        let sizes = sizes.map(|file| std::fs::metadata(file).map(|about| about.len()));
+        let is_same = match sizes.sum::<io::Result<u64>>() {
+            Ok(bytes) => bytes == self.bytes,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
             Err(error) => return Err(error),
         };
@@ -72,9 +75,11 @@ impl PlannedDeletion {
     }
 }
 
-/// Deletes a session and what was said of it.
+/// Deletes a session, its last file first, and what was said of it.
 pub(crate) fn delete(session: &Path) -> io::Result<()> {
-    std::fs::remove_file(session)?;
+    for file in parts::of(session).iter().rev() {
+        std::fs::remove_file(file)?;
+    }
     // Not each session has one.
     let _said = std::fs::remove_file(SessionAbout::path(session));
     Ok(())
@@ -94,7 +99,7 @@ pub fn plan(
         if bytes <= room.limit {
             break;
         }
-        if item.about.is_kept(item.counts.notes) || room.in_use.contains(&item.path) {
+        if item.about.is_kept(item.counts.notes) || item.is_in(room.in_use) {
             continue;
         }
         bytes = bytes.saturating_sub(item.bytes);
@@ -159,10 +164,12 @@ mod tests {
             simulated: false,
             side: Side::Right,
             version: String::new(),
+            part: None,
         };
         SessionItem {
             opening,
             path: name.into(),
+            files: vec![name.into()],
             bytes,
             length: Duration::ZERO,
             counts: Counts::default(),

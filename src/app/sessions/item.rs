@@ -6,7 +6,7 @@ use crate::record::EventKind;
 use crate::record::file::overview::joint_line;
 use crate::record::file::{Counts, FileMark, OpenError, Opening, Overview, SessionFile};
 use crate::store::calendar::stamp;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Columns of the strip of force.
@@ -14,9 +14,11 @@ pub const STRIP: usize = 96;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionItem {
-    /// The file.
+    /// The file, or the first of several: a long recording has one for each hour.
     pub path: PathBuf,
-    /// Its size.
+    /// All its files, in the order of time.
+    pub files: Vec<PathBuf>,
+    /// The size of all.
     pub bytes: u64,
     /// What it began with.
     pub opening: Opening,
@@ -35,15 +37,15 @@ pub struct SessionItem {
 }
 
 impl SessionItem {
-    /// Reads what is known of a file.
-    ///
-    /// # Errors
-    /// [`OpenError`].
-    pub fn read(path: &Path) -> Result<Self, OpenError> {
-        let file = SessionFile::open(path)?;
-        // What a person said of it must not keep the recording from being seen.
-        let about = SessionAbout::load(path).unwrap_or_default();
-        Ok(Self::of(&file, about))
+    /// Reads what is known of the files of one recording, and tells which of them cannot be read.
+    pub fn read(files: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
+        let (file, unread) = SessionFile::open_all(files);
+        let item = file.map(|file| {
+            // What a person said of it must not keep the recording from being seen.
+            let about = SessionAbout::load(file.path()).unwrap_or_default();
+            Self::of(&file, about)
+        });
+        (item, unread)
     }
 
     /// Of an open file.
@@ -52,7 +54,8 @@ impl SessionItem {
         let span = (file.first(), file.last());
         Self {
             path: file.path().to_owned(),
-            bytes: std::fs::metadata(file.path()).map_or(0, |about| about.len()),
+            files: file.paths().map(ToOwned::to_owned).collect(),
+            bytes: file.bytes(),
             opening: file.opening().clone(),
             length: file.last().since(file.first()),
             counts: overview.counts,
@@ -78,6 +81,11 @@ impl SessionItem {
         }
         let stem = self.path.file_stem().unwrap_or_default();
         stem.to_string_lossy().into_owned()
+    }
+
+    /// True if one of its files is among these.
+    pub fn is_in(&self, paths: &[PathBuf]) -> bool {
+        self.files.iter().any(|file| paths.contains(file))
     }
 
     /// How many marks of a kind there are.

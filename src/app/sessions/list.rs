@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::sessions::budget::{self, PlannedDeletion};
 use crate::app::sessions::item::SessionItem;
 use crate::hand::Moment;
+use crate::record::file::parts;
 use crate::store::{BackgroundJob, on_thread};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -87,25 +88,29 @@ pub(crate) fn look(
 }
 
 fn find(folder: &Path, known: &[SessionItem]) -> Looked {
-    let mut paths = files(folder);
-    paths.sort_by(|one, two| two.cmp(one));
-    paths.truncate(SESSIONS_MAX);
+    let mut recordings = parts::recordings(files(folder));
+    recordings.sort_by(|one, two| two.cmp(one));
+    recordings.truncate(SESSIONS_MAX);
     let (mut items, mut unread) = (Vec::new(), Vec::new());
-    for path in paths {
-        let bytes = std::fs::metadata(&path).map_or(0, |about| about.len());
-        let same = |item: &&SessionItem| item.path == path && item.bytes == bytes;
+    for files in recordings {
+        let sizes = files.iter().flat_map(std::fs::metadata);
+        let bytes = sizes.map(|about| about.len()).sum::<u64>();
+        let same = |item: &&SessionItem| item.files == files && item.bytes == bytes;
         if let Some(item) = known.iter().find(same).filter(|item| item.closed) {
-            let about = crate::app::sessions::SessionAbout::load(&path).unwrap_or_default();
+            let about = crate::app::sessions::SessionAbout::load(&item.path).unwrap_or_default();
             items.push(SessionItem {
                 about,
                 ..item.clone()
             });
             continue;
         }
-        match SessionItem::read(&path) {
-            Ok(item) => items.push(item),
-            Err(why) => unread.push((path, why.to_string())),
-        }
+        let (item, refused) = SessionItem::read(&files);
+        items.extend(item);
+        unread.extend(
+            refused
+                .into_iter()
+                .map(|(path, why)| (path, why.to_string())),
+        );
     }
     items.sort_by_key(|item| std::cmp::Reverse(item.opening.began_since_1970()));
     Looked {

@@ -11,7 +11,7 @@ use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{
-    Opening, Recorder, RecorderNotice, RecorderStatus, RecordingPlan, SystemDisk,
+    Opening, PART_LENGTH, Recorder, RecorderNotice, RecorderStatus, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
 use crate::store::BackgroundJob;
@@ -72,6 +72,7 @@ impl HandRecording {
             path: target.folder.join(day(wall)).join(name),
             opening,
             disk: Arc::new(SystemDisk),
+            part_length: PART_LENGTH,
         };
         let recorder = Recorder::start(plan).ok()?;
         let input = recorder.input();

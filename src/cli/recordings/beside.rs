@@ -5,7 +5,7 @@ use crate::cli::out::say;
 use crate::cli::recordings::record::{FileTold, tell_parameters};
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LinkHandle};
-use crate::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
+use crate::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use crate::store::calendar;
 use crate::tasks::recording;
 use crate::transport::Endpoint;
@@ -54,6 +54,7 @@ impl SideRecording {
             path: path.to_path_buf(),
             opening: Opening::begin(hand.to_string(), moments, side),
             disk: Arc::new(SystemDisk),
+            part_length: PART_LENGTH,
         })
         .context("cannot start the recorder")?;
         say(&format!("recording {hand} to {}", path.display()));

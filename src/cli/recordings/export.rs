@@ -142,10 +142,14 @@ pub(crate) struct RecoverArgs {
 pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let form = args.form.form();
     args.check(form)?;
-    let files = args.files.iter();
-    let files: Vec<SessionFile> = files
-        .map(|file| session_file::open_or_stdin(file))
-        .collect::<anyhow::Result<_>>()?;
+    let mut files: Vec<SessionFile> = Vec::new();
+    for path in &args.files {
+        // The files of one recording, which a pattern like *.mcap names one by one, are one session.
+        let is_it = |open: &Path| open == path;
+        if !files.iter().flat_map(SessionFile::paths).any(is_it) {
+            files.push(session_file::open_or_stdin(path)?);
+        }
+    }
     files.iter().for_each(say_remarks);
     let stretches = files.iter().map(|file| args.stretch.of(file));
     let stretches: Vec<Stretch> = stretches.collect::<anyhow::Result<_>>()?;
@@ -173,11 +177,11 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         Form::LeRobot => work.lerobot(&args.out, &args.plan()),
         _ if to_stdout => work.one_by_one(&[Destination::Stdout]),
         _ if files.len() == 1 => work.one_by_one(&[Destination::Path(args.out.clone())]),
-        _ => work.to_folder(&args.out, &args.files),
+        _ => work.to_folder(&args.out),
     };
     drop(work.progress);
     let done = done.map_err(told)?;
-    done.report(out, args, form)
+    done.report(out, args, &files)
 }
 
 impl ExportArgs {
@@ -282,10 +286,10 @@ impl Work<'_> {
     }
 
     /// Each into a file of its own, which is called as the session.
-    fn to_folder(&self, out: &Path, names: &[PathBuf]) -> Result<Done, ExportError> {
+    fn to_folder(&self, out: &Path) -> Result<Done, ExportError> {
         let folder = Folder::new(out)?;
         let mut places: Vec<Destination> = Vec::new();
-        for name in names {
+        for name in self.files.iter().map(SessionFile::path) {
             let stem = if is_standard(name) {
                 "stdin".into()
             } else {
@@ -342,11 +346,17 @@ fn share_of_all(number: usize, share: f64, all: usize) -> f64 {
 }
 
 impl Done {
-    fn report(&self, out: &mut Out, args: &ExportArgs, form: Form) -> anyhow::Result<()> {
+    fn report(
+        &self,
+        out: &mut Out,
+        args: &ExportArgs,
+        files: &[SessionFile],
+    ) -> anyhow::Result<()> {
+        let form = args.form.form();
         let mut all = Exported::default();
-        for (path, session) in args.files.iter().zip(&self.sessions) {
+        for (file, session) in files.iter().zip(&self.sessions) {
             if let Some(words) = lost(&session.damage) {
-                say(&format!("{} is damaged: {words}", path.display()));
+                say(&format!("{} is damaged: {words}", file.path().display()));
             }
             all.rows += session.rows;
             all.damage.add(&session.damage);

@@ -1,7 +1,7 @@
 //! `info`: what a session file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
 
 use crate::cli::out::Out;
-use crate::cli::recordings::session_file::{self, FileArgs, length, lost};
+use crate::cli::recordings::session_file::{self, FileArgs, add_files, length, lost};
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, Remark, SessionFile};
@@ -28,11 +28,10 @@ pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let file = session_file::open(path)?;
     let contents = Contents::of(&file)
         .with_context(|| format!("cannot read {} to its end", path.display()))?;
-    let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
     let told = Told {
         file: &file,
         contents,
-        bytes,
+        bytes: file.bytes(),
     };
     out.result(args.json, &told.json(), told.lines())
 }
@@ -107,7 +106,7 @@ impl Told<'_> {
                 "messages": gap.messages,
             })
         });
-        json!({
+        let mut object = json!({
             "file": self.file.path(),
             "start": self.start(),
             "length_s": length(self.file).as_secs_f64(),
@@ -137,7 +136,9 @@ impl Told<'_> {
             "previous": self.part(GOES_ON_FROM),
             "next": self.part(GOES_ON_IN),
             "bytes": self.bytes,
-        })
+        });
+        add_files(&mut object, Some(self.file));
+        object
     }
 
     fn lines(&self) -> Vec<String> {
@@ -169,6 +170,13 @@ impl Told<'_> {
             format!("notes         {}", Self::count(counts.notes, read.notes)),
             format!("size          {megabytes:.1} MB"),
         ];
+        if self.file.paths().count() > 1 {
+            let files = self.file.paths().map(|path| path.display().to_string());
+            lines.push(format!(
+                "files         {}",
+                Vec::from_iter(files).join(", ")
+            ));
+        }
         if !self.file.is_closed() {
             lines.push(format!(
                 "not closed: the program ended without ending the file. It can be read up to {:.3} s; what came after is in no file: a quarter of a second where the program was killed, more where the disk was full or the power lost; 'handscope recover' writes a closed copy",

@@ -5,13 +5,14 @@ use crate::app::env::day_folder;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
+use crate::cli::recordings::session_file::add_files;
 use crate::cli::session;
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::params::file::ParamsFile;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{
-    Opening, Recorder, RecorderStatus, RecordingPlan, SessionFile, SystemDisk,
+    Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SessionFile, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
 use crate::store::calendar;
@@ -73,6 +74,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
         path: path.clone(),
         opening,
         disk: Arc::new(SystemDisk),
+        part_length: PART_LENGTH,
     })
     .context("cannot start the recorder")?;
     let input = recorder.input();
@@ -249,8 +251,8 @@ fn finish(
 fn statistics(path: &Path, file: Option<&SessionFile>, status: &RecorderStatus) -> Value {
     let counts = file.map(|file| file.overview().counts);
     let length = file.map(|file| file.last().since(file.first()).as_secs_f64());
-    json!({
-        "file": path,
+    let mut object = json!({
+        "file": file.map_or(path, SessionFile::path),
         "length_s": length,
         "states": counts.map(|counts| counts.states),
         "touch_sweeps": counts.map(|counts| counts.touch_sweeps()),
@@ -260,5 +262,7 @@ fn statistics(path: &Path, file: Option<&SessionFile>, status: &RecorderStatus) 
         "bytes": status.bytes + status.earlier_bytes,
         "mb_per_hour": status.megabytes_an_hour(),
         "closed": file.is_some_and(SessionFile::is_closed),
-    })
+    });
+    add_files(&mut object, file);
+    object
 }

@@ -6,6 +6,7 @@ use crate::hand::Moment;
 use crate::record::file::SessionFile;
 use crate::record::file::reader::{Damage, OpenError, Stretch};
 use anyhow::{Context as _, anyhow, bail};
+use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
@@ -109,6 +110,14 @@ fn opened(file: Result<SessionFile, OpenError>, path: &Path) -> anyhow::Result<S
 /// How long a session is.
 pub(crate) fn length(file: &SessionFile) -> Duration {
     file.last().since(file.first())
+}
+
+/// Names the files of a recording that has several.
+pub(crate) fn add_files(object: &mut Value, file: Option<&SessionFile>) {
+    let files: Vec<&Path> = file.into_iter().flat_map(SessionFile::paths).collect();
+    if let Some(fields) = object.as_object_mut().filter(|_| files.len() > 1) {
+        fields.insert("files".into(), json!(files));
+    }
 }
 
 /// What could not be read, in words; `None` if all could.

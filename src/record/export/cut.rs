@@ -2,9 +2,8 @@
 
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::{Broken, Source};
-use crate::record::file::index::Counted;
 use crate::record::file::reader::Damage;
-use crate::record::file::writer::SessionWriter;
+use crate::record::file::writer::{Counted, SessionWriter};
 use crate::record::file::{Opening, SessionFile};
 use crate::record::{Entry, Event, EventKind};
 use std::io::Write;
@@ -68,6 +67,7 @@ pub(crate) fn copy<W: Write>(
 ) -> Result<Copied<W>, Broken> {
     let opening = Opening {
         began: source.stretch.from.max(source.file.first()),
+        part: None,
         ..source.file.opening().clone()
     };
     let mut copy = SessionCopy::new(&opening, to)?;
@@ -90,7 +90,7 @@ pub(crate) struct SessionCopy<W> {
 impl<W: Write> SessionCopy<W> {
     pub(crate) fn new(opening: &Opening, to: W) -> Result<Self, Broken> {
         Ok(Self {
-            writer: SessionWriter::new(opening)?,
+            writer: SessionWriter::copy(opening)?,
             to,
             rows: 0,
         })
@@ -113,12 +113,8 @@ impl<W: Write> SessionCopy<W> {
 
     /// Ends the file.
     pub(crate) fn end(mut self) -> Result<Copied<W>, Broken> {
-        let end = self.writer.finish()?;
-        let counted = end.counted();
+        let counted = self.writer.finish()?;
         self.put()?;
-        for piece in end {
-            self.to.write_all(&piece)?;
-        }
         self.to.flush()?;
         Ok(Copied {
             exported: Exported {

@@ -3,8 +3,8 @@
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::Source;
-use crate::record::file::index::Counted;
 use crate::record::file::topic::Topic;
+use crate::record::file::writer::Counted;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, BufWriter};
@@ -41,7 +41,7 @@ pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
 
 /// What rosbag2 wants to know of the file of this name.
 fn metadata(counted: &Counted, name: &str) -> String {
-    let (first, last) = counted.times.unwrap_or_default();
+    let (first, last) = counted.times;
     let (length, messages) = (last - first, counted.all());
     // A name in single quotes is a text whatever it holds.
     let name = name.replace('\'', "''");

@@ -17,6 +17,8 @@ pub enum Remark {
     SumDiffers,
     /// What the file says of itself is missing or damaged.
     OpeningLost,
+    /// So many files of the recording do not lie where the others do.
+    FilesMissing(u32),
 }
 
 impl Remark {
@@ -25,7 +27,7 @@ impl Remark {
         match self {
             Self::Skipped(skipped) => skipped.is_ours(),
             Self::StaleIndex => false,
-            Self::Rewritten | Self::SumDiffers | Self::OpeningLost => true,
+            Self::Rewritten | Self::SumDiffers | Self::OpeningLost | Self::FilesMissing(_) => true,
         }
     }
 }
@@ -34,6 +36,15 @@ impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Skipped(skipped) => return skipped.fmt(f),
+            Self::FilesMissing(1) => {
+                "one file of this recording, which has one for each hour, is not in this folder or cannot be opened"
+            }
+            Self::FilesMissing(files) => {
+                return write!(
+                    f,
+                    "{files} files of this recording, which has one for each hour, are not in this folder or cannot be opened"
+                );
+            }
             Self::Rewritten => {
                 "another program wrote or changed this file, or its beginning is damaged: it is read by the names of its topics, and nobody can tell what was left out"
             }

@@ -1,25 +1,23 @@
 //! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
 //!
 //! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
-//! `writer` makes bytes of entries, `index` those of the file's end, `chunk_list` what it and each
-//! minute say of their chunks, `tail` puts them on the disk, `recording` decides when and into which file, `recorder` is the
-//! thread that does it; `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader` reads its
+//! `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when and into which file, of which there is a
+//! new one each hour, `recorder` is the thread that does it; `parts` tells which files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader` reads its
 //! entries, `by_time` those of a file that another program wrote, `damage` is what was missing, `contents` what can be read, `overview` is what a file tells
 //! without being read whole.
 
 mod by_time;
 pub mod cdr;
 mod channels;
-mod chunk_list;
 mod contents;
 mod damage;
 pub mod decode;
 pub mod disk;
 pub mod encode;
-pub mod index;
 pub mod message;
 pub mod opening;
 pub mod overview;
+pub mod parts;
 pub mod reader;
 pub mod recorder;
 mod recording;
@@ -34,10 +32,11 @@ pub use crate::record::file::channels::{SkipReason, SkippedTopic};
 pub use crate::record::file::contents::Contents;
 pub use crate::record::file::damage::{Damage, Gap, Remark};
 pub use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
-pub use crate::record::file::opening::Opening;
+pub use crate::record::file::opening::{Opening, Part};
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
-pub use crate::record::file::recorder::{Recorder, RecordingPlan};
+pub use crate::record::file::recorder::Recorder;
 pub use crate::record::file::recording::{
-    FLUSH_EACH, GOES_ON_FROM, GOES_ON_IN, RecorderNotice, RecorderStatus,
+    FLUSH_EACH, GOES_ON_FROM, GOES_ON_IN, PART_LENGTH, RecorderNotice, RecorderStatus,
+    RecordingPlan,
 };

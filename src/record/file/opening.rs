@@ -2,11 +2,21 @@
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use mcap::records::{Record, op};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// The name of what is said of a session among a file's metadata.
 pub(crate) const METADATA: &str = "handscope";
+
+/// Which file of a recording it is: a long one goes on in a new file each hour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Part {
+    /// When the recording began. By this, the hand and [`Opening::base_nanos`] its files know each other.
+    pub recording_began: Moment,
+    /// The first is 1.
+    pub number: u32,
+}
 
 /// What a session begins with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,6 +33,8 @@ pub struct Opening {
     pub side: Side,
     /// The program's version.
     pub version: String,
+    /// `None` if it is all there is: of a version without parts, or not recorded, but made of something else.
+    pub part: Option<Part>,
 }
 
 impl Opening {
@@ -40,6 +52,7 @@ impl Opening {
             simulated: false,
             side: Side::Right,
             version: String::new(),
+            part: None,
         }
     }
 
@@ -67,6 +80,7 @@ impl Opening {
             hand,
             side,
             version: env!("CARGO_PKG_VERSION").into(),
+            part: None,
         }
     }
 
@@ -106,8 +120,23 @@ impl Opening {
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value))
         .collect();
+        if let Some(part) = self.part {
+            let began = part.recording_began.micros();
+            map.insert(RECORDING.into(), began.to_string());
+            map.insert(PART.into(), part.number.to_string());
+        }
         map.insert(CHECK.into(), check(&map));
         map
+    }
+
+    /// From the content of a record of metadata; `None` if it is another.
+    pub(crate) fn of_record(content: &[u8]) -> Option<Self> {
+        match mcap::parse_record(op::METADATA, content) {
+            Ok(Record::Metadata(read)) if read.name == METADATA => {
+                Self::of_metadata(&read.metadata)
+            }
+            _ => None,
+        }
     }
 
     /// From what stands in a file; `None` if it is not ours.
@@ -127,6 +156,7 @@ impl Opening {
                 _ => Side::Right,
             },
             version: text("version"),
+            part: part(map),
         })
     }
 }
@@ -139,6 +169,17 @@ pub(crate) const fn nanos_of(base_nanos: u64, at: Moment) -> u64 {
 /// Nanoseconds since 1970 as a moment.
 pub(crate) const fn moment_of(base_nanos: u64, nanos: u64) -> Moment {
     Moment::from_micros(nanos.saturating_sub(base_nanos) / 1000)
+}
+
+/// The keys of which file of a recording it is.
+const RECORDING: &str = "recording_micros";
+const PART: &str = "part";
+
+fn part(map: &BTreeMap<String, String>) -> Option<Part> {
+    Some(Part {
+        recording_began: Moment::from_micros(map.get(RECORDING)?.parse().ok()?),
+        number: map.get(PART)?.parse().ok()?,
+    })
 }
 
 /// The key of the sum over all others: MCAP has none over metadata.

@@ -358,6 +358,28 @@ impl Overview {
         Some(block.from)
     }
 
+    /// Of the file after: nothing yet, and what holds on at the hand does not come again.
+    pub(crate) fn next(&self) -> Self {
+        Self {
+            rows: Vec::new(),
+            marks: Vec::new(),
+            counts: Counts::default(),
+            ..*self
+        }
+    }
+
+    /// Adds that of the file after.
+    pub(crate) fn add(&mut self, later: Self) {
+        for read in later.rows {
+            if let Some(row) = self.row(read.second) {
+                row.merge(&read);
+            }
+        }
+        later.marks.into_iter().for_each(|mark| self.mark(mark));
+        self.counts.add(later.counts);
+        self.sort();
+    }
+
     /// Puts all in the order of time, once everything was taken in.
     pub(crate) fn sort(&mut self) {
         self.marks.sort_by_key(|mark| mark.at);

@@ -1,4 +1,5 @@
-//! Reads a session file: what it is at once, its entries by stretches of time, and what of it is missing.
+//! Reads a session file, and with it the others of its recording: what it is at once, its entries by stretches of time, and what of
+//! it is missing.
 
 use crate::hand::Moment;
 use crate::record::file::by_time;
@@ -7,6 +8,7 @@ pub use crate::record::file::damage::{Damage, Gap, Remark};
 use crate::record::file::decode::EntryDecoder;
 use crate::record::file::opening::{METADATA, Opening, moment_of, nanos_of};
 use crate::record::file::overview::{Overview, SECONDS_MAX};
+use crate::record::file::parts;
 use crate::record::file::topic::Topic;
 use crate::record::file::walk::{
     self, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey, messages, records,
@@ -31,6 +33,9 @@ const WARM_UP: Duration = Duration::from_secs(6);
 
 /// The hand's parameters are recorded so soon; reading them may take ten seconds.
 const PARAMETERS_WITHIN: Duration = Duration::from_secs(60);
+
+/// Entries of several sources come in almost the order of time: also those at the border of two files.
+const APART: Duration = Duration::from_secs(1);
 
 /// Of the beginning of a file, so much is looked at: the header, what is said of the recording, and the definitions.
 const BEGINNING: u64 = 64 * 1024;
@@ -67,7 +72,7 @@ impl From<io::Error> for OpenError {
     }
 }
 
-/// An open session file.
+/// An open session file, and those that follow it in its recording.
 ///
 /// ```no_run
 /// use handscope::record::file::SessionFile;
@@ -95,6 +100,8 @@ pub struct SessionFile {
     opening: Opening,
     overview: Overview,
     last: Moment,
+    /// The files after it, in the order of time. Remarks, overview and last moment of this one are those of all.
+    later: Vec<Self>,
 }
 
 /// How the messages of a file follow each other.
@@ -127,11 +134,40 @@ impl Stretch {
 }
 
 impl SessionFile {
-    /// Opens a file.
+    /// Opens a file, and the others of its recording that lie beside it. One of those that cannot be opened is as if it were missing.
     ///
     /// # Errors
-    /// [`OpenError`].
+    /// [`OpenError`], of this file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
+        let (all, refused) = Self::open_all(&parts::of(path));
+        match refused.into_iter().find(|(refused, _)| refused == path) {
+            Some((_, why)) => Err(why),
+            None => all.ok_or(OpenError::Empty),
+        }
+    }
+
+    /// Opens the files of one recording, and tells which cannot be opened.
+    pub fn open_all(paths: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
+        let (mut all, mut refused) = (None::<Self>, Vec::new());
+        for path in paths {
+            match (Self::open_one(path), &mut all) {
+                (Ok(file), Some(all)) => all.join(file),
+                (Ok(file), None) => all = Some(file),
+                (Err(why), _) => refused.push((path.clone(), why)),
+            }
+        }
+        if let Some(all) = &mut all {
+            let newest = all.parts().last().and_then(|file| file.opening.part);
+            let files = u32::try_from(all.parts().count()).unwrap_or(u32::MAX);
+            let missing = newest.map_or(0, |newest| newest.number.saturating_sub(files));
+            if missing > 0 {
+                all.remarks.push(Remark::FilesMissing(missing));
+            }
+        }
+        (all, refused)
+    }
+
+    fn open_one(path: &Path) -> Result<Self, OpenError> {
         if !std::fs::metadata(path)?.is_file() {
             return Err(OpenError::NotAFile);
         }
@@ -178,6 +214,7 @@ impl SessionFile {
             opening: Opening::unknown(0),
             overview: Overview::default(),
             last: Moment::ZERO,
+            later: Vec::new(),
         }
     }
 
@@ -220,10 +257,39 @@ impl SessionFile {
             opening: Opening::unknown(0),
             overview: Overview::default(),
             last: Moment::ZERO,
+            later: Vec::new(),
         })
     }
 
-    /// Where it lies.
+    /// Takes in the file after it.
+    fn join(&mut self, mut later: Self) {
+        self.last = self.last.max(later.last);
+        self.overview.add(std::mem::take(&mut later.overview));
+        for remark in std::mem::take(&mut later.remarks) {
+            if !self.remarks.contains(&remark) {
+                self.remarks.push(remark);
+            }
+        }
+        self.later.push(later);
+    }
+
+    /// Itself and the files after it.
+    fn parts(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.later)
+    }
+
+    /// Where all its files lie, in the order of time.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.parts().map(|file| file.path.as_path())
+    }
+
+    /// Bytes of all its files.
+    pub fn bytes(&self) -> u64 {
+        let files = self.paths().map(std::fs::metadata);
+        files.flatten().map(|about| about.len()).sum()
+    }
+
+    /// Where it lies, or the first of its files.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -249,23 +315,18 @@ impl SessionFile {
     }
 
     /// True if the recording was ended as it should be, and not by a crash.
-    pub const fn is_closed(&self) -> bool {
-        self.found.closed
+    pub fn is_closed(&self) -> bool {
+        self.parts().all(|file| file.found.closed)
     }
 
     /// True if opening the file has shown that something of it is missing.
     pub fn is_damaged(&self) -> bool {
-        self.damage != Damage::default()
+        self.parts().any(|file| file.damage != Damage::default())
     }
 
     /// What is to be said of how it was found.
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
-    }
-
-    /// How many messages were written, where the file says so.
-    pub const fn messages_written(&self) -> Option<u64> {
-        self.found.messages
     }
 
     /// Gives each entry of a stretch of time to `take`, in the order of the file, until it breaks off; in the order of time where
@@ -320,15 +381,37 @@ impl SessionFile {
         to: Moment,
         mut take: impl FnMut(Topic, &ChunkMessage<'_>) -> ControlFlow<()>,
     ) -> io::Result<Damage> {
-        let known = |message: &ChunkMessage<'_>| match self.topics.get(&message.channel) {
-            Some(topic) => take(*topic, message),
-            None => ControlFlow::Continue(()),
-        };
+        let mut damage = Damage::default();
+        let mut flow = ControlFlow::Continue(());
+        for file in self.parts() {
+            let is_beside = file.last < from || file.first() > to.plus(APART);
+            if flow.is_break() || is_beside && !self.later.is_empty() {
+                damage.add(&file.damage);
+                continue;
+            }
+            let known = |message: &ChunkMessage<'_>| {
+                if let Some(topic) = file.topics.get(&message.channel) {
+                    flow = take(*topic, message);
+                }
+                flow
+            };
+            damage.add(&file.each_of_file(from, to, known)?);
+        }
+        Ok(damage)
+    }
+
+    /// The same of one file.
+    fn each_of_file(
+        &self,
+        from: Moment,
+        to: Moment,
+        take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
+    ) -> io::Result<Damage> {
         match self.order {
-            Order::Numbered => self.each_numbered(from, to, known),
+            Order::Numbered => self.each_numbered(from, to, take),
             Order::Any => {
                 let read = |place| self.read(place);
-                by_time::each(&self.found.chunks, self.nanos(from, to), read, known)?;
+                by_time::each(&self.found.chunks, self.nanos(from, to), read, take)?;
                 Ok(self.damage.clone())
             }
         }
@@ -575,7 +658,7 @@ fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
     let mut all = Vec::new();
     for place in places {
         let content = walk::content(file, *place)?;
-        all.extend(opening(&content));
+        all.extend(Opening::of_record(&content));
     }
     if all.is_empty() {
         // Perhaps its record cannot be found, but stands where it always does: behind the header.
@@ -585,18 +668,13 @@ fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
         let name = [&[9, 0, 0, 0], METADATA.as_bytes()].concat();
         let places = begin.windows(name.len()).enumerate();
         let place = places.filter(|(_, bytes)| *bytes == name).map(|(at, _)| at);
-        all.extend(place.filter_map(|at| opening(begin.get(at..)?)).next());
+        all.extend(
+            place
+                .filter_map(|at| Opening::of_record(begin.get(at..)?))
+                .next(),
+        );
     }
     Ok(all)
-}
-
-fn opening(content: &[u8]) -> Option<Opening> {
-    match mcap::parse_record(op::METADATA, content) {
-        Ok(McapRecord::Metadata(read)) if read.name == METADATA => {
-            Opening::of_metadata(&read.metadata)
-        }
-        _ => None,
-    }
 }
 
 /// The blocks of the file, and what they miss made anew.

@@ -1,13 +1,10 @@
 //! Puts a session on the disk from a thread of its own. Nobody waits for it: what it cannot take is counted, and said in the file.
 
 use crate::record::Entry;
-use crate::record::file::disk::Disk;
-use crate::record::file::opening::Opening;
 use crate::record::file::recording::{
-    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, SessionRecording,
+    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, RecordingPlan, SessionRecording,
 };
 use std::io;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,17 +16,6 @@ pub const QUEUE_MAX: usize = 16_384;
 const BATCH: Duration = Duration::from_millis(20);
 /// While it ends, a disk that failed is tried again after this.
 const END_RETRY: Duration = Duration::from_millis(50);
-
-/// Where a session goes.
-#[derive(Clone)]
-pub struct RecordingPlan {
-    /// The file, which must not be there yet, else a number is put to its name.
-    pub path: PathBuf,
-    /// What the file begins with.
-    pub opening: Opening,
-    /// Where it lies.
-    pub disk: Arc<dyn Disk>,
-}
 
 /// What entries are given to. Copies give to the same recording.
 #[derive(Debug, Clone)]
@@ -91,7 +77,7 @@ impl Recorder {
     pub fn start(plan: RecordingPlan) -> io::Result<Self> {
         let (input, taken) = RecorderInput::new(QUEUE_MAX);
         let began = Instant::now();
-        let recording = SessionRecording::new(plan.opening, plan.disk, plan.path, now(began));
+        let recording = SessionRecording::new(plan, now(began));
         let recorder = Self {
             input: input.clone(),
             status: Arc::new(Mutex::new(RecorderStatus::default())),

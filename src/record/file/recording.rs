@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::file::disk::{Disk, FilePlace};
-use crate::record::file::opening::Opening;
+use crate::record::file::opening::{Opening, Part};
 use crate::record::file::tail::{Content, FileTail};
 use crate::record::file::writer::SessionWriter;
 use crate::record::{Entry, Event, EventKind, LinkReport, Record};
@@ -19,6 +19,8 @@ pub const FLUSH_EACH: Duration = Duration::from_millis(125);
 pub const GOES_ON_IN: &str = "the recording goes on in ";
 /// The same of the file before.
 pub const GOES_ON_FROM: &str = "this file goes on after ";
+/// A recording goes on in a new file after this, because of each chunk something is remembered until a file is ended.
+pub const PART_LENGTH: Duration = Duration::from_secs(3600);
 /// How often it is looked whether the file is still there and the computer's clock was set.
 pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
 /// A clock that differs by more was set, or the computer slept.
@@ -29,6 +31,19 @@ pub(crate) const END_WITHIN: Duration = Duration::from_secs(2);
 const NOTICES_MAX: usize = 20;
 /// Files begun because one took nothing any more; a disk that spoils more of them is broken.
 const REPLACED_MAX: u32 = 20;
+
+/// Where a session goes.
+#[derive(Clone)]
+pub struct RecordingPlan {
+    /// The first file. Where something has its name a number is put to it, as to those of the files after it.
+    pub path: PathBuf,
+    /// What the file begins with.
+    pub opening: Opening,
+    /// Where it lies.
+    pub disk: Arc<dyn Disk>,
+    /// After which another file is begun: [`PART_LENGTH`], but in tests.
+    pub part_length: Duration,
+}
 
 /// Something that a person must know of a recording under way.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,7 +97,7 @@ impl std::fmt::Display for RecorderNotice {
 /// How a recording goes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecorderStatus {
-    /// The file; `None` before there is one.
+    /// The file that is being written, the newest of several; `None` before there is one.
     pub path: Option<PathBuf>,
     /// Bytes that the system took.
     pub bytes: u64,
@@ -131,6 +146,9 @@ pub(crate) struct Given {
 /// A recording and its files.
 pub(crate) struct SessionRecording {
     opening: Opening,
+    part_length: Duration,
+    /// Since when it is written into this file.
+    part_since: Duration,
     writer: SessionWriter,
     /// What the writer holds that no file was given yet.
     open: Content,
@@ -157,22 +175,24 @@ pub(crate) struct SessionRecording {
 }
 
 impl SessionRecording {
-    /// A recording into a file of this name.
+    /// A recording that begins now.
     ///
     /// # Errors
     /// [`McapError`], which writing to memory does not bring.
-    pub(crate) fn new(
-        opening: Opening,
-        disk: Arc<dyn Disk>,
-        path: PathBuf,
-        now: Now,
-    ) -> Result<Self, McapError> {
+    pub(crate) fn new(plan: RecordingPlan, now: Now) -> Result<Self, McapError> {
+        let began = plan.opening.began;
+        let opening = Opening {
+            part: Some(first_part(began)),
+            ..plan.opening
+        };
         Ok(Self {
             writer: SessionWriter::new(&opening)?,
-            newest: opening.began,
+            newest: began,
             opening,
+            part_length: plan.part_length,
+            part_since: now.since,
             open: Content::default(),
-            tail: FileTail::new(disk, path),
+            tail: FileTail::new(plan.disk, plan.path),
             ending: None,
             untold: 0,
             entries: 0,
@@ -194,6 +214,12 @@ impl SessionRecording {
     #[cfg(test)]
     pub(crate) const fn with_pending_max(mut self, bytes: usize) -> Self {
         self.pending_max = bytes;
+        self
+    }
+
+    #[cfg(test)]
+    pub(crate) const fn with_part_length(mut self, length: Duration) -> Self {
+        self.part_length = length;
         self
     }
 
@@ -230,6 +256,10 @@ impl SessionRecording {
         if now.since.saturating_sub(self.looked_at) >= LOOK_EACH {
             self.looked_at = now.since;
             self.look(now);
+            let is_long = now.since.saturating_sub(self.part_since) >= self.part_length;
+            if is_long && self.ending.is_none() {
+                self.begin_part(now);
+            }
         }
     }
 
@@ -260,15 +290,15 @@ impl SessionRecording {
 
     /// How it goes.
     pub(crate) fn status(&self, since: Duration) -> RecorderStatus {
+        let ending = self.ending.as_ref();
+        let path = self.tail.path().or_else(|| ending?.path());
         RecorderStatus {
-            path: self.tail.path().map(ToOwned::to_owned),
+            path: path.map(ToOwned::to_owned),
             bytes: self.tail.written(),
-            earlier_bytes: self.earlier_bytes,
+            earlier_bytes: self.earlier_bytes + ending.map_or(0, FileTail::written),
             entries: self.entries,
             missing: self.missing,
-            trouble: self
-                .ending
-                .as_ref()
+            trouble: ending
                 .and_then(FileTail::trouble)
                 .or_else(|| self.tail.trouble()),
             notices: self.notices.clone(),
@@ -338,12 +368,9 @@ impl SessionRecording {
     }
 
     fn finish(&mut self) {
-        let end = self.writer.finish();
-        debug_assert!(end.is_ok());
+        let result = self.writer.finish();
+        debug_assert!(result.is_ok());
         self.give();
-        if let Ok(end) = end {
-            self.tail.end_with(end);
-        }
     }
 
     fn give(&mut self) {
@@ -396,7 +423,7 @@ impl SessionRecording {
                 entries: gone.entries,
             });
             self.take_back(gone);
-            self.begin_next(now, drift, self.tail.again());
+            self.begin_next(now, self.tail.again(), first_part(self.newest));
             let words = "this file goes on where another was removed while it was written";
             self.note(self.newest, words.into());
             return;
@@ -438,7 +465,7 @@ impl SessionRecording {
         self.tell_missing(self.newest);
         self.note(self.newest, format!("{GOES_ON_IN}{name}: {what}"));
         self.finish();
-        let old = self.begin_next(now, drift, next);
+        let old = self.begin_next(now, next, first_part(self.newest));
         self.ending = Some(old);
         self.note(self.newest, format!("{GOES_ON_FROM}{own}: {what}"));
         self.tell(RecorderNotice::ClockSet { next: name });
@@ -462,9 +489,8 @@ impl SessionRecording {
         if works {
             self.flush();
             self.take_back(self.tail.waiting());
-            let drift = self.drift(now);
             let next = self.tail.next();
-            let old = self.begin_next(now, drift, next);
+            let old = self.begin_next(now, next, first_part(self.newest));
             self.earlier_bytes += old.written();
             let name = old.name();
             let words = format!("{GOES_ON_FROM}{name}: that could not be written any more");
@@ -472,16 +498,31 @@ impl SessionRecording {
         }
     }
 
+    /// Goes on in the next file of the same recording.
+    fn begin_part(&mut self, now: Now) {
+        self.tell_missing(self.newest);
+        self.finish();
+        let before = self.opening.part.unwrap_or(first_part(self.newest));
+        let part = Part {
+            number: before.number.saturating_add(1),
+            ..before
+        };
+        self.ending = Some(self.begin_next(now, self.tail.next(), part));
+    }
+
     /// Begins another file, and gives back the one before.
-    fn begin_next(&mut self, now: Now, drift: i128, next: FileTail) -> FileTail {
+    fn begin_next(&mut self, now: Now, next: FileTail, part: Part) -> FileTail {
+        let drift = self.drift(now);
         if drift.unsigned_abs() > CLOCK_SET.as_nanos() {
             let drift = i64::try_from(drift).unwrap_or_default();
             self.opening.base_nanos = self.opening.base_nanos.saturating_add_signed(drift);
             self.clock = now;
         }
         self.opening.began = self.newest;
+        self.opening.part = Some(part);
+        self.part_since = now.since;
         let old = std::mem::replace(&mut self.tail, next);
-        if let Ok(writer) = SessionWriter::new(&self.opening) {
+        if let Ok(writer) = self.writer.next(&self.opening) {
             self.writer = writer;
         }
         self.open = Content::default();
@@ -494,5 +535,13 @@ impl SessionRecording {
         }
         self.tell_missing(at);
         old
+    }
+}
+
+/// Of a recording that begins.
+const fn first_part(recording_began: Moment) -> Part {
+    Part {
+        recording_began,
+        number: 1,
     }
 }

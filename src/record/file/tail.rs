@@ -1,7 +1,6 @@
 //! The end of a file that is being written: bytes that wait for the disk, and bytes that the disk has and may still lose.
 
 use crate::record::file::disk::{Disk, DiskFile, FilePlace};
-use crate::record::file::index::FileEnd;
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -14,8 +13,6 @@ pub(crate) const SYNC_EACH: Duration = Duration::from_millis(700);
 pub(crate) const RETRY_AFTER: Duration = Duration::from_millis(500);
 /// An open file that takes nothing for so long while its disk is not full will not come back: a plug was pulled.
 pub(crate) const DEAD_AFTER: Duration = Duration::from_secs(10);
-/// Of a file's end, so much is held at most: it is made as it is written.
-const END_HELD_MAX: usize = 4 * 1024 * 1024;
 /// Files of one name in one folder; beyond that something is wrong with the folder.
 const NAMES_MAX: u32 = 100;
 
@@ -64,8 +61,6 @@ pub(crate) struct FileTail {
     unsynced: VecDeque<Portion>,
     /// Bytes of both.
     held: usize,
-    /// What is still to be made of the file's end, which follows.
-    end: Option<FileEnd>,
     synced_at: Duration,
     retry_at: Option<Duration>,
     fails_since: Option<Duration>,
@@ -87,7 +82,6 @@ impl FileTail {
             pending: VecDeque::new(),
             unsynced: VecDeque::new(),
             held: 0,
-            end: None,
             synced_at: Duration::ZERO,
             retry_at: None,
             fails_since: None,
@@ -125,11 +119,6 @@ impl FileTail {
         self.pending.push_back(Portion { bytes, content });
     }
 
-    /// Lets the end of the file follow what was added.
-    pub(crate) fn end_with(&mut self, end: FileEnd) {
-        self.end = Some(end);
-    }
-
     pub(crate) fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -150,7 +139,7 @@ impl FileTail {
 
     /// True if all was written and is safe.
     pub(crate) fn is_done(&self) -> bool {
-        self.pending.is_empty() && self.unsynced.is_empty() && self.end.is_none()
+        self.pending.is_empty() && self.unsynced.is_empty()
     }
 
     /// Where the file is, if that is not where it was at the last look.
@@ -220,18 +209,12 @@ impl FileTail {
             return;
         }
         let is_due = now.saturating_sub(self.synced_at) >= SYNC_EACH;
-        self.attempt(
-            now,
-            is_due || self.held >= END_HELD_MAX && self.end.is_some(),
-        );
+        self.attempt(now, is_due);
     }
 
     /// The same at once, and all of it is to be safe.
     pub(crate) fn put_safely(&mut self, now: Duration) {
         self.attempt(now, true);
-        while self.failure.is_none() && self.end.is_some() {
-            self.attempt(now, true);
-        }
     }
 
     fn attempt(&mut self, now: Duration, syncs: bool) {
@@ -246,20 +229,7 @@ impl FileTail {
         self.failure = result.err();
     }
 
-    /// Makes as much of the file's end as may be held.
-    fn make_end(&mut self) {
-        while self.held < END_HELD_MAX
-            && let Some(end) = &mut self.end
-        {
-            match end.next() {
-                Some(piece) => self.add(piece, Content::default()),
-                None => self.end = None,
-            }
-        }
-    }
-
     fn write(&mut self) -> io::Result<()> {
-        self.make_end();
         if self.pending.is_empty() {
             return Ok(());
         }

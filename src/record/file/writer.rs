@@ -2,9 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
-use crate::record::file::chunk_list::CHUNK_LIST;
 use crate::record::file::encode::{EntryEncoder, Message};
-use crate::record::file::index::{FileEnd, FileIndex};
 use crate::record::file::opening::{METADATA, Opening, nanos_of};
 use crate::record::file::overview::Overview;
 use crate::record::file::topic::Topic;
@@ -13,12 +11,14 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// A chunk is closed at this size before compression: what a flipped bit costs.
 const CHUNK_BYTES: u64 = 32 * 1024;
+/// The same of a copy, of any length.
+const COPY_CHUNK_BYTES: u64 = 256 * 1024;
 /// How much of the recording one block of the overview is about.
 const BLOCK_OF: Duration = Duration::from_secs(60);
 /// The name of the blocks of the overview among a file's attachments.
@@ -45,17 +45,26 @@ impl Write for Waiting {
     }
 }
 
-/// Makes the bytes of one session file. The crate's writer remembers each of its chunks with a kilobyte, so each block has one of
-/// its own, of which the end is left out; it begins with the definitions, which thus survive damage, too.
+/// How much there is in a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Counted {
+    /// Messages of each channel.
+    pub messages: BTreeMap<u16, u64>,
+    /// Times of the first and the last message, nanoseconds since 1970.
+    pub times: (u64, u64),
+}
+
+impl Counted {
+    /// Messages of all channels.
+    pub fn all(&self) -> u64 {
+        self.messages.values().sum()
+    }
+}
+
+/// Makes the bytes of one session file. Of each of its chunks the crate's writer remembers 300 bytes until the end.
 pub struct SessionWriter {
     mcap: mcap::Writer<NoSeek<Waiting>>,
     waiting: Waiting,
-    options: WriteOptions,
-    /// Where in the file stands what stands at the beginning for the crate.
-    base: u64,
-    index: FileIndex,
-    crc: crc32fast::Hasher,
-    ready: Vec<u8>,
     encoder: EntryEncoder,
     overview: Overview,
     /// Bytes given away so far.
@@ -63,8 +72,6 @@ pub struct SessionWriter {
     /// Where the chunks begin that the next block is about, and the first moment in them.
     block_from: u64,
     block_began: Option<Moment>,
-    /// Where the last list of chunks stands, and what follows it.
-    listed: (u64, u64),
     sequence: u32,
     newest: Moment,
     base_nanos: u64,
@@ -76,39 +83,40 @@ impl SessionWriter {
     /// # Errors
     /// [`McapError`], which writing to memory does not bring.
     pub fn new(opening: &Opening) -> Result<Self, McapError> {
+        Self::with_chunks(opening, CHUNK_BYTES)
+    }
+
+    /// A copy, of which nothing is lost if the program is killed: its chunks are larger, so that it may be days long.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn copy(opening: &Opening) -> Result<Self, McapError> {
+        Self::with_chunks(opening, COPY_CHUNK_BYTES)
+    }
+
+    fn with_chunks(opening: &Opening, bytes: u64) -> Result<Self, McapError> {
         let waiting = Waiting::default();
         let options = WriteOptions::new()
             .profile("ros2")
             .library(format!("handscope {}", opening.version))
             .compression(Some(Compression::Lz4))
-            .chunk_size(Some(CHUNK_BYTES))
-            .calculate_data_section_crc(false)
-            .emit_summary_records(false)
-            .emit_attachment_indexes(true)
-            .emit_metadata_indexes(true)
+            .chunk_size(Some(bytes))
             .disable_seeking(true);
-        let mut mcap = options.clone().create(NoSeek::new(waiting.clone()))?;
+        let mut mcap = options.create(NoSeek::new(waiting.clone()))?;
         mcap.write_metadata(&Metadata {
             name: METADATA.into(),
             metadata: opening.metadata(),
         })?;
-        let listed = (0, u64::try_from(waiting.bytes().len()).unwrap_or_default());
         define(&mut mcap)?;
         mcap.flush()?;
         let mut writer = Self {
             mcap,
             waiting,
-            options,
-            base: 0,
-            index: FileIndex::default(),
-            crc: crc32fast::Hasher::new(),
-            ready: Vec::new(),
             encoder: EntryEncoder::new(opening),
             overview: Overview::default(),
             given: 0,
             block_from: 0,
             block_began: None,
-            listed,
             sequence: 0,
             newest: opening.began,
             base_nanos: opening.base_nanos,
@@ -117,10 +125,20 @@ impl SessionWriter {
         Ok(writer)
     }
 
+    /// The file after this one: what holds on at the hand does not begin again in it.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn next(&self, opening: &Opening) -> Result<Self, McapError> {
+        Ok(Self {
+            overview: self.overview.next(),
+            ..Self::new(opening)?
+        })
+    }
+
     /// Bytes of the file so far.
     pub fn length(&self) -> u64 {
-        let bytes = self.ready.len() + self.waiting.bytes().len();
-        self.given + u64::try_from(bytes).unwrap_or_default()
+        self.given + u64::try_from(self.waiting.bytes().len()).unwrap_or_default()
     }
 
     /// Adds an entry.
@@ -133,7 +151,6 @@ impl SessionWriter {
         let began = *self.block_began.get_or_insert(at);
         if at.since(began) >= BLOCK_OF {
             self.block()?;
-            self.begin_block()?;
             self.block_began = Some(at);
         }
         let derived = self.overview.take(entry);
@@ -166,78 +183,44 @@ impl SessionWriter {
         self.mcap.flush()
     }
 
-    /// Writes the overview of what was pushed since the last block, and ends the crate's writer.
+    /// Writes the overview of what was pushed since the last block.
     fn block(&mut self) -> Result<(), McapError> {
         let data = self.overview.give_block(self.block_from);
-        self.attach(OVERVIEW, data)?;
-        self.collect();
-        let block = self.mcap.finish()?;
-        self.index.add(block, self.base);
-        self.waiting.bytes().clear();
-        Ok(())
-    }
-
-    fn attach(&mut self, name: &str, data: Vec<u8>) -> Result<(), McapError> {
         let log_time = nanos_of(self.base_nanos, self.newest);
         self.mcap.attach(&Attachment {
             log_time,
             create_time: log_time,
-            name: name.into(),
+            name: OVERVIEW.into(),
             media_type: "application/octet-stream".into(),
             data: Cow::Owned(data),
-        })
-    }
-
-    /// Goes on with another writer of the crate, whose beginning the file has already, and first with a list of the block before.
-    fn begin_block(&mut self) -> Result<(), McapError> {
-        let waiting = Waiting::default();
-        let options = self.options.clone();
-        self.mcap = options.create(NoSeek::new(waiting.clone()))?;
-        let beginning = std::mem::take(&mut *waiting.bytes()).len();
-        self.waiting = waiting;
+        })?;
         self.block_from = self.length();
-        let beginning = u64::try_from(beginning).unwrap_or_default();
-        self.base = self.block_from.saturating_sub(beginning);
-        let (before, from) = self.listed;
-        let list = self.index.list(before, from);
-        self.attach(CHUNK_LIST, list.to_bytes())?;
-        self.listed = (self.block_from, self.length());
-        define(&mut self.mcap)
+        Ok(())
     }
 
-    /// Ends the file. Its end follows the bytes that are to be taken. Nothing can be pushed any more.
+    /// Ends the file; how much there is in it. Nothing can be pushed any more.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn finish(&mut self) -> Result<FileEnd, McapError> {
+    pub fn finish(&mut self) -> Result<Counted, McapError> {
         self.block()?;
-        let index = std::mem::take(&mut self.index);
-        Ok(index.end(self.length(), self.crc.clone().finalize()))
-    }
-
-    /// Bytes that the chunks of all blocks before take in memory, and how many chunks that are.
-    #[cfg(test)]
-    pub(crate) fn chunk_memory(&self) -> (usize, u32) {
-        self.index.chunk_memory()
-    }
-
-    fn collect(&mut self) {
-        let mut waiting = self.waiting.bytes();
-        self.crc.update(&waiting);
-        self.ready.append(&mut waiting);
+        let stats = self.mcap.finish()?.stats.unwrap_or_default();
+        Ok(Counted {
+            messages: stats.channel_message_counts,
+            times: (stats.message_start_time, stats.message_end_time),
+        })
     }
 
     /// The bytes that were made since the last call. They follow those of before.
     pub fn take_bytes(&mut self) -> Vec<u8> {
-        self.collect();
-        let bytes = std::mem::take(&mut self.ready);
+        let bytes = std::mem::take(&mut *self.waiting.bytes());
         self.given += u64::try_from(bytes.len()).unwrap_or_default();
         bytes
     }
 }
 
 /// Says which channels there are, and of what their messages consist.
-fn define<W: Write + Seek>(mcap: &mut mcap::Writer<W>) -> Result<(), McapError> {
+fn define(mcap: &mut mcap::Writer<NoSeek<Waiting>>) -> Result<(), McapError> {
     for topic in Topic::all() {
         let schema = topic.schema();
         mcap.add_schema_with_id(schema.id, schema.name, "ros2msg", schema.text.as_bytes())?;

@@ -218,6 +218,7 @@ fn imported_opening() -> Opening {
         simulated: false,
         side: Side::Right,
         version: format!("{} {}", env!("CARGO_PKG_VERSION"), Opening::IMPORTED),
+        part: None,
     }
 }
 

@@ -162,7 +162,7 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
             about = format!("{}  {about}", look.say(sessions::SIMULATED));
         }
         let mut color = look.palette.muted;
-        let is_recorded = pane.state.sessions.recorded.contains(&item.path);
+        let is_recorded = item.is_in(&pane.state.sessions.recorded);
         let state = match item.closed {
             _ if is_recorded => Some((sessions::RECORDS_NOW, look.palette.ok)),
             true => None,

@@ -116,15 +116,14 @@ impl Script {
             simulated: false,
             side,
             version: "0.1.0".into(),
+            part: None,
         };
         let mut writer = SessionWriter::new(&opening).unwrap();
         for entry in &self.entries {
             writer.push(entry).unwrap();
         }
-        let end = writer.finish().unwrap();
-        let mut bytes = writer.take_bytes();
-        bytes.extend(end.flatten());
-        std::fs::write(path, bytes).unwrap();
+        writer.finish().unwrap();
+        std::fs::write(path, writer.take_bytes()).unwrap();
     }
 }
 

@@ -604,6 +604,7 @@ fn session() -> Vec<u8> {
         simulated: true,
         side: Side::Left,
         version: "0.1.0".into(),
+        part: None,
     };
     let mut sample = HandSample::default();
     let fresh = sample.take(&Reply {
@@ -636,10 +637,8 @@ fn session() -> Vec<u8> {
         writer.push(&entry).unwrap();
         writer.flush().unwrap();
     }
-    let end = writer.finish().unwrap();
-    let mut bytes = writer.take_bytes();
-    bytes.extend(end.flatten());
-    bytes
+    writer.finish().unwrap();
+    writer.take_bytes()
 }
 
 /// A file of poses.

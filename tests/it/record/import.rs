@@ -108,13 +108,12 @@ fn write(path: &Path, entries: &[Entry]) {
         simulated: false,
         side: Side::Left,
         version: "0.1.0".into(),
+        part: None,
     };
     let mut writer = SessionWriter::new(&opening).unwrap();
     entries.iter().for_each(|entry| writer.push(entry).unwrap());
-    let end = writer.finish().unwrap();
-    let mut bytes = writer.take_bytes();
-    bytes.extend(end.flatten());
-    std::fs::write(path, bytes).unwrap();
+    writer.finish().unwrap();
+    std::fs::write(path, writer.take_bytes()).unwrap();
 }
 
 fn import(csv: &Path, session: &Path) -> Result<Imported, ImportError> {

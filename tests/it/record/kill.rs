@@ -9,7 +9,7 @@ use handscope::hand::kinematics::Side;
 use handscope::hand::{Group, Moment, Span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{SessionFile, Stretch};
-use handscope::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
+use handscope::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use handscope::record::{Direction, Entry, PieceKind, Record};
 use handscope::sim::serve::modbus_tcp;
 use handscope::transport::SystemDial;
@@ -59,8 +59,10 @@ fn child_records_until_it_is_killed() {
             simulated: false,
             side: Side::Right,
             version: "test".into(),
+            part: None,
         },
         disk: Arc::new(SystemDisk),
+        part_length: PART_LENGTH,
     })
     .unwrap();
     let (link, _records) = open(config, runtime.handle());

@@ -4,7 +4,7 @@ use handscope::app::sessions::{SessionAbout, SessionNote};
 use handscope::hand::kinematics::Side;
 use handscope::hand::*;
 use handscope::link::LinkStatus;
-use handscope::record::file::{Opening, Recorder, RecordingPlan, SystemDisk};
+use handscope::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use handscope::record::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -84,8 +84,10 @@ fn write(folder: &Path, script: &Script) -> PathBuf {
             simulated: false,
             side: Side::Right,
             version: "test".into(),
+            part: None,
         },
         disk: Arc::new(SystemDisk),
+        part_length: PART_LENGTH,
     })
     .unwrap();
     let input = recorder.input();

@@ -15,8 +15,8 @@ use handscope::inputs::mirror::MirrorScale;
 use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
-use handscope::record::file::SessionFile;
 use handscope::record::file::reader::Stretch;
+use handscope::record::file::{OpenError, SessionFile};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
 use std::ops::ControlFlow;
@@ -56,13 +56,19 @@ fn session(bench: &mut Bench, action: SessionAction) {
     bench.run(20);
 }
 
+fn read_item(path: &Path) -> Result<SessionItem, OpenError> {
+    let file = SessionFile::open(path)?;
+    Ok(SessionItem::of(
+        &file,
+        SessionAbout::load(path).unwrap_or_default(),
+    ))
+}
+
 /// Ends the recording, and gives its file.
 fn ended(bench: &mut Bench) -> PathBuf {
     let path = recorded(bench);
     session(bench, SessionAction::Record(false));
-    settle(bench, |_| {
-        SessionItem::read(&path).is_ok_and(|item| item.closed)
-    });
+    settle(bench, |_| read_item(&path).is_ok_and(|item| item.closed));
     path
 }
 
@@ -85,7 +91,7 @@ fn a_real_hand_is_recorded_by_itself_and_a_simulated_one_only_if_asked() {
     assert!(real.shows("Recording"));
     let path = ended(&mut real);
     assert!(real.shows("Not recording"));
-    let item = SessionItem::read(&path).unwrap();
+    let item = read_item(&path).unwrap();
     assert_eq!(item.opening.hand, HAND);
     assert!(item.counts.states > 100 && item.counts.touch_blocks > 20);
     assert!(!item.opening.simulated);
@@ -95,7 +101,7 @@ fn a_real_hand_is_recorded_by_itself_and_a_simulated_one_only_if_asked() {
     built_in.click("Not recording");
     built_in.run(100);
     let path = ended(&mut built_in);
-    assert!(SessionItem::read(&path).unwrap().opening.simulated);
+    assert!(read_item(&path).unwrap().opening.simulated);
 }
 
 #[test]
@@ -172,7 +178,7 @@ fn the_list_finds_names_stars_and_deletes_after_a_question() {
     let path = ended(&mut bench);
     bench.show(View::Sessions);
     settle(&mut bench, |bench| bench.state().sessions.looked > 0);
-    let title = SessionItem::read(&path).unwrap().title();
+    let title = read_item(&path).unwrap().title();
     assert!(bench.shows(&title), "{:?}", bench.texts());
     bench.type_into("Find sessions", "nothing like it");
     assert!(bench.shows("No session has these words."));
@@ -180,13 +186,13 @@ fn the_list_finds_names_stars_and_deletes_after_a_question() {
     assert!(bench.shows(&title));
 
     bench.click(&format!("Keep: {title}"));
-    settle(&mut bench, |_| SessionItem::read(&path).unwrap().about.star);
+    settle(&mut bench, |_| read_item(&path).unwrap().about.star);
     bench.click(&format!("More: {title}"));
     bench.run(100);
     bench.type_into("Name of the session", "Old finger 捏");
     bench.key(egui::Key::Enter);
     settle(&mut bench, |_| {
-        SessionItem::read(&path).unwrap().about.name == "Old finger 捏"
+        read_item(&path).unwrap().about.name == "Old finger 捏"
     });
     bench.run(100);
     assert!(bench.shows("Old finger 捏"));
@@ -301,7 +307,7 @@ fn a_note_is_recorded_and_one_can_be_given_after_the_fact() {
     bench.act(Action::Note(at, "before the squeeze".into()));
     bench.wait(1000);
     let path = ended(&mut bench);
-    let notes = |path: &PathBuf| SessionItem::read(path).unwrap().notes();
+    let notes = |path: &PathBuf| read_item(path).unwrap().notes();
     assert_eq!(notes(&path).len(), 1);
     assert_eq!(notes(&path)[0].words, "before the squeeze");
     assert_eq!(notes(&path)[0].at(), at);
@@ -324,7 +330,7 @@ fn faults_stops_and_arming_are_marks_of_the_session() {
     bench.key(egui::Key::Space);
     bench.wait(1000);
     let path = ended(&mut bench);
-    let item = SessionItem::read(&path).unwrap();
+    let item = read_item(&path).unwrap();
     assert!(item.counts.faults > 0 && item.count(EventKind::Fault) > 0);
     assert!(item.count(EventKind::Stop) == 1);
     let fault = item.marks.iter().find(|mark| mark.kind == EventKind::Fault);
@@ -459,11 +465,11 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     bench.show(View::Live);
     bench.click_button("Compare with");
     bench.run(100);
-    let title = SessionItem::read(&second).unwrap().title();
+    let title = read_item(&second).unwrap().title();
     let offered = bench.buttons_with(&title);
     bench.click_button(&offered[0]);
     settle(&mut bench, |bench| bench.state().beside.is_some());
-    let note = |path| SessionItem::read(path).unwrap().notes()[0].at();
+    let note = |path| read_item(path).unwrap().notes()[0].at();
     let (own, other) = (note(&first), note(&second));
     session(&mut bench, SessionAction::Align(own, other));
     bench.run(100);
@@ -565,10 +571,8 @@ fn a_note_does_not_undo_a_name_and_a_bad_file_of_words_is_kept() {
         )));
     }
     bench.act(Action::Note(at, "seen".into()));
-    settle(&mut bench, |_| {
-        SessionItem::read(&path).unwrap().notes().len() == 1
-    });
-    assert_eq!(SessionItem::read(&path).unwrap().about.name, "three");
+    settle(&mut bench, |_| read_item(&path).unwrap().notes().len() == 1);
+    assert_eq!(read_item(&path).unwrap().about.name, "three");
     let folder = std::fs::read_dir(about.parent().unwrap()).unwrap();
     let mut texts = folder.map(|file| std::fs::read(file.unwrap().path()).unwrap());
     assert!(texts.any(|text| text == b"name = "), "it was put aside");
@@ -627,7 +631,7 @@ fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() 
     let path = ended(&mut bench);
     bench.show(View::Sessions);
     settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
-    let title = SessionItem::read(&path).unwrap().title();
+    let title = read_item(&path).unwrap().title();
     bench.click(&format!("More: {title}"));
     bench.run(100);
     bench.click_button("Show in folder");
@@ -716,9 +720,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
         bench.state().sessions.planned.len() == 2
     });
     bench.click_button("Keep them");
-    settle(&mut bench, |_| {
-        SessionItem::read(&old[2]).unwrap().about.star
-    });
+    settle(&mut bench, |_| read_item(&old[2]).unwrap().about.star);
     session(&mut bench, SessionAction::Star(old[0].clone(), false));
     settle(&mut bench, |bench| {
         !bench.state().sessions.planned.is_empty()
@@ -774,7 +776,7 @@ fn a_recording_tells_what_the_hand_keeps_and_the_settings_though_nobody_looked()
     });
     assert_eq!(themes.collect::<Vec<_>>(), ["dark", "light"]);
     assert!(
-        SessionItem::read(&path).unwrap().marks.is_empty(),
+        read_item(&path).unwrap().marks.is_empty(),
         "no marks of the time line"
     );
 }

@@ -9,8 +9,10 @@
 
 use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
 use crate::record::file::reader::SessionFile;
-use crate::record::file::recorder::{Recorder, RecorderInput, RecordingPlan};
-use crate::record::file::recording::{Now, RecorderNotice, RecorderStatus, SessionRecording};
+use crate::record::file::recorder::{Recorder, RecorderInput};
+use crate::record::file::recording::{
+    Now, PART_LENGTH, RecorderNotice, RecorderStatus, RecordingPlan, SessionRecording,
+};
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
 use std::collections::{BTreeMap, BTreeSet};
@@ -209,8 +211,8 @@ impl Schedule {
             since: Duration::ZERO,
             wall_nanos: 0,
         };
-        let shared = Arc::new(disk.clone());
-        let recording = SessionRecording::new(opening(), shared, "a/b.mcap".into(), now).unwrap();
+        let plan = plan(Path::new("a/b.mcap"), disk.clone());
+        let recording = SessionRecording::new(plan, now).unwrap();
         Self {
             disk,
             recording: recording.with_pending_max(20_000 + room * 40),
@@ -231,7 +233,9 @@ impl Schedule {
 
     /// Lets the next bit of time pass and all happen that is due in it.
     fn tick(&mut self) {
-        let written = self.recording.status(Duration::ZERO).path;
+        // One that is complete may be removed by whoever likes.
+        let status = self.recording.status(Duration::ZERO);
+        let written = status.path.filter(|_| status.bytes > 0);
         let mut state = self.disk.0.lock().unwrap();
         let before = state.now;
         state.now += TICK;
@@ -354,6 +358,11 @@ fn on_500_disks_that_fail_no_value_differs_and_all_that_is_missing_is_counted() 
         let troubles = troubles(&mut random);
         let room = if random.bool() { 16_384 } else { 100 };
         let mut schedule = Schedule::new(seed, troubles.clone(), room);
+        if seed % 2 == 0 {
+            // What ends a file and begins the next takes room, too.
+            let recording = schedule.recording.with_pending_max(60_000 + room * 40);
+            schedule.recording = recording.with_part_length(Duration::from_secs(3));
+        }
         let status = schedule.run();
         let (found, told) = schedule.found(folder.path());
         let given = schedule.entries.len();
@@ -470,6 +479,7 @@ fn plan(path: &Path, disk: impl Disk + 'static) -> RecordingPlan {
         path: path.to_owned(),
         opening: opening(),
         disk: Arc::new(disk),
+        part_length: PART_LENGTH,
     }
 }
 

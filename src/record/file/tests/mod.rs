@@ -1,9 +1,9 @@
 //! Sessions written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
 mod failing;
-mod index;
-mod lists;
+mod parts;
 mod rewritten;
+mod unended;
 
 use crate::hand::command::HandCommand;
 use crate::hand::kinematics::Side;
@@ -31,6 +31,7 @@ pub(crate) fn opening() -> Opening {
         simulated: true,
         side: Side::Left,
         version: "0.1.0".into(),
+        part: None,
     }
 }
 
@@ -143,10 +144,8 @@ pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
             writer.flush().unwrap();
         }
     }
-    let end = writer.finish().unwrap();
-    let mut bytes = writer.take_bytes();
-    bytes.extend(end.flatten());
-    bytes
+    writer.finish().unwrap();
+    writer.take_bytes()
 }
 
 pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, SessionFile, Damage)> {
@@ -333,4 +332,33 @@ fn a_stretch_begins_with_what_was_known_before_it() {
         }
     }
     assert!(missing.is_empty());
+}
+
+/// Files of the versions until 0.1.0 of 24 November 2026, with an own list of chunks each minute: one that was ended, and one of a
+/// program that was killed while it wrote.
+#[test]
+fn files_with_lists_of_chunks_still_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    let check = |bytes: &[u8], wanted: (usize, u64), bytes_lost: u64| {
+        std::fs::write(&path, bytes).unwrap();
+        let (all, file, damage) = read(&path).unwrap();
+        let counts = file.overview().counts;
+        assert_eq!((all.len(), counts.faults), wanted);
+        assert_eq!((counts.states, counts.touch_blocks), (14, 39));
+        assert_eq!((counts.notes, counts.missing), (175, 0));
+        assert_eq!(file.overview().seconds(), Some((2, 70)));
+        assert_eq!(file.last(), Moment::from_micros(71_614_700));
+        assert_eq!(
+            (file.opening(), file.remarks()),
+            (&opening(), [].as_slice())
+        );
+        let lost = Damage {
+            bytes: bytes_lost,
+            ..Damage::default()
+        };
+        assert_eq!((damage, file.is_closed()), (lost, bytes_lost == 0));
+    };
+    check(include_bytes!("listed-ended.mcap"), (302, 121), 0);
+    check(include_bytes!("listed-killed.mcap"), (302, 134), 7);
 }

@@ -402,15 +402,13 @@ fn short(closed: bool) -> (Vec<u8>, Vec<Atom>) {
         }
     }
     writer.flush().unwrap();
-    let mut bytes = Vec::new();
     if closed {
-        let end = writer.finish().unwrap();
-        bytes.extend(writer.take_bytes());
-        bytes.extend(end.flatten());
-    } else {
-        bytes.extend(writer.take_bytes());
+        writer.finish().unwrap();
     }
-    (bytes, entries.iter().flat_map(atoms).collect())
+    (
+        writer.take_bytes(),
+        entries.iter().flat_map(atoms).collect(),
+    )
 }
 
 /// Bits that are flipped: all of each record's head, of what the file says of itself and of what ends it, and a share of the others.

@@ -6,7 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 pub const RECORD_MAX: u64 = 8 * 1024 * 1024;
 /// Chunks of one file: more than a day of one hand, in 32 MiB. A file made of tiny ones is read without those after.
 pub const CHUNKS_MAX: usize = 1024 * 1024;
-/// Attachments and metadata of one file; ten hours have 1200 attachments.
+/// Attachments and metadata of one file; ours have one attachment a minute.
 pub const PLACES_MAX: usize = 64 * 1024;
 /// Begins and ends a file.
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";

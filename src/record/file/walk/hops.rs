@@ -1,11 +1,10 @@
 //! The records of a file one after the other. After damage it goes on at the next place where a chunk can begin.
 
 use super::found::{
-    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, Place, RECORD_MAX, read_at, u32_at, u64_at,
+    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
 };
 use mcap::records::op;
 use std::io::{self, Read, Seek};
-use std::ops::Range;
 
 /// Bytes of a chunk before what was compressed, without the compression's name: two times, a length, a sum, two lengths.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4 + 8;
@@ -20,13 +19,13 @@ const SEARCH: usize = 64 * 1024;
 /// The last code of a record of MCAP.
 const OP_LAST: u8 = op::DATA_END;
 
-/// Adds the records of a part of a file.
+/// Adds the records of a file that is so long.
 pub(super) fn one_by_one<F: Read + Seek>(
     file: &mut F,
-    part: Range<u64>,
+    len: u64,
     found: &mut Found,
 ) -> io::Result<()> {
-    let (mut at, len) = (part.start, part.end);
+    let mut at = MAGIC.len() as u64;
     let (mut ahead, mut ahead_at) = (Vec::new(), 0);
     let mut is_index = false;
     let mut before = None;

@@ -1,13 +1,11 @@
 //! Finds the records of a session file that may be cut, damaged, or made to harm: every length is checked before it is used.
 //!
-//! `index` asks the index of a file that was ended, `lists` the lists of chunks that stand in every file, and `hops` goes from
-//! record to record where neither tells; `times` corrects what it found there. `survey` reads the whole of a file that another
-//! program has written or changed.
+//! `index` asks the index of a file that was ended, and `hops` goes from record to record where there is none; `times` corrects what
+//! it found there. `survey` reads the whole of a file that another program has written or changed.
 
 mod found;
 mod hops;
 mod index;
-mod lists;
 mod messages;
 mod survey;
 mod times;
@@ -20,12 +18,10 @@ pub(crate) use survey::{Survey, survey};
 
 use hops::one_by_one;
 use index::by_index;
-use lists::by_lists;
 use std::io::{self, Read, Seek, SeekFrom};
 use times::mend;
 
-/// Finds the records: by the file's own index where there is one that is whole, else by the lists of chunks, and one after the
-/// other where those do not tell.
+/// Finds the records: by the file's own index where there is one that is whole, else one after the other.
 ///
 /// # Errors
 /// What the system says; nothing that stands in the file is an error.
@@ -35,19 +31,7 @@ pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
         return Ok(found);
     }
     let mut found = Found::default();
-    let begin = MAGIC.len() as u64;
-    let listed = by_lists(file, len)?;
-    match listed.last().zip(listed.first()) {
-        Some((first, last)) => {
-            one_by_one(file, begin..first.from, &mut found)?;
-            listed
-                .iter()
-                .rev()
-                .for_each(|block| block.add_to(&mut found));
-            one_by_one(file, last.end()..len, &mut found)?;
-        }
-        None => one_by_one(file, begin..len, &mut found)?,
-    }
+    one_by_one(file, len, &mut found)?;
     mend(file, &mut found)?;
     found.stale_index = found.closed;
     Ok(found)

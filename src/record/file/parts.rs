@@ -1,0 +1,86 @@
+//! Which files of a folder are of one recording. What each says of itself tells, and not its name: people rename files.
+
+use crate::record::file::opening::{Opening, Part};
+use crate::record::file::walk::{self, MAGIC};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// Files of one folder that are looked at.
+const FILES_MAX: usize = 4096;
+/// What a file says of itself stands in so many bytes at its beginning, unless another program rewrote it.
+const SAID_WITHIN: u64 = 4096;
+
+/// The files of the recording that this file is of, in the order of time; itself alone if it is of none.
+pub fn of(path: &Path) -> Vec<PathBuf> {
+    let alone = || vec![path.to_owned()];
+    if said(path).and_then(|opening| opening.part).is_none() {
+        return alone();
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let read = if folder.as_os_str().is_empty() {
+        fs::read_dir(".")
+    } else {
+        fs::read_dir(folder)
+    };
+    let entries = read.into_iter().flatten().flatten().take(FILES_MAX);
+    let beside = entries.map(|entry| folder.join(entry.file_name()));
+    let mut paths: Vec<PathBuf> = beside
+        .filter(|beside| beside != path && beside.extension().is_some_and(|end| end == "mcap"))
+        .collect();
+    paths.push(path.to_owned());
+    let mut all = recordings(paths).into_iter();
+    all.find(|files| files.iter().any(|file| file == path))
+        .unwrap_or_else(alone)
+}
+
+/// The files of each recording among these, in the order of time. One that was copied within its folder is another recording.
+pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
+    // A copy has the longer name.
+    paths.sort_by_cached_key(|path| (path.as_os_str().len(), path.clone()));
+    let mut alone = Vec::new();
+    let mut all: BTreeMap<_, BTreeMap<u32, PathBuf>> = BTreeMap::new();
+    for path in paths {
+        let Some(Opening {
+            part: Some(part),
+            base_nanos,
+            hand,
+            ..
+        }) = said(&path)
+        else {
+            alone.push(vec![path]);
+            continue;
+        };
+        let Part {
+            recording_began,
+            number,
+        } = part;
+        let folder = path.parent().map(ToOwned::to_owned);
+        let mut key = (folder, hand, base_nanos, recording_began, 0);
+        while all
+            .get(&key)
+            .is_some_and(|files| files.contains_key(&number))
+        {
+            key.4 += 1;
+        }
+        all.entry(key).or_default().insert(number, path);
+    }
+    let together = all.into_values();
+    alone.extend(together.map(|files| files.into_values().collect()));
+    alone
+}
+
+/// What a file says of itself, as far as that is seen without opening it as a session.
+fn said(path: &Path) -> Option<Opening> {
+    // Opening a pipe would wait for whoever writes into it.
+    if !fs::metadata(path).ok()?.is_file() {
+        return None;
+    }
+    let mut begin = Vec::new();
+    let file = File::open(path).ok()?;
+    file.take(SAID_WITHIN).read_to_end(&mut begin).ok()?;
+    let (_, _, after_header) = walk::record(begin.strip_prefix(&MAGIC)?)?;
+    let (_, content, _) = walk::record(after_header)?;
+    Opening::of_record(content)
+}
