@@ -4,9 +4,10 @@
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
 use crate::link::{Clock, LinkHandle, Records};
-use crate::record::file::encode::EntryEncoder;
-use crate::record::file::topic::Topic;
-use crate::record::file::{Opening, cdr};
+use crate::record::file::Opening;
+use crate::record::file::format::cdr;
+use crate::record::file::format::encode::EntryEncoder;
+use crate::record::file::format::topic::Topic;
 use crate::record::{Entry, Record};
 use crate::share::fleet::{FleetCard, FleetTeller};
 use crate::transport::dds::{DdsError, DdsNode, DdsTopic, DdsWriter};

@@ -5,7 +5,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
 use crate::inputs::offer::OfferLimits;
 use crate::link::ArmRequest;
-use crate::record::file::cdr;
+use crate::record::file::format::cdr;
 use crate::transport::dds::DdsTopic;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 

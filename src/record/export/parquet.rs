@@ -9,7 +9,7 @@ use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::csv::UNDOCUMENTED;
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::Source;
-use crate::record::file::opening::nanos_of;
+use crate::record::file::format::opening::nanos_of;
 use crate::record::{Entry, Record};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;

@@ -3,7 +3,7 @@
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::Source;
-use crate::record::file::topic::Topic;
+use crate::record::file::format::topic::Topic;
 use crate::record::file::writer::Counted;
 use std::fmt::Write as _;
 use std::fs;

@@ -1,6 +1,6 @@
 //! The channels and schemas of a file, read by name: numbers of channels are each program's own.
 
-use crate::record::file::topic::Topic;
+use crate::record::file::format::topic::Topic;
 use mcap::records::Record;
 use std::collections::{BTreeMap, BTreeSet};
 

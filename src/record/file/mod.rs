@@ -7,15 +7,11 @@
 //! without being read whole.
 
 mod by_time;
-pub mod cdr;
 mod channels;
 mod contents;
 mod damage;
-pub mod decode;
 pub mod disk;
-pub mod encode;
-pub mod message;
-pub mod opening;
+pub mod format;
 pub mod overview;
 pub mod parts;
 pub mod reader;
@@ -24,7 +20,6 @@ mod recording;
 mod tail;
 #[cfg(test)]
 pub(crate) mod tests;
-pub mod topic;
 pub mod walk;
 pub mod writer;
 
@@ -32,7 +27,7 @@ pub use crate::record::file::channels::{SkipReason, SkippedTopic};
 pub use crate::record::file::contents::Contents;
 pub use crate::record::file::damage::{Damage, Gap, Remark};
 pub use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
-pub use crate::record::file::opening::{Opening, Part};
+pub use crate::record::file::format::opening::{Opening, Part};
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, SessionFile};
 pub use crate::record::file::recorder::Recorder;

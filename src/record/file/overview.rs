@@ -4,7 +4,7 @@
 use crate::hand::{
     Dof, Fault, Faults, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Touch,
 };
-use crate::record::file::cdr;
+use crate::record::file::format::cdr;
 use crate::record::{Entry, Event, EventKind, LinkState, Record};
 use serde::{Deserialize, Serialize};
 

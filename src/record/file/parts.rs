@@ -1,6 +1,6 @@
 //! Which files of a folder are of one recording. What each says of itself tells, and not its name: people rename files.
 
-use crate::record::file::opening::{Opening, Part};
+use crate::record::file::format::opening::{Opening, Part};
 use crate::record::file::walk::{self, MAGIC};
 use std::collections::BTreeMap;
 use std::fs::{self, File};

@@ -5,11 +5,11 @@ use crate::hand::Moment;
 use crate::record::file::by_time;
 use crate::record::file::channels::Definitions;
 pub use crate::record::file::damage::{Damage, Gap, Remark};
-use crate::record::file::decode::EntryDecoder;
-use crate::record::file::opening::{METADATA, Opening, moment_of, nanos_of};
+use crate::record::file::format::decode::EntryDecoder;
+use crate::record::file::format::opening::{METADATA, Opening, moment_of, nanos_of};
+use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::parts;
-use crate::record::file::topic::Topic;
 use crate::record::file::walk::{
     self, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey, messages, records,
 };

@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::file::disk::{Disk, FilePlace};
-use crate::record::file::opening::{Opening, Part};
+use crate::record::file::format::opening::{Opening, Part};
 use crate::record::file::tail::{Content, FileTail};
 use crate::record::file::writer::SessionWriter;
 use crate::record::{Entry, Event, EventKind, LinkReport, Record};

@@ -2,10 +2,10 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
-use crate::record::file::encode::{EntryEncoder, Message};
-use crate::record::file::opening::{METADATA, Opening, nanos_of};
+use crate::record::file::format::encode::{EntryEncoder, Message};
+use crate::record::file::format::opening::{METADATA, Opening, nanos_of};
+use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::Overview;
-use crate::record::file::topic::Topic;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, Compression, McapError, WriteOptions};

@@ -3,7 +3,7 @@
 use crate::hand::kinematics::Side;
 use crate::link::Owner;
 use crate::record::LinkState;
-use crate::record::file::cdr;
+use crate::record::file::format::cdr;
 use crate::transport::Endpoint;
 use crate::transport::dds::DdsTopic;
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@ use super::*;
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::record::LinkState;
-use crate::record::file::cdr;
+use crate::record::file::format::cdr;
 use crate::transport::dds::DdsWriterId;
 use std::net::{Ipv4Addr, SocketAddr};
 

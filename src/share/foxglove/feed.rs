@@ -1,7 +1,7 @@
 //! What a recording would hold of a link, as messages for viewers, as it happens.
 
 use crate::link::LinkEntries;
-use crate::record::file::encode::EntryEncoder;
+use crate::record::file::format::encode::EntryEncoder;
 use crate::record::file::{Opening, Overview};
 use crate::record::{Entry, Event, EventKind};
 use crate::share::foxglove::outlet::Outlet;

@@ -1,7 +1,7 @@
 //! What all viewers are shown, made once: the newest messages, of which each viewer takes its own, and who views. Whoever is too
 //! slow misses the oldest; nobody is waited for.
 
-use crate::record::file::encode::Message;
+use crate::record::file::format::encode::Message;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::broadcast;

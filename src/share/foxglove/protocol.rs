@@ -4,8 +4,8 @@
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
 use crate::record::file::Opening;
-use crate::record::file::encode::Message;
-use crate::record::file::topic::Topic;
+use crate::record::file::format::encode::Message;
+use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
 use serde_json::json;
 

@@ -1,8 +1,8 @@
 //! One viewer's connection: it is greeted, subscribes, and is sent what it subscribed to until it goes, stops reading, falls
 //! silent or keeps neither to the protocol nor to its allowance.
 
-use crate::record::file::encode::Message;
-use crate::record::file::topic::Topic;
+use crate::record::file::format::encode::Message;
+use crate::record::file::format::topic::Topic;
 use crate::share::foxglove::allowance::Allowance;
 use crate::share::foxglove::outlet::Seat;
 use crate::share::foxglove::protocol::{self, Request, SUBPROTOCOLS, Subscription};

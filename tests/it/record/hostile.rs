@@ -1,8 +1,8 @@
 //! Files that were made to harm: whatever they claim, reading them takes little memory, and ends with entries or with one sentence.
 
 use crate::setup::process::listen;
+use handscope::record::file::format::topic::Topic;
 use handscope::record::file::reader::{SessionFile, Stretch};
-use handscope::record::file::topic::Topic;
 use handscope::record::file::walk::CHUNKS_MAX;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};

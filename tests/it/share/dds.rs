@@ -6,7 +6,7 @@ use crate::setup::process::{Running, handscope, listen, start};
 use crate::setup::skipped::skipped;
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, LinkHandle};
-use handscope::record::file::cdr;
+use handscope::record::file::format::cdr;
 use handscope::share::dds::DdsPublisher;
 use handscope::transport::dds::{DdsError, DdsMessage, DdsNode, DdsPlace, DdsTopic};
 use nix::sys::signal::Signal;

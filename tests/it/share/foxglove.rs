@@ -9,10 +9,12 @@ use handscope::hand::{Dof, Fault};
 use handscope::link::{LinkHandle, Records};
 use handscope::record::LinkState;
 use handscope::record::file::Opening;
-use handscope::record::file::cdr;
-use handscope::record::file::encode::Message;
-use handscope::record::file::message::{EventMessage, JointState, StateMessage, TouchMessage};
-use handscope::record::file::topic::Topic;
+use handscope::record::file::format::cdr;
+use handscope::record::file::format::encode::Message;
+use handscope::record::file::format::message::{
+    EventMessage, JointState, StateMessage, TouchMessage,
+};
+use handscope::record::file::format::topic::Topic;
 use handscope::share::foxglove::protocol::SUBPROTOCOLS;
 use handscope::share::foxglove::viewer::{SHAKES_HANDS_WITHIN, SILENT_MAX, TAKES_WITHIN};
 use handscope::share::foxglove::{BACKLOG_MAX, FoxgloveConfig, FoxgloveServer, VIEWERS_MAX};

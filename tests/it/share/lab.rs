@@ -7,7 +7,7 @@ use handscope::hand::kinematics::Side;
 use handscope::link::LinkHandle;
 use handscope::record::LinkState;
 use handscope::record::file::Opening;
-use handscope::record::file::topic::Topic;
+use handscope::record::file::format::topic::Topic;
 use handscope::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use handscope::share::gateway::{ClientLease, Gateway, GatewayConfig};
 use std::net::SocketAddr;

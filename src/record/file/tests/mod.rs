@@ -10,7 +10,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, Dof, Group, Groups, HandSample, Moment, PerDof, Reply, Span, Target, register,
 };
-use crate::record::file::opening::Opening;
+use crate::record::file::format::opening::Opening;
 use crate::record::file::reader::{Damage, SessionFile, Stretch};
 use crate::record::file::writer::SessionWriter;
 use crate::record::{

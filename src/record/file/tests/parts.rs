@@ -5,7 +5,7 @@ use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::file::damage::Remark;
 use crate::record::file::disk::SystemDisk;
-use crate::record::file::opening::Opening;
+use crate::record::file::format::opening::Opening;
 use crate::record::file::parts::recordings;
 use crate::record::file::reader::{SessionFile, Stretch};
 use crate::record::file::recording::{Given, Now, RecordingPlan, SessionRecording};

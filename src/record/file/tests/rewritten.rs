@@ -10,7 +10,7 @@ use super::{Atom, atoms, bytes_of, entries, opening, read};
 use crate::record::Entry;
 use crate::record::file::channels::SkipReason;
 use crate::record::file::damage::{Damage, Remark};
-use crate::record::file::opening::METADATA;
+use crate::record::file::format::opening::METADATA;
 use crate::record::file::reader::{OpenError, SessionFile};
 use crate::record::file::writer::SessionWriter;
 use mcap::records::{MessageHeader, Metadata, op};

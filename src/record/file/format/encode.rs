@@ -2,13 +2,13 @@
 
 use crate::hand::kinematics::{joint_names, joint_radians};
 use crate::hand::{Finger, Group, Groups, HandSample, Moment, Quantity, register};
-use crate::record::file::cdr;
-use crate::record::file::message::{
+use crate::record::file::format::cdr;
+use crate::record::file::format::message::{
     CommandFate, CommandMessage, EventMessage, Header, JointState, LinkMessage, StateMessage, Time,
     TouchMessage, WireMessage,
 };
-use crate::record::file::opening::{Opening, nanos_of};
-use crate::record::file::topic::Topic;
+use crate::record::file::format::opening::{Opening, nanos_of};
+use crate::record::file::format::topic::Topic;
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
 
 /// The word of a refusal to arm among events; the words are the reason in JSON.

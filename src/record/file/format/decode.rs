@@ -2,14 +2,14 @@
 
 use crate::hand::command::WRITE_LEN_MAX;
 use crate::hand::{Finger, Group, Groups, HandSample, Moment, Reply, Span};
-use crate::record::file::cdr;
-use crate::record::file::encode::{ARM_REFUSED, link_state_key};
-use crate::record::file::message::{
+use crate::record::file::format::cdr;
+use crate::record::file::format::encode::{ARM_REFUSED, link_state_key};
+use crate::record::file::format::message::{
     CommandFate, CommandMessage, EventMessage, LinkMessage, StateMessage, Time, TouchMessage,
     WireMessage,
 };
-use crate::record::file::opening::{Opening, moment_of};
-use crate::record::file::topic::Topic;
+use crate::record::file::format::opening::{Opening, moment_of};
+use crate::record::file::format::topic::Topic;
 use crate::record::{
     Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind, Record,
     WriteCause, WriteFate, WrittenMemory,
