@@ -44,12 +44,18 @@ use crate::ui::window::key_list::KeyList;
 use crate::ui::window::keys::{Escape, Wish};
 use crate::ui::window::stop_first::stop_first;
 use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
+use std::time::Duration;
+
+/// So long after a field had the keyboard a key may be meant for it.
+const ASTRAY: Duration = Duration::from_secs(1);
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
 pub struct Window {
     body: Body,
     installed: Option<(Theme, Language)>,
+    /// When a field had the keyboard last, in seconds of the window's time.
+    typed_at: Option<f64>,
     typing: Typing,
     /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
     typed: bool,
@@ -111,6 +117,9 @@ impl Window {
             None => self.installed.and_then(|_| zoom_action(ui, state)),
         };
         self.install_if_changed(ui, state);
+        if ui.ctx().text_edit_focused() {
+            self.typed_at = Some(ui.input(|input| input.time));
+        }
         if self.body.follow_shown(state) {
             self.typing = Typing::default();
             let_go(ui);
@@ -122,6 +131,9 @@ impl Window {
         } else {
             keys::take(ui, escape)
         };
+        if self.may_be_typed(ui) {
+            wishes.retain(|wish| !wish.moves());
+        }
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
@@ -149,7 +161,12 @@ impl Window {
             let action = key_action(ui, &mut pane, &mut self.body.own, wish);
             pane.actions.extend(action);
         }
+        let view = self.body.view;
         self.parts_ui(ui, &mut pane);
+        typing.after(&actions);
+        if view != self.body.view && typing.refused.is_some() {
+            typing = Typing::default();
+        }
         self.typing = typing;
         self.typed = ui.ctx().text_edit_focused();
         if let Some(opens) = opens {
@@ -157,6 +174,13 @@ impl Window {
             ui.request_repaint();
         }
         stop_first(actions, stopped)
+    }
+
+    /// True if what is pressed may be meant for a field that had the keyboard a moment ago.
+    fn may_be_typed(&self, ui: &Ui) -> bool {
+        let now = ui.input(|input| input.time);
+        self.typed_at
+            .is_some_and(|at| now - at < ASTRAY.as_secs_f64())
     }
 
     /// What Esc does now: it closes what is open while the hand rests for certain.
