@@ -40,6 +40,8 @@ pub enum Action {
     HoldToRun(bool),
     /// What is done with the key for it.
     HoldKey(HoldKey),
+    /// Disarm hands that are asked nothing for some minutes, or not.
+    DisarmIdle(bool),
     /// Where a joint should go. Ignored unless armed and the joint is not locked.
     Target(Dof, Angle),
     /// Force threshold of one joint or of all: sent when armed, kept for arming otherwise.
@@ -173,6 +175,7 @@ impl Action {
             | Self::Arm
             | Self::HoldToRun(_)
             | Self::HoldKey(_)
+            | Self::DisarmIdle(_)
             | Self::Gesture(_)
             | Self::Capture(_)
             | Self::Recapture(_)

@@ -87,6 +87,11 @@ impl Effect {
 }
 
 impl Action {
+    /// True for what can be asked for while a recording is shown: a note is one of the recording then, and a message is one of its.
+    pub const fn passes_in_replay(&self) -> bool {
+        matches!(self, Self::Note(..) | Self::Dismiss(_)) || self.effect().passes_in_replay()
+    }
+
     /// What this does.
     #[expect(clippy::too_many_lines, reason = "one list of all actions")]
     pub const fn effect(&self) -> Effect {
@@ -144,6 +149,7 @@ impl Action {
             ) => Effect::Connects,
             // Still held: nothing changes by it.
             Self::HoldKey(HoldKey::Held)
+            | Self::DisarmIdle(_)
             | Self::Capture(_)
             | Self::Recapture(_)
             | Self::Library(_)

@@ -77,6 +77,8 @@ pub enum NoticeKind {
     SourceSilent(Owner),
     /// This hand was stopped or lost while another led it, and that one was stopped, too.
     LeaderStopped,
+    /// An armed hand was asked nothing for so long that it was disarmed, as the settings say.
+    IdleDisarmed,
     /// The hand cannot be armed.
     ArmRefused(ArmRefusal),
     /// A joint is not well.
@@ -272,32 +274,52 @@ pub struct Notice {
     pub level: Level,
     /// What happened.
     pub what: NoticeKind,
-    /// The hand that it is about, where there are several.
+    /// The hand that it is about, where there are several, or where that is another than the one of now.
     pub hand: Option<HandLabel>,
+    /// It is about a hand, named or not.
+    is_of_hand: bool,
     /// Times it happened since it was dismissed last.
     pub count: u32,
 }
 
 impl Notice {
-    fn new(id: u64, at: Moment, what: NoticeKind, hand: Option<&HandLabel>) -> Self {
+    fn new(id: u64, at: Moment, what: NoticeKind, about: About<'_>) -> Self {
         Self {
             id,
             at,
             level: what.level(),
             what,
-            hand: hand.cloned(),
+            hand: about.name().cloned(),
+            is_of_hand: !matches!(about, About::NoHand),
             count: 1,
         }
     }
 
-    fn is_same(&self, what: &NoticeKind, hand: Option<&HandLabel>) -> bool {
+    fn is_same(&self, what: &NoticeKind, about: About<'_>) -> bool {
         let slot = |hand: &HandLabel| hand.slot;
-        self.what.is_same(what) && self.hand.as_ref().map(slot) == hand.map(slot)
+        self.what.is_same(what) && self.hand.as_ref().map(slot) == about.name().map(slot)
     }
 
     fn again(&mut self, at: Moment, what: NoticeKind) {
         (self.at, self.what) = (at, what);
         self.count = self.count.saturating_add(1);
+    }
+}
+
+/// What a notice is about.
+#[derive(Debug, Clone, Copy)]
+enum About<'a> {
+    NoHand,
+    /// The only hand, or one of several, by name.
+    Hand(Option<&'a HandLabel>),
+}
+
+impl<'a> About<'a> {
+    const fn name(self) -> Option<&'a HandLabel> {
+        match self {
+            Self::NoHand => None,
+            Self::Hand(name) => name,
+        }
     }
 }
 
@@ -319,7 +341,17 @@ pub(crate) struct HandNotices<'a> {
 impl HandNotices<'_> {
     /// Adds one, as [`Notices::push`] does.
     pub(crate) fn push(&mut self, at: Moment, what: NoticeKind) {
-        self.notices.add(at, what, self.hand.as_ref());
+        self.notices.add(at, what, About::Hand(self.hand.as_ref()));
+    }
+
+    /// Another hand takes the place of this one, which had no name as it was the only one: what was told of it carries its name.
+    pub(crate) fn name_former(&mut self, hand: &HandLabel) {
+        let Notices { kept, log, .. } = &mut *self.notices;
+        for notice in kept.iter_mut().chain(log) {
+            if notice.is_of_hand && notice.hand.is_none() {
+                notice.hand = Some(hand.clone());
+            }
+        }
     }
 
     /// Takes away those of this hand that are no longer so. The log keeps them.
@@ -344,10 +376,10 @@ impl Notices {
     /// Adds one about no hand, or about the only one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
     /// of faults asks for attention until it was seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
-        self.add(at, what, None);
+        self.add(at, what, About::NoHand);
     }
 
-    fn add(&mut self, at: Moment, what: NoticeKind, about: Option<&HandLabel>) {
+    fn add(&mut self, at: Moment, what: NoticeKind, about: About<'_>) {
         self.pushed += 1;
         self.note(at, &what, about);
         if matches!(what, NoticeKind::Fault { .. }) {
@@ -367,7 +399,7 @@ impl Notices {
     }
 
     /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
-    fn note(&mut self, at: Moment, what: &NoticeKind, about: Option<&HandLabel>) {
+    fn note(&mut self, at: Moment, what: &NoticeKind, about: About<'_>) {
         let newest = self.log.back_mut();
         if let Some(newest) = newest.filter(|last| last.is_same(what, about)) {
             return newest.again(at, what.clone());

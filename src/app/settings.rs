@@ -331,6 +331,8 @@ pub struct Settings {
     pub sessions: SessionSettings,
     /// The hand moves only while a person holds a key.
     pub hold_to_run: bool,
+    /// An armed hand that is asked nothing for some minutes is disarmed.
+    pub disarm_idle: bool,
     /// How far and how fast a hand follows a source.
     pub follow: FollowLimits,
     /// The first client of the gateway that writes may move the hand, without a person here who lets it. Only who edits the file

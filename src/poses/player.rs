@@ -83,6 +83,14 @@ pub struct PlayPlan {
     pub reaction: Option<ReactionCue>,
 }
 
+impl PlayPlan {
+    /// All that it may ever send.
+    pub fn cues(&self) -> impl Iterator<Item = &Cue> {
+        let touched = self.reaction.iter().map(|reaction| &reaction.touched);
+        self.cues.iter().chain(touched)
+    }
+}
+
 /// What a touched finger does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReactionCue {

@@ -2,32 +2,24 @@
 
 use crate::app::hand::held_key::HeldKey;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, PerDof, Setpoints, Speed, Target,
+    Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, Group, HandSample, PerDof, Setpoints,
+    Speed, Target,
 };
 use crate::link::ArmRequest;
+use crate::record::Record;
 
 /// One joint as a person sets it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct JointControl {
     /// Where the slider stands: the actual angle while not armed, the person's target while armed. `None` = not known.
     pub target: Option<Angle>,
-    /// Force threshold; sent at arming and when changed while armed.
-    pub force: Force,
-    /// Speed; sent at arming and when changed while armed.
-    pub speed: Speed,
+    /// Force threshold: what the hand was found with, gentle at most, until the person sets another; sent at arming and when
+    /// changed while armed. `None` = not known.
+    pub force: Option<Force>,
+    /// Speed, in the same way.
+    pub speed: Option<Speed>,
     /// Leave this joint alone.
     pub locked: bool,
-}
-
-impl Default for JointControl {
-    fn default() -> Self {
-        Self {
-            target: None,
-            force: Force::GENTLE,
-            speed: Speed::GENTLE,
-            locked: false,
-        }
-    }
 }
 
 /// A change that a person makes to one joint.
@@ -53,16 +45,29 @@ pub struct Controls {
     pub(crate) held: HeldKey,
     /// Sliders that show where the joint was sent; the others show the actual angle.
     steered: PerDof<bool>,
+    /// Where the joint was sent in this arming; `None` = nowhere, or it was left alone since.
+    sent: PerDof<Option<Angle>>,
+    /// Joints that were given the speed and force of what is played, or was.
+    lent: PerDof<bool>,
 }
 
 impl Controls {
-    /// The same for the next connection: nobody holds a key, and no slider was moved.
+    /// The same for the next connection with this hand: nobody holds a key, and no slider was moved.
     pub(crate) fn at_next_connection(self) -> Self {
         Self {
             joints: self.joints,
-            gesture: None,
-            held: HeldKey::default(),
-            steered: PerDof::default(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes what the hand was found with for what the person wants, where they set nothing themselves; but nothing faster or
+    /// firmer than gentle, as a hand comes with the most there is.
+    pub(crate) fn adopt(&mut self, found: &HandSample) {
+        for (dof, joint) in self.joints.iter_mut() {
+            let speed = found.speed_set.and_then(|all| all.value[dof]);
+            let force = found.force_set.and_then(|all| all.value[dof]);
+            joint.speed = joint.speed.or(speed.map(|speed| speed.min(Speed::GENTLE)));
+            joint.force = joint.force.or(force.map(|force| force.min(Force::GENTLE)));
         }
     }
 
@@ -76,12 +81,81 @@ impl Controls {
         self.steered.iter().all(|(_, steered)| !steered)
     }
 
-    /// The limits that arming sets.
-    pub(crate) fn arm_request(&self) -> ArmRequest {
-        ArmRequest {
-            speed: self.joints.map(|joint| joint.speed),
-            force: self.joints.map(|joint| joint.force),
+    /// In a recording there are no wishes: all stands as the hand held it, and a target from when it was sent on.
+    pub(crate) fn take_recorded(&mut self, record: &Record) {
+        match record {
+            Record::Reading { sample, fresh } => {
+                for (dof, joint) in self.joints.iter_mut() {
+                    joint.speed = sample.speed_set.and_then(|all| all.value[dof]);
+                    joint.force = sample.force_set.and_then(|all| all.value[dof]);
+                    let set = sample.angle_set.filter(|_| fresh.contains(Group::AngleSet));
+                    if let Some(set) = set {
+                        joint.target = match set.value[dof] {
+                            Some(Target::Go(held)) => Some(held),
+                            _ => None,
+                        };
+                    }
+                }
+            }
+            Record::Sent { write, .. } => {
+                for (dof, to) in write.angle_targets().iter() {
+                    self.joints[dof].target = to.or(self.joints[dof].target);
+                }
+            }
+            _ => {}
         }
+    }
+
+    /// The limits that the person set, and gentle ones where they know of none.
+    pub(crate) fn limits(&self) -> ArmRequest {
+        ArmRequest {
+            speed: self
+                .joints
+                .map(|joint| joint.speed.unwrap_or(Speed::GENTLE)),
+            force: self
+                .joints
+                .map(|joint| joint.force.unwrap_or(Force::GENTLE)),
+        }
+    }
+
+    /// The limits that arming sets: the person's, for good. A locked joint keeps what it holds.
+    pub(crate) fn arm_request(&mut self, holds: &HandSample) -> ArmRequest {
+        let mut request = self.limits();
+        for (dof, joint) in self.joints.iter_mut() {
+            joint.speed = Some(request.speed[dof]);
+            joint.force = Some(request.force[dof]);
+            if joint.locked {
+                let speed = holds.speed_set.and_then(|all| all.value[dof]);
+                let force = holds.force_set.and_then(|all| all.value[dof]);
+                request.speed[dof] = speed.unwrap_or(request.speed[dof]);
+                request.force[dof] = force.unwrap_or(request.force[dof]);
+            }
+        }
+        self.lent = PerDof::default();
+        request
+    }
+
+    /// Where the joint was sent, if a person or what they started sent it in this arming.
+    pub fn sent(&self, dof: Dof) -> Option<Angle> {
+        self.sent[dof]
+    }
+
+    /// What is played from now on sends these joints with its own speed and force.
+    pub(crate) fn lend(&mut self, targets: &PerDof<Option<Angle>>) {
+        for (dof, to) in targets.iter() {
+            self.lent[dof] |= to.is_some();
+        }
+    }
+
+    /// The person's own speed and force for the joints that have others from what was played; `None` if no free joint has.
+    pub(crate) fn give_back(&mut self, epoch: ArmEpoch) -> Option<Setpoints> {
+        let mut own = Setpoints::none(epoch);
+        for (dof, joint) in self.joints.iter().filter(|(_, joint)| !joint.locked) {
+            if std::mem::take(&mut self.lent[dof]) {
+                (own.speed[dof], own.force[dof]) = (joint.speed, joint.force);
+            }
+        }
+        (!own.is_empty()).then_some(own)
     }
 
     /// Takes a change. `epoch` is the arming in which the person may move the hand; gives what is to be sent in it.
@@ -99,13 +173,13 @@ impl Controls {
                     return None;
                 }
                 joint.target = Some(angle);
-                self.steered[dof] = true;
+                (self.steered[dof], self.sent[dof]) = (true, Some(angle));
             }
-            JointChange::Force(force) => joint.force = force,
-            JointChange::Speed(speed) => joint.speed = speed,
+            JointChange::Force(force) => joint.force = Some(force),
+            JointChange::Speed(speed) => joint.speed = Some(speed),
             JointChange::Lock(locked) => {
                 joint.locked = locked;
-                self.steered[dof] = false;
+                (self.steered[dof], self.sent[dof]) = (false, None);
             }
         }
         let joint = self.joints[dof];
@@ -116,8 +190,7 @@ impl Controls {
             JointChange::Speed(speed) => setpoints.speed[dof] = Some(speed),
             // What was changed meanwhile goes out when it is free again.
             JointChange::Lock(_) if was_locked => {
-                setpoints.force[dof] = Some(joint.force);
-                setpoints.speed[dof] = Some(joint.speed);
+                (setpoints.force[dof], setpoints.speed[dof]) = (joint.force, joint.speed);
             }
             JointChange::Lock(_) => return None,
         }
@@ -142,9 +215,7 @@ impl Controls {
         for (dof, joint) in self.joints.iter_mut() {
             if let Some(Target::Go(to)) = sent.angle[dof].filter(|_| !joint.locked) {
                 joint.target = Some(to);
-                joint.speed = sent.speed[dof].unwrap_or(joint.speed);
-                joint.force = sent.force[dof].unwrap_or(joint.force);
-                self.steered[dof] = true;
+                (self.steered[dof], self.sent[dof]) = (true, Some(to));
             }
         }
     }
@@ -154,7 +225,7 @@ impl Controls {
         for (dof, to) in sent.iter() {
             if to.is_some() {
                 self.joints[dof].target = *to;
-                self.steered[dof] = true;
+                (self.steered[dof], self.sent[dof]) = (true, *to);
             }
         }
     }
@@ -167,7 +238,7 @@ impl Controls {
 
     /// All sliders follow their joints, whatever was sent.
     pub(crate) fn let_go(&mut self) {
-        self.steered = PerDof::default();
+        (self.steered, self.sent) = (PerDof::default(), PerDof::default());
     }
 
     /// Sliders that no person holds stand at the actual angle, so that arming and taking over never jump.
@@ -223,8 +294,55 @@ mod tests {
         let sent = controls.take(Dof::Ring, JointChange::Lock(false), Some(EPOCH));
         let sent = sent.unwrap();
         assert_eq!(sent.force[Dof::Ring], Some(Force::MAX));
-        assert_eq!(sent.speed[Dof::Ring], Some(Speed::GENTLE));
+        assert_eq!(sent.speed[Dof::Ring], None, "nothing is known of it");
         assert!(sent.angle.iter().all(|(_, target)| target.is_none()));
+    }
+
+    #[test]
+    fn what_is_played_gives_the_own_speed_and_force_back_once_and_to_its_joints_only() {
+        let mut controls = Controls::default();
+        controls.take(Dof::Ring, JointChange::Speed(Speed::MIN), None);
+        controls.take(Dof::Index, JointChange::Speed(Speed::MIN), None);
+        let mut targets = PerDof::splat(None);
+        targets[Dof::Ring] = Some(Angle::MIN);
+        controls.lend(&targets);
+        let mut sent = Setpoints::none(EPOCH);
+        sent.angle[Dof::Ring] = Some(Target::Go(Angle::MIN));
+        sent.speed[Dof::Ring] = Some(Speed::MAX);
+        controls.show(&sent);
+        assert_eq!(controls.joints[Dof::Ring].speed, Some(Speed::MIN));
+        let own = controls.give_back(EPOCH).unwrap();
+        assert_eq!(own.speed[Dof::Ring], Some(Speed::MIN));
+        assert_eq!(own.speed[Dof::Index], None, "it was not lent");
+        assert_eq!(controls.give_back(EPOCH), None);
+    }
+
+    #[test]
+    fn wishes_are_what_the_hand_was_found_with_until_a_person_sets_others() {
+        let mut controls = Controls::default();
+        controls.take(Dof::Ring, JointChange::Force(Force::MIN), None);
+        let timed = |value| {
+            Some(crate::hand::Timed {
+                value: PerDof::splat(Some(value)),
+                asked: crate::hand::Moment::ZERO,
+                received: crate::hand::Moment::ZERO,
+            })
+        };
+        let mut found = HandSample {
+            force_set: timed(Force::nearest(100)),
+            ..HandSample::default()
+        };
+        controls.adopt(&found);
+        found.force_set = timed(Force::MAX);
+        controls.adopt(&found);
+        let force = controls.joints.map(|joint| joint.force);
+        assert_eq!(force[Dof::Ring], Some(Force::MIN));
+        let first = Some(Force::nearest(100));
+        assert_eq!(force[Dof::Index], first, "as it was found first");
+        assert_eq!(controls.joints[Dof::Index].speed, None, "not read yet");
+        let mut fresh = Controls::default();
+        fresh.adopt(&found);
+        assert_eq!(fresh.joints[Dof::Index].force, Some(Force::GENTLE));
     }
 
     #[test]

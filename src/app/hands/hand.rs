@@ -6,7 +6,7 @@ use crate::app::env::running::Running;
 use crate::app::hand::controls::JointChange;
 use crate::app::hand::open::Leaving;
 use crate::app::hand::status_news::StatusReport;
-use crate::app::hand::{Activity, Connection, Controls, HoldKey, SequenceRun};
+use crate::app::hand::{Activity, Connection, Controls, HoldKey, RecordedMover, SequenceRun};
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
@@ -19,7 +19,8 @@ use crate::app::trials::work::start_refusal;
 use crate::app::trials::{SeriesRun, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
-    Angle, ArmEpoch, Dof, Finger, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
+    Angle, ArmEpoch, Dof, Finger, Force, Gesture, GestureRoute, HandCommand, Moment, PerDof,
+    Setpoints, Speed, Target,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
@@ -35,6 +36,8 @@ use tokio::sync::mpsc;
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
 /// which the link itself gives the alarm, and a little.
 pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
+/// An armed hand that is asked nothing for so long is told of.
+pub const IDLE_AFTER: Duration = Duration::from_secs(300);
 /// Commands to a sequence that may wait: a person cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
 
@@ -61,6 +64,10 @@ pub struct Hand {
     pub params: ParamsState,
     /// The session that is recorded of it.
     pub recording: Option<HandRecording>,
+    /// When it was armed, or asked for something since.
+    pub(crate) asked_at: Moment,
+    /// Who moves it, of a hand that is replayed.
+    pub(crate) recorded: Option<RecordedMover>,
     /// The hand is being left: it was told to hold.
     pub(crate) leaving: Option<Leaving>,
     /// Its slot goes as soon as it is left.
@@ -92,6 +99,12 @@ impl Hand {
         start_refusal(plan, self.series.is_some(), armed, &self.controls.locked())
     }
 
+    /// How long an armed hand was asked nothing, once that is long.
+    pub fn idle(&self, now: Moment) -> Option<Duration> {
+        let idle = now.since(self.asked_at);
+        (self.connection.is_armed() && idle >= IDLE_AFTER).then_some(idle)
+    }
+
     /// How fresh a value asked for at `asked` is now.
     pub fn freshness(&self, asked: Option<Moment>, now: Moment) -> Freshness {
         let is_live = self.connection.is_live();
@@ -102,6 +115,35 @@ impl Hand {
     pub fn tip_freshness(&self, finger: Finger, now: Moment) -> Freshness {
         let is_live = self.connection.is_live();
         self.readings.tip_freshness(finger, is_live, now)
+    }
+
+    /// The speed that a live hand holds, where that is not the person's.
+    pub fn other_speed(&self, dof: Dof) -> Option<Speed> {
+        let set = self.readings.sample.speed_set;
+        let held = set.filter(|_| self.connection.is_live())?.value[dof];
+        held.filter(|held| self.controls.joints[dof].speed != Some(*held))
+    }
+
+    /// The force threshold that a live hand holds, where that is not the person's.
+    pub fn other_force(&self, dof: Dof) -> Option<Force> {
+        let set = self.readings.sample.force_set;
+        let held = set.filter(|_| self.connection.is_live())?.value[dof];
+        held.filter(|held| self.controls.joints[dof].force != Some(*held))
+    }
+
+    /// The threshold that stops a joint: what the hand holds, else what the person wants.
+    pub fn stops_at(&self, dof: Dof) -> Option<Force> {
+        let wanted = self.controls.joints[dof].force;
+        self.other_force(dof).or(wanted)
+    }
+
+    /// The target that a live hand holds, where the joint was sent elsewhere.
+    pub fn other_target(&self, dof: Dof) -> Option<Angle> {
+        let (set, sent) = (self.readings.sample.angle_set, self.controls.sent(dof)?);
+        match set.filter(|_| self.connection.is_live())?.value[dof] {
+            Some(Target::Go(held)) if held != sent => Some(held),
+            _ => None,
+        }
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.
@@ -152,9 +194,12 @@ impl Hand {
         self.measured.leave(&self.connection.name(), ctx.now);
         // The old link goes first: a serial port has room for one.
         self.connection = Connection::none(ctx.now);
+        // An id that was changed under a card makes no other hand.
+        let is_moved = self.procedures.card.is_some();
+        if to != self.connection.endpoint && !is_moved && !self.label.name.is_empty() {
+            ctx.notices.name_former(&self.label);
+        }
         if let Some(endpoint) = to {
-            // An id that was changed under a card makes no other hand.
-            let is_moved = self.procedures.card.is_some();
             self.measured.begin(&endpoint, is_moved);
             self.connection = Connection::open(endpoint, ctx.env, ctx.now);
         }
@@ -168,7 +213,11 @@ impl Hand {
             leaving: before.leaving,
             procedures: before.procedures,
             measured: before.measured,
-            controls: before.controls.at_next_connection(),
+            controls: if is_moved {
+                before.controls.at_next_connection()
+            } else {
+                Controls::default()
+            },
             params: before.params.at_next_connection(),
             // Of the connection.
             connection: before.connection,
@@ -177,6 +226,8 @@ impl Hand {
             series: None,
             inputs: HandInputs::default(),
             recording: None,
+            recorded: None,
+            asked_at: ctx.now,
         };
         let is_over =
             |what: &NoticeKind| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_));
@@ -211,7 +262,10 @@ impl Hand {
                 at,
                 state: LinkState::Holding,
             } => self.measured.history.mark(*at, MarkKind::Stop),
-            Record::Sent { at, write, .. } => self.measured.history.sent(*at, write),
+            Record::Sent { at, write, .. } => {
+                self.asked_at = *at;
+                self.measured.history.sent(*at, write);
+            }
             Record::State { .. } | Record::Answered { .. } => {}
             Record::ArmRefused { at, reason } => {
                 notices.push(*at, NoticeKind::ArmRefused(*reason));
@@ -236,6 +290,7 @@ impl Hand {
             self.params.link_lost(now);
         }
         if news.is_armed {
+            self.asked_at = now;
             self.controls.stand();
         }
     }
@@ -244,6 +299,11 @@ impl Hand {
     pub(crate) fn follow(&mut self) {
         let angles = self.connection.angles(&self.readings.sample);
         self.controls.follow(angles, self.connection.is_armed());
+        let status = &self.connection.status;
+        let is_as_found = !self.connection.commanded && status.armed.is_none();
+        if is_as_found && self.connection.is_live() {
+            self.controls.adopt(&self.readings.sample);
+        }
     }
 
     /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
@@ -264,7 +324,10 @@ impl Hand {
         }
         match self.arm_refusal(ctx.now) {
             Some(reason) => ctx.tell(NoticeKind::ArmRefused(reason)),
-            None => self.connection.arm(self.controls.arm_request()),
+            None => {
+                let request = self.controls.arm_request(&self.readings.sample);
+                self.connection.arm(request);
+            }
         }
     }
 
@@ -332,11 +395,22 @@ impl Hand {
                 run.command(PlayCommand::Lock(self.controls.locked()));
             }
         }
-        if let Some(setpoints) = wanted {
+        if let Some(mut setpoints) = wanted {
             if let JointChange::Target(_) = change {
                 self.take_over();
+                if let Some(own) = self.controls.give_back(setpoints.epoch) {
+                    setpoints.merge(&own);
+                }
             }
             self.connection.send(&setpoints);
+        }
+    }
+
+    /// What was played is over: the person's own speed and force are in force again.
+    pub(crate) fn give_back(&mut self) {
+        let own = self.own_epoch();
+        if let Some(own) = own.and_then(|epoch| self.controls.give_back(epoch)) {
+            self.connection.send(&own);
         }
     }
 
@@ -347,11 +421,14 @@ impl Hand {
             fill(&mut wanted);
             self.controls.free(&wanted)
         });
-        let Some(setpoints) = wanted else {
+        let Some(mut setpoints) = wanted else {
             return false;
         };
         self.take_over();
         self.controls.show(&setpoints);
+        if let Some(own) = self.controls.give_back(setpoints.epoch) {
+            setpoints.merge(&own);
+        }
         self.connection.send(&setpoints);
         true
     }
@@ -371,6 +448,9 @@ impl Hand {
         };
         let entry = plan.entry;
         self.take_over();
+        for cue in plan.cues() {
+            self.controls.lend(&cue.targets);
+        }
         let Some(open) = &mut self.connection.open else {
             return false;
         };
@@ -422,6 +502,7 @@ impl Hand {
             ctx.tell(NoticeKind::GestureWouldMoveLocked { dof });
         } else {
             self.take_over();
+            self.give_back();
             self.controls.gesture = Some(gesture);
             if self.ask(what, HandCommand::Gesture(gesture, route), ctx) {
                 let number = MarkKind::Gesture(gesture.get());

@@ -1,10 +1,11 @@
 //! What moves the hand now, so that every view can tell it.
 
+use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
 use crate::app::procedures::Procedure;
 use crate::app::readings::Freshness;
 use crate::hand::{Gesture, Moment};
-use crate::link::Owner;
+use crate::link::{LinkStatus, Owner};
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState, Rest};
 
@@ -25,6 +26,12 @@ pub enum Mover {
     Outside(Owner),
     /// Setpoints of a person.
     Setpoints,
+    /// A task of this program that a recording does not name.
+    Task,
+    /// An exhibition, in a recording.
+    Exhibition,
+    /// In a recording: nobody that it names.
+    Unrecorded,
     /// Nothing that this program asked for.
     Unknown,
 }
@@ -48,6 +55,9 @@ impl Mover {
         if let Some(owner) = connection.outside_owner() {
             return Some(Self::Outside(owner));
         }
+        if let Some(then) = hand.recorded {
+            return recorded_mover(then, link);
+        }
         if let Some(run) = &hand.series {
             return Some(Self::Series(run.view.number, run.view.total));
         }
@@ -66,6 +76,20 @@ impl Mover {
             None => Self::Setpoints,
         })
     }
+}
+
+/// What moved the hand of a recording, as far as that tells.
+fn recorded_mover(then: RecordedMover, link: &LinkStatus) -> Option<Mover> {
+    if let Some((number, of)) = then.trial {
+        return Some(Mover::Series(number, of));
+    }
+    (link.rest == Rest::Moving).then(|| match link.holder.map(|holder| holder.owner) {
+        Some(Owner::Person) => Mover::Setpoints,
+        Some(Owner::Task) => Mover::Task,
+        Some(Owner::Exhibition) => Mover::Exhibition,
+        Some(owner) => Mover::Outside(owner),
+        None => Mover::Unrecorded,
+    })
 }
 
 /// True if nothing moves the hand for certain, and nothing may: a hand that was never heard does not count as one.

@@ -22,6 +22,8 @@ pub enum ParamRefusal {
     NothingStaged,
     /// The last apply changed nothing, or there was none.
     NothingToUndo,
+    /// The hand holds what was saved last.
+    NothingToSave,
     /// There is no folder for the backup.
     NoFolder,
     /// No row was read.

@@ -167,9 +167,16 @@ impl ParamsState {
 
     /// Why the hand's parameters cannot be written to its flash now.
     pub fn save_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
-        let nowhere = self.files.is_none();
-        self.write_refusal(link)
-            .or_else(|| nowhere.then_some(ParamRefusal::NoFolder))
+        // A SAVE whose result is in doubt may be tried again, and what was never saved here may be elsewhere than in flash.
+        let is_known = self.known.saved.is_some() && self.known.doubtful.is_none();
+        let nothing = is_known && self.unsaved().is_empty();
+        let refusals = [
+            (self.files.is_none(), ParamRefusal::NoFolder),
+            (self.live.is_empty(), ParamRefusal::NothingRead),
+            (nothing, ParamRefusal::NothingToSave),
+        ];
+        let refused = refusals.into_iter().find(|(is_so, _)| *is_so);
+        self.write_refusal(link).or(refused.map(|(_, why)| why))
     }
 
     /// How fresh a row's value is, on a link that is live or not.

@@ -63,7 +63,7 @@ impl ParamsState {
                 self.apply_rows(undo, Vec::new(), hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(hand),
+            ParamAction::Save => self.ask_save(),
             ParamAction::Agree if self.write_refusal(link).is_some() => {}
             ParamAction::Agree => {
                 let Some(WriteQuestion { what, dangers }) = self.question.take() else {
@@ -165,11 +165,8 @@ impl ParamsState {
         });
     }
 
-    /// Shows what a SAVE would change; where that is nothing, it is done at once.
-    fn ask_save(&mut self, hand: HandContext<'_>) {
-        if self.unsaved().is_empty() {
-            return self.save(Vec::new(), hand);
-        }
+    /// Shows what a SAVE would change.
+    fn ask_save(&mut self) {
         self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
             dangers: self.save_dangers(),

@@ -1,6 +1,7 @@
 //! What is done at each hand in each frame: news are taken in, and what was begun goes on.
 
 use crate::app::ctx::Ctx;
+use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::poses::PoseState;
@@ -26,13 +27,24 @@ pub(super) struct Shared<'a> {
 /// Lets one hand go on.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.take_news(&mut ctx.notices, ctx.now);
-    let sent = hand.sequence.as_mut().map(|run| run.news());
-    for setpoints in sent.into_iter().flatten() {
-        hand.sent(&setpoints);
+    let played = hand
+        .sequence
+        .as_mut()
+        .map(|run| (run.is_running(), run.news()));
+    if let Some((was_running, sent)) = played {
+        sent.iter().for_each(|setpoints| hand.sent(setpoints));
+        let runs = hand.sequence.as_ref().is_some_and(SequenceRun::is_running);
+        if was_running && !runs {
+            hand.give_back();
+        }
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
     hand.tick_requests(ctx);
+    if shared.settings.disarm_idle && hand.idle(ctx.now).is_some() {
+        hand.disarm(ctx.now);
+        ctx.tell(NoticeKind::IdleDisarmed);
+    }
     hand.params.tick(&hand.connection, ctx);
     tick_series(hand, shared.trials, ctx);
     tick_procedure(hand, shared.settings, ctx);

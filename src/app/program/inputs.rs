@@ -33,7 +33,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
             let domain = 0;
             let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
             // What a person set here is the most that a message may ask for.
-            let allowed = hand.controls.arm_request();
+            let allowed = hand.controls.limits();
             hand.inputs.join_dds(place, allowed, connection, env);
         }
         InputAction::Mirror(wanted) => leading::watch_hand(state, wanted, env),
@@ -75,10 +75,17 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
         return;
     };
     let lease = link.grant(offered.owner);
+    // Of an armed hand that played something: whoever moves it now does so with the person's speed and force.
+    let armed = hand.connection.status.armed;
+    if let Some(own) = armed.and_then(|epoch| hand.controls.give_back(epoch)) {
+        // One that is refused has ended, and takes nothing.
+        let _sent = link.set(lease, &own);
+    }
+    let arm = hand.controls.arm_request(&hand.readings.sample);
     let start = |terms| FollowStart {
         lease,
         terms,
-        arm: hand.controls.arm_request(),
+        arm,
         seen: hand.readings.sample,
         clock: env.clock,
     };

@@ -196,6 +196,7 @@ impl App {
                 state.hand_mut().disarm(now);
             }
             Action::HoldToRun(on) => hand_actions::set_hold_to_run(state, on),
+            Action::DisarmIdle(on) => state.settings.disarm_idle = on,
             Action::HoldKey(_) if self.closing.is_some() => {}
             Action::HoldKey(key) => hands::hold_key(state, key, env),
             Action::Target(dof, angle) => state
@@ -408,6 +409,8 @@ impl App {
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);
         if goes {
+            // A frame that still comes begins no file.
+            self.records = false;
             let hands = state.hands.iter_mut();
             hands
                 .filter_map(|hand| hand.recording.take())

@@ -5,9 +5,9 @@ use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
-use crate::hand::{Angle, Moment, PerDof, Target};
+use crate::hand::{Angle, PerDof, Target};
 use crate::poses::library::{EntryId, LibraryPose, PoseId, SequenceId};
-use crate::poses::player::{PlayMode, PlayPlan};
+use crate::poses::player::PlayMode;
 use crate::poses::preview::Preview;
 use crate::poses::{Play, Preset};
 use crate::tasks::play::PlayCommand;
@@ -53,7 +53,7 @@ pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
     let plan = state.poses.plan(EntryId::Pose(id));
     for hand in state.hands.with_shown(takes_poses) {
         let plan = plan.clone();
-        if plan.is_some_and(|plan| go_to_pose(hand, plan, env, state.now)) {
+        if plan.is_some_and(|plan| hand.play(plan, PlayMode::Through, env, state.now)) {
             state.poses.recalled = Some(id);
         }
     }
@@ -98,24 +98,6 @@ pub(super) fn preset(hand: &mut Hand, preset: Preset) {
     hand.go_to(|setpoints| {
         setpoints.angle = PerDof::from_fn(|dof| preset.angle(dof).map(Target::Go));
     });
-}
-
-/// Takes a pose: speed and force first, then the angles of joints that are free. Where thumb and index could meet on the way,
-/// it goes part by part. Arms nothing; true if something is sent.
-fn go_to_pose(hand: &mut Hand, plan: PlayPlan, env: &Env, now: Moment) -> bool {
-    let Some(cue) = plan.cues.first() else {
-        return false;
-    };
-    let angle = hand.readings.sample.angle;
-    let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
-    if cue.legs(&from).len() > 1 {
-        return hand.play(plan, PlayMode::Through, env, now);
-    }
-    hand.go_to(|setpoints| {
-        setpoints.angle = cue.targets.map(|to| to.map(Target::Go));
-        setpoints.speed = PerDof::splat(Some(cue.speed));
-        setpoints.force = PerDof::splat(Some(cue.force));
-    })
 }
 
 /// What a wish to play comes to at one hand.

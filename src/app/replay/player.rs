@@ -209,7 +209,7 @@ impl SessionPlayer {
                 self.state.notices.dismiss(id);
                 None
             }
-            action if action.effect().passes_in_replay() => Some(action),
+            action if action.passes_in_replay() => Some(action),
             _ => {
                 self.tell(NoticeKind::Recorded);
                 None
@@ -418,6 +418,7 @@ impl SessionPlayer {
             | SessionAction::OpenAt(..)
             | SessionAction::Close
             | SessionAction::Reveal(_)
+            | SessionAction::Export(..)
             | SessionAction::Name(..)
             | SessionAction::Star(..)
             | SessionAction::AskDelete(_)

@@ -1,5 +1,6 @@
 //! The state of the window at a moment of a recorded session: everything is taken in as it was when it was heard.
 
+use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
 use crate::app::notices::Notices;
 use crate::hand::Moment;
@@ -94,6 +95,7 @@ impl Recorded {
             recorded.hand.connection.traffic = Traffic::of(recorded.tap.clone(), endpoint);
         }
         recorded.hand.connection.endpoint = endpoint;
+        recorded.hand.recorded = Some(RecordedMover::default());
         recorded
     }
 
@@ -127,13 +129,18 @@ impl Shown<'_> {
             Entry::Link(report) => self.link(report),
             Entry::Event(event) => self.event(event),
         }
-        self.hand.follow();
+        if let Entry::Heard(record) = entry {
+            self.hand.controls.take_recorded(record);
+        }
     }
 
     fn link(&mut self, report: &LinkReport) {
         if let Ok(status) = serde_json::from_str(&report.status) {
             self.hand
                 .take_status(status, &mut self.notices.about(None), report.at);
+            if let Some(mover) = &mut self.hand.recorded {
+                mover.take_status(&self.hand.connection.status);
+            }
         }
         if let Ok(figures) = serde_json::from_str(&report.figures) {
             self.hand.connection.stats = figures;
@@ -152,6 +159,11 @@ impl Shown<'_> {
             (EventKind::Parameters, _) => {
                 if let Ok(file) = params::file::read(&event.words) {
                     self.hand.params.take_recorded(&file.params, event.at);
+                }
+            }
+            (EventKind::Trial, _) => {
+                if let Some(mover) = &mut self.hand.recorded {
+                    mover.begin_trial(&event.words);
                 }
             }
             (EventKind::Note, Some(kind)) => self.hand.measured.history.mark(event.at, kind),

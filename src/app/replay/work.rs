@@ -8,6 +8,7 @@ use crate::app::replay::player::{self, Opened, SessionPlayer};
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
+use crate::app::sessions::export;
 use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
@@ -35,6 +36,8 @@ pub(crate) struct SessionWork {
     opened: [Option<PathBuf>; 2],
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
+    /// Sessions that are being written in formats of others.
+    exporting: Vec<BackgroundJob<NoticeKind>>,
     /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<FilesWritten>,
@@ -65,6 +68,7 @@ impl SessionWork {
         }
         self.take_opened(state);
         self.take_folder(state);
+        self.take_exported(state);
         self.go_on_writing(state, env);
         if let Some(player) = &mut self.player {
             player.tick(state, env);
@@ -182,6 +186,18 @@ impl SessionWork {
         }
     }
 
+    /// What was written is told where a person looks: in the live window or in the replay.
+    fn take_exported(&mut self, state: &mut State) {
+        for job in std::mem::take(&mut self.exporting) {
+            let mut job = Some(job);
+            match (BackgroundJob::take_from(&mut job), &mut self.player) {
+                (Some(told), Some(player)) => player.tell(told),
+                (Some(told), None) => state.notices.push(state.now, told),
+                (None, _) => self.exporting.extend(job),
+            }
+        }
+    }
+
     /// From the next recording on; the sessions of that folder are listed at once.
     fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
         state.settings.sessions.folder = folder;
@@ -232,6 +248,9 @@ impl SessionWork {
             }
             SessionAction::DefaultFolder => self.record_into(None, state),
             SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
+            SessionAction::Export(path, form) => {
+                self.exporting.push(export::export(path, form, env))
+            }
             SessionAction::Look => self.look(state, env),
             SessionAction::Open(path) => self.open(path, None, env),
             SessionAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),

@@ -6,13 +6,18 @@ use crate::app::sessions::item::SessionItem;
 use crate::hand::Moment;
 use crate::record::file::parts;
 use crate::store::{BackgroundJob, on_thread};
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Sessions that are listed: some for each working day of two years. Beyond, the oldest are not.
 pub const SESSIONS_MAX: usize = 2000;
 /// Sessions of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
 pub(crate) const OWN_MAX: usize = 100;
+/// A file that is being recorded is read again once it grew by this part of itself.
+const GROWS_BY: u64 = 10;
 /// Folders of days that are looked into.
 const FOLDERS_MAX: usize = 4000;
 
@@ -61,6 +66,15 @@ pub struct SessionsState {
     pub looked: u64,
 }
 
+impl SessionsState {
+    /// How long a session is; one that this program records grows from frame to frame.
+    pub fn length(&self, item: &SessionItem) -> Duration {
+        let mut own = self.own.iter();
+        let own = own.find(|own| own.path == item.path && self.recorded.contains(&own.path));
+        own.map_or(item.length, |own| own.last.since(own.first))
+    }
+}
+
 /// What looking for sessions found.
 #[derive(Debug)]
 pub(crate) struct Looked {
@@ -95,8 +109,8 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
     for files in recordings {
         let sizes = files.iter().flat_map(std::fs::metadata);
         let bytes = sizes.map(|about| about.len()).sum::<u64>();
-        let same = |item: &&SessionItem| item.files == files && item.bytes == bytes;
-        if let Some(item) = known.iter().find(same).filter(|item| item.closed) {
+        let same = |item: &&SessionItem| item.files == files && is_known(item, bytes);
+        if let Some(item) = known.iter().find(same) {
             let about = crate::app::sessions::SessionAbout::load(&item.path).unwrap_or_default();
             items.push(SessionItem {
                 about,
@@ -118,6 +132,30 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
         unread,
         told: budget::load_told(folder),
     }
+}
+
+/// True if files of this size in all need not be read again: they were ended, or grew little since and go on. What goes on is
+/// read whole.
+fn is_known(item: &SessionItem, bytes: u64) -> bool {
+    if item.closed {
+        return item.bytes == bytes;
+    }
+    let grew = bytes.saturating_sub(item.bytes);
+    grew < item.bytes / GROWS_BY
+        && !item
+            .files
+            .last()
+            .is_none_or(|last| is_ended(last).unwrap_or(true))
+}
+
+/// True if a file ends as it begins: MCAP files that were ended do.
+fn is_ended(path: &Path) -> io::Result<bool> {
+    let mut file = File::open(path)?;
+    let (mut first, mut last) = ([0; 8], [0; 8]);
+    file.read_exact(&mut first)?;
+    file.seek(SeekFrom::End(-8))?;
+    file.read_exact(&mut last)?;
+    Ok(first == last)
 }
 
 /// The MCAP files in a folder and in the folders in it.

@@ -155,15 +155,16 @@ impl ConnectionForm {
             kit::head_ui(ui, look, look.say(main::TAB_CONNECTION), |_| ());
             self.kinds_ui(ui, look);
             ui.add_space(theme::STEP);
+            let mut entered = false;
             for key in self.kind.1 {
                 if RARE.contains(key) {
-                    expert_ui(ui, look, |ui| self.key_ui(ui, pane, key))
+                    expert_ui(ui, look, |ui| entered |= self.key_ui(ui, pane, key))
                 } else {
-                    self.key_ui(ui, pane, key)
+                    entered |= self.key_ui(ui, pane, key)
                 }
             }
             ui.add_space(theme::STEP);
-            self.connect_ui(ui, pane);
+            self.connect_ui(ui, pane, entered);
             let hint = look.tip(panels::kind(self.kind.0));
             Label::new(hint, look.palette.muted).wrap().ui(ui);
             ui.add_space(theme::STEP);
@@ -228,8 +229,8 @@ impl ConnectionForm {
         }
     }
 
-    /// One field: typed, or chosen where there are few; what is in force is among the choices.
-    fn key_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, key: &'static str) {
+    /// One field: typed, or chosen where there are few; what is in force is among the choices. True if Enter was pressed in it.
+    fn key_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, key: &'static str) -> bool {
         let look = pane.look;
         let plain = |number: u32| (number.to_string(), number.to_string());
         let said = |key: &str, text| (key.to_owned(), look.say(text).to_owned());
@@ -250,9 +251,12 @@ impl ConnectionForm {
         };
         let text = self.fields.entry(key).or_default();
         let caption = look.say(panels::setting(key));
+        let mut entered = false;
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
                 let field = kit::edit_ui(ui, (caption, ""), text);
+                let enter = ui.input(|input| input.key_pressed(egui::Key::Enter));
+                entered = enter && field.lost_focus();
                 if key == "host" && !field.has_focus() && is_wrong_ip(text) {
                     let words = look.say(panels::ADDRESS_WRONG);
                     refused_ui(ui, look, (field.id, field.rect), words);
@@ -276,9 +280,10 @@ impl ConnectionForm {
             let tip = Label::new(look.tip(scan_text::fact(Fact::Packing)), look.palette.muted);
             tip.small().wrap().ui(ui);
         }
+        entered
     }
 
-    fn connect_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn connect_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, entered: bool) {
         let look = pane.look;
         let spelled = self.spelled();
         let parsed = spelled.parse::<Endpoint>();
@@ -289,12 +294,10 @@ impl ConnectionForm {
         });
         ui.horizontal_wrapped(|ui| {
             let connect = Button::said(look, panels::CONNECT);
-            if connect
-                .weight(Weight::Strong)
-                .large()
-                .ui(ui, look)
-                .clicked()
-            {
+            let recorded = pane.recorded();
+            let connect = connect.weight(Weight::Strong).large().disabled(recorded);
+            let pressed = connect.ui(ui, look).clicked();
+            if pressed || entered && recorded.is_none() {
                 match &parsed {
                     Ok(endpoint) => pane.actions.push(Action::Connect(endpoint.clone())),
                     Err(_) => self.refused = Some(spelled.clone()),

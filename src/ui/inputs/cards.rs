@@ -8,7 +8,7 @@ use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
 use crate::ui::inputs::owner::figures_ui;
-use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
 use crate::ui::text::{Text, errors, inputs, words};
 use crate::ui::theme;
 use egui::{Ui, vec2};
@@ -228,11 +228,19 @@ fn socket(at: Option<SocketAddr>, is_wrong: bool) -> Place {
     (at.map(|at| (at.ip(), at.to_string())), wrong)
 }
 
+/// A switch: while it is on it says so, and how it ends. Its name stays.
+pub(crate) fn on_off(look: Look, text: Text, on: bool) -> Button<'static> {
+    let shown = if on { inputs::ON } else { text };
+    Button::new(look.say(shown), look.tip(shown))
+        .named(look.say(text))
+        .switch(on)
+}
+
 /// Opens something or closes it, and says where it is, or why it is not.
 fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, (kind, text, action): Switch, (at, wrong): Place) {
     let look = pane.look;
     let wrong = wrong.filter(|_| at.is_none()).map(|wrong| look.say(wrong));
-    let button = Button::said(look, text).selected(at.is_some()).large();
+    let button = on_off(look, text, at.is_some()).large();
     let button = button.disabled(no_hand(pane).or(wrong));
     button.on_click(ui, pane, Action::Input(action));
     let refused = pane.state.hand().inputs.refused.as_ref();

@@ -46,6 +46,14 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         limits_ui(ui, pane);
         hold_ui(ui, pane);
+        let mut idle = pane.state.settings.disarm_idle;
+        let switch = ui.checkbox(&mut idle, look.say(inputs::DISARM_IDLE));
+        if switch
+            .on_hover_text(look.tip(inputs::DISARM_IDLE))
+            .changed()
+        {
+            pane.actions.push(Action::DisarmIdle(idle));
+        }
     });
 }
 

@@ -8,10 +8,10 @@ use crate::hand::{Angle, PerDof};
 use crate::inputs::pad::PadControl;
 use crate::inputs::pad::source::PadView;
 use crate::ui::hand::panel::pose_ui;
-use crate::ui::inputs::cards::{grant_ui, no_hand};
+use crate::ui::inputs::cards::{grant_ui, no_hand, on_off};
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
-use crate::ui::kit::{self, Button, Label, Look, Pane};
+use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
 use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
@@ -75,7 +75,7 @@ fn pose_names(state: &State, look: Look) -> Vec<PoseName> {
 fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
     let look = pane.look;
     ui.horizontal_wrapped(|ui| {
-        let button = Button::said(look, inputs::READ_PAD).selected(view.is_some());
+        let button = on_off(look, inputs::READ_PAD, view.is_some());
         let button = button.disabled(no_hand(pane)).large();
         let action = InputAction::ReadPad(view.is_none());
         button.on_click(ui, pane, Action::Input(action));

@@ -2,13 +2,13 @@
 
 use crate::app::action::Action;
 use crate::app::settings::Language;
-use crate::hand::{Dof, impact};
+use crate::hand::{Dof, Force, Speed, impact};
 use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
-use crate::ui::kit::{self, Button, Label, Pane, ViewRequest};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
 use crate::ui::text::{main, notices};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -100,6 +100,9 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
             row.drive_reading_ui(ui, place, pane);
         }
         impact_ui(ui, pane, row);
+        if !each {
+            other_ui(ui, pane, row);
+        }
         unseen_mark_ui(ui, pane, row.dof);
         status_ui(ui, pane, row, each);
     });
@@ -139,18 +142,47 @@ pub(crate) fn explain_ui(
         .on_hover_cursor(CursorIcon::PointingHand);
 }
 
+/// A sign where the hand holds another speed or force than the person set, whose lines are not shown.
+fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
+    let (look, hand) = (pane.look, pane.state.hand());
+    let joint = hand.controls.joints[row.dof];
+    let one = |caption, wanted: Option<i16>, held: i16| {
+        let wanted = format::whole(wanted.map(i64::from), 0);
+        let held = look.told(main::HAND_HOLDS, held);
+        format!("{} {wanted} · {held}", look.say(caption))
+    };
+    let speed = hand.other_speed(row.dof);
+    let speed = speed.map(|held| one(main::SPEED, joint.speed.map(Speed::get), held.get()));
+    let force = hand.other_force(row.dof);
+    let force = force.map(|held| one(main::FORCE, joint.force.map(Force::get), held.get()));
+    let all: Vec<String> = force.into_iter().chain(speed).collect();
+    if all.is_empty() {
+        // What comes after it keeps its id.
+        return ui.skip_ahead_auto_ids(1);
+    }
+    let all = all.join("\n");
+    let label = Label::new(look.say(main::HAND_DIFFERS), look.palette.warn).small();
+    let label = label.named(&format!("{} {all}", row.name)).ui(ui);
+    label.on_hover_text(format!("{all}\n{}", look.tip(main::HAND_DIFFERS)));
+}
+
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
 fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let joint = pane.state.hand().controls.joints[row.dof];
-    let rough_from = impact::rough_from_speed(joint.force);
-    let is_gentle = rough_from.is_none_or(|rough| joint.speed < rough);
-    if is_gentle || pane.state.hand().series.is_some() {
+    let set = joint.speed.zip(joint.force);
+    let is_rough = |(speed, force): &(Speed, Force)| {
+        impact::rough_from_speed(*force).is_some_and(|rough| *speed >= rough)
+    };
+    let Some((speed, force)) = set.filter(is_rough) else {
+        return;
+    };
+    if pane.state.hand().series.is_some() {
         return;
     }
     let response = kit::warning_ui(ui, pane.look.palette.warn);
     let name = row.named(pane, main::NAME_IMPACT);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let (speed, force) = (joint.speed.get(), joint.force.get());
+    let (speed, force) = (speed.get(), force.get());
     let peak = impact::overshoot_g(speed.into(), force.into());
     let measured = match pane.look.language {
         Language::En => format!(

@@ -5,10 +5,11 @@ use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed, impact};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
-use crate::ui::kit::{Label, NumberField, Pane};
+use crate::ui::kit::{Label, Look, NumberField, Pane};
+use crate::ui::style::format::UNKNOWN;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
-use egui::{Align, Id, Layout, Ui};
+use egui::{Align, Id, Layout, Rect, Ui};
 
 /// Fingers that move together when they are linked. The thumb is apart: its way is another.
 const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
@@ -20,6 +21,8 @@ struct TrackRow<'a> {
     id: Id,
     track: SlideTrack<'a>,
     scale: NumberScale,
+    /// What the hand holds in place of what is wanted.
+    other: Option<i16>,
     /// What stands after it in the row.
     after: f32,
 }
@@ -39,8 +42,35 @@ impl TrackRow<'_> {
             .disabled(self.track.disabled)
             .decimals(scale.decimals);
         let value = self.track.target.map(|target| scale.shown(target));
+        self.other_ui(ui, look, place);
         let typed = number.ui(ui, pane, value);
         typed.map(|typed| self.scale.raw(typed)).or(moved)
+    }
+
+    /// What the hand holds in place of what is wanted, on the end of the track that is far from the handle: nothing moves for it.
+    fn other_ui(&self, ui: &mut Ui, look: Look, track: Rect) {
+        let Some(other) = self.other else {
+            // The field behind it keeps its id, and so the keyboard.
+            return ui.skip_ahead_auto_ids(1);
+        };
+        let (scale, decimals) = (self.scale, self.scale.decimals);
+        let shown = |raw| format!("{:.decimals$}", scale.shown(raw));
+        let text = look.told(main::HAND_HOLDS, shown(other));
+        let wanted = self.track.target.map_or_else(|| UNKNOWN.into(), shown);
+        let name = format!("{} {wanted} · {text}", self.number_name);
+        let width = theme::OTHER.min(track.width() / 2.0);
+        // Where room is short the number alone, in its colour.
+        let short = (width < theme::OTHER).then(|| shown(other));
+        let place = match self.track.target {
+            Some(target) if target > self.track.max / 2 => track.with_max_x(track.left() + width),
+            _ => track.with_min_x(track.right() - width),
+        };
+        ui.painter()
+            .rect_filled(place, theme::ROUND_TINY, look.palette.card);
+        let text = short.as_ref().unwrap_or(&text);
+        let label = Label::new(text, look.palette.warn).small().center();
+        let label = label.named(&name).put(ui, place);
+        label.on_hover_text(look.tip(main::HAND_HOLDS));
     }
 }
 
@@ -65,6 +95,7 @@ impl JointRow {
                 ..SlideTrack::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
             },
             scale: NumberScale::of_angle(pane.state.settings.angle_unit, self.dof),
+            other: pane.state.hand().other_target(self.dof).map(Angle::get),
             after: READING + theme::GAP,
         };
         if let Some(value) = setting.ui(ui, pane) {
@@ -94,11 +125,12 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     let (look, hand) = (pane.look, pane.state.hand());
     let joints = hand.controls.joints;
     let name = named(pane, row, main::NAME_FORCE_THRESHOLD);
-    let runs = series(pane);
-    let value = value_of(row, joints.map(|joint| joint.force.get()));
+    let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
+    let value = value_of(row, joints.map(|joint| joint.force.map(Force::get)));
+    let others = PerDof::from_fn(|dof| hand.other_force(dof).map(Force::get));
     let mut track = SlideTrack {
         tip: &staged(pane, main::FORCE.tip()),
-        disabled: runs,
+        disabled: off,
         target: value.filter(|_| runs.is_none()),
         tick: Some(Force::RATED.get()),
         ..SlideTrack::new(&name, Force::MAX.get(), look.palette.faint)
@@ -107,10 +139,12 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         let joint = joints[row.dof];
         let (force, freshness) = pane.newest(row.dof, hand.readings.sample.force);
         track.actual = force.and_then(|force| force.documented());
-        let over = track.actual.is_some_and(|now| now >= joint.force.get());
+        let over = track.actual.zip(hand.stops_at(row.dof));
+        let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
         let live = if over { look.palette.warn } else { row.color };
         track.color = look.value(freshness, live);
-        track.rough_from = impact::rough_from_threshold(joint.speed).map(Force::get);
+        let rough = joint.speed.and_then(impact::rough_from_threshold);
+        track.rough_from = rough.map(Force::get);
         track.peak = hand.readings.peaks.get(row.dof).map(|(grams, _)| grams);
     }
     let setting = TrackRow {
@@ -118,6 +152,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),
         id: id_of(row, "force"),
         scale: NumberScale::whole(track.max),
+        other: value_of(row, others),
         track,
         after: after(row),
     };
@@ -130,11 +165,13 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// The speed of one joint; without a row that of all.
 pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
-    let joints = pane.state.hand().controls.joints;
-    let runs = series(pane);
-    let value = value_of(row, joints.map(|joint| joint.speed.get()));
+    let hand = pane.state.hand();
+    let joints = hand.controls.joints;
+    let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
+    let value = value_of(row, joints.map(|joint| joint.speed.map(Speed::get)));
     let value = value.filter(|_| runs.is_none());
-    let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force));
+    let others = PerDof::from_fn(|dof| hand.other_speed(dof).map(Speed::get));
+    let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force?));
     let name = named(pane, row, main::NAME_SPEED);
     let setting = TrackRow {
         caption: main::SPEED,
@@ -142,13 +179,14 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         id: id_of(row, "speed"),
         track: SlideTrack {
             tip: &staged(pane, main::SPEED.tip()),
-            disabled: runs,
+            disabled: off,
             target: value,
             actual: value,
             rough_from: rough.map(Speed::get),
             ..SlideTrack::new(&name, Speed::MAX.get(), pane.look.palette.faint)
         },
         scale: NumberScale::whole(Speed::MAX.get()),
+        other: value_of(row, others),
         after: after(row),
     };
     if let Some(value) = setting.ui(ui, pane) {
@@ -194,10 +232,10 @@ fn after(row: Option<&JointRow>) -> f32 {
 }
 
 /// The value of one joint, or the one that all joints share, if they do.
-fn value_of(row: Option<&JointRow>, values: PerDof<i16>) -> Option<i16> {
+fn value_of(row: Option<&JointRow>, values: PerDof<Option<i16>>) -> Option<i16> {
     let value = values[row.map_or(Dof::Little, |row| row.dof)];
     let is_shared = values.iter().all(|(_, other)| *other == value);
-    (row.is_some() || is_shared).then_some(value)
+    value.filter(|_| row.is_some() || is_shared)
 }
 
 fn staged(pane: &Pane<'_>, tip: Text) -> String {
@@ -280,7 +318,11 @@ mod tests {
 
     #[test]
     fn joints_that_differ_have_no_common_value() {
-        assert_eq!(value_of(None, PerDof::splat(7)), Some(7));
-        assert_eq!(value_of(None, PerDof::new([7, 7, 7, 7, 7, 8])), None);
+        assert_eq!(value_of(None, PerDof::splat(Some(7))), Some(7));
+        for differs in [None, Some(8)] {
+            let mut values = PerDof::splat(Some(7));
+            values[Dof::ThumbRotate] = differs;
+            assert_eq!(value_of(None, values), None);
+        }
     }
 }

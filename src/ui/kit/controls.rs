@@ -283,7 +283,9 @@ impl<'a> Button<'a> {
     }
 
     /// Draws it, and asks for `action` when it is pressed.
-    pub(crate) fn on_click(self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
+    pub(crate) fn on_click(mut self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
+        let recorded = pane.recorded().filter(|_| !action.passes_in_replay());
+        self.disabled = recorded.or(self.disabled);
         if self.ui(ui, pane.look).clicked() {
             pane.actions.push(action);
         }

@@ -52,6 +52,8 @@ impl Field<'_> {
         let (id, rect) = ui.allocate_space(vec2(width, height));
         let own = std::mem::take(pane.typing);
         let (own, other) = match own.field.as_ref() {
+            // Who presses one of these once more wants what is in force.
+            Some((field, _)) if *field == id && own.is_given_up(ui) => (Typing::default(), None),
             Some((field, _)) if *field == id && self.disabled.is_none() => (own, None),
             Some((field, _)) if *field == id => (Typing::default(), None),
             _ => (Typing::default(), Some(own)),

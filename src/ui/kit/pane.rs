@@ -1,6 +1,7 @@
 //! What every part of the window is given: the state, how it looks, and where to put actions.
 
 use crate::app::action::Action;
+use crate::app::effect::Effect;
 use crate::app::readings::Freshness;
 use crate::app::state::State;
 use crate::hand::{Dof, Moment, PerDof, Timed};
@@ -8,7 +9,7 @@ use crate::record::ArmRefusal;
 use crate::ui::style::Look;
 use crate::ui::text::{inputs, main};
 use crate::ui::view::View;
-use egui::Id;
+use egui::{Id, Key, Ui};
 
 /// One pass over one part of the window.
 pub(crate) struct Pane<'a> {
@@ -47,6 +48,9 @@ impl Pane<'_> {
 
     /// Why nothing that moves the hand can be asked for now.
     pub(crate) fn unready(&self) -> Option<&'static str> {
+        if let Some(recorded) = self.recorded() {
+            return Some(recorded);
+        }
         if self.state.hand().series.is_some() {
             return Some(self.look.say(main::SERIES_RUNS));
         }
@@ -58,6 +62,12 @@ impl Pane<'_> {
             _ => main::NOT_ARMED,
         };
         (!self.state.hand().connection.is_armed()).then(|| self.look.say(advice))
+    }
+
+    /// Why nothing at all can be asked of a hand now: a recording is shown.
+    pub(crate) fn recorded(&self) -> Option<&'static str> {
+        let is_recorded = self.state.timeline.is_some();
+        is_recorded.then(|| self.look.say(main::RECORDED))
     }
 
     /// How fresh something asked for at `asked` is.
@@ -83,4 +93,29 @@ pub(crate) struct Typing {
     pub(crate) field: Option<(Id, String)>,
     /// Why that was refused.
     pub(crate) refused: Option<String>,
+}
+
+impl Typing {
+    /// True if a text that was refused before goes now.
+    pub(crate) fn is_given_up(&self, ui: &Ui) -> bool {
+        let keys = [Key::Enter, Key::Escape];
+        self.refused.is_some() && ui.input(|input| keys.iter().any(|key| input.key_pressed(*key)))
+    }
+
+    /// Something else was asked of a hand, or another view is open: a text that was refused would hide what is in force.
+    pub(crate) fn after(&mut self, actions: &[Action]) {
+        let covers = |action: &Action| {
+            matches!(
+                action.effect(),
+                Effect::StopsAll
+                    | Effect::Stops
+                    | Effect::Moves
+                    | Effect::Adjusts
+                    | Effect::Connects
+            )
+        };
+        if self.refused.is_some() && actions.iter().any(covers) {
+            *self = Self::default();
+        }
+    }
 }

@@ -20,9 +20,11 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
 fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     let hurts = !question.dangers.is_empty();
     let staged = !state.hand().params.to_apply().is_empty();
+    let is_nothing = state.hand().params.unsaved().is_empty();
     let (title, agree) = match question.what {
         WriteRequest::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
         WriteRequest::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
+        WriteRequest::Save if is_nothing => (device::SAVE_NOTHING, device::AGREE_SAVE),
         WriteRequest::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
         WriteRequest::Save => (device::SAVE_TITLE, device::AGREE),
     };
@@ -49,6 +51,9 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
 /// What a SAVE changes for the next power-up, row by row.
 fn changes(state: &State, look: Look, card: Card) -> Card {
     let book = &state.hand().params;
+    if book.unsaved().is_empty() {
+        return card.words(device::SAVE_NOTHING_BODY);
+    }
     let card = card.words(device::SAVE_CHANGES).head([
         poses::NAME,
         device::SAVE_FROM,

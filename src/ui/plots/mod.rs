@@ -176,14 +176,12 @@ impl PlotView {
         });
         let mut levels = Vec::new();
         if self.thresholds && panel.kind == PlotKind::Force {
-            let joints = hand
-                .controls
-                .joints
-                .iter()
-                .filter(|(dof, _)| !self.hidden[*dof]);
-            let force =
-                joints.map(|(dof, joint)| (joint.force.get().into(), look.palette.dof[dof]));
-            levels.extend(force);
+            let shown = Dof::ALL.into_iter().filter(|dof| !self.hidden[*dof]);
+            let level = |dof: Dof| {
+                let stops_at = hand.stops_at(dof)?;
+                Some((stops_at.get().into(), look.palette.dof[dof]))
+            };
+            levels.extend(shown.filter_map(level));
         }
         let span = self.view.time.span();
         let chart = Chart {

@@ -12,12 +12,17 @@ use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{self, Button, ButtonRole, Card, Choice, Label, Look, Pane, format};
 use crate::ui::text::sessions;
 use egui::Ui;
+use std::time::Duration;
+
+/// Other programs record too: the list is looked for again so often while it is open.
+const LOOK_EACH: Duration = Duration::from_secs(5);
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct SessionsView {
     find: String,
-    looked: bool,
+    /// When the list was asked for last, in seconds of the window's time.
+    looked: Option<f64>,
     /// The field for another file is open.
     other: bool,
 }
@@ -25,8 +30,14 @@ pub(crate) struct SessionsView {
 impl SessionsView {
     /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        if !std::mem::replace(&mut self.looked, true) {
+        let now = ui.input(|input| input.time);
+        if self
+            .looked
+            .is_none_or(|at| now - at >= LOOK_EACH.as_secs_f64())
+        {
+            self.looked = Some(now);
             pane.actions.push(Action::Session(SessionAction::Look));
+            ui.ctx().request_repaint_after(LOOK_EACH);
         }
         kit::full_card_ui(ui, pane.look, |ui| {
             self.head_ui(ui, pane);
@@ -44,7 +55,7 @@ impl SessionsView {
 
     /// The list is old once the view was left.
     pub(crate) const fn leave(&mut self) {
-        self.looked = false;
+        self.looked = None;
     }
 
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -1,7 +1,7 @@
 //! The strip of force of a session: an instrument, painted by hand. The same in the list and under the time line.
 
 use crate::ui::kit::Look;
-use egui::{Painter, Rect, Shape, Stroke, pos2};
+use egui::{Painter, Rect, pos2, vec2};
 
 /// A force that fills the strip at least, in grams: a quiet session does not look like a grasp.
 const FULL_LEAST: f32 = 200.0;
@@ -14,14 +14,14 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
         return;
     };
     let width = place.width() / width;
-    let stroke = Stroke::new(width.max(1.0), look.palette.accent.gamma_multiply(0.7));
-    let mut left = place.left() + width / 2.0;
+    let color = look.palette.accent.gamma_multiply(0.7);
+    let mut left = place.left();
     for force in forces {
         if force.is_finite() {
             let height = (force.max(0.0) / full * place.height()).max(1.0);
             let top = pos2(left, place.bottom() - height);
-            let line = [pos2(left, place.bottom()), top];
-            painter.add(Shape::line_segment(line, stroke));
+            let size = vec2(width.max(1.0), height);
+            painter.rect_filled(Rect::from_min_size(top, size), 0.0, color);
         }
         left += width;
     }
@@ -29,4 +29,30 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
 
 fn count(len: usize) -> Option<f32> {
     u16::try_from(len).ok().map(f32::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::State;
+    use egui::Shape;
+
+    #[test]
+    fn a_resting_hand_is_a_low_line_inside_the_place_of_the_strip() {
+        let place = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 24.0));
+        let look = Look::of(&State::default());
+        let ctx = egui::Context::default();
+        let mut shown = ctx.run_ui(egui::RawInput::default(), |ui| {
+            strip(ui.painter(), look, place, &[0.0, f32::NAN, 100.0, 200.0]);
+        });
+        shown.textures_delta.clear();
+        let rects = shown.shapes.iter().filter_map(|shape| match &shape.shape {
+            Shape::Rect(rect) if rect.fill != egui::Color32::TRANSPARENT => Some(rect.rect),
+            _ => None,
+        });
+        let bars: Vec<Rect> = rects.filter(|rect| rect.width() == 200.0).collect();
+        let heights: Vec<f32> = bars.iter().map(Rect::height).collect();
+        assert_eq!(heights, [1.0, 12.0, 24.0], "nothing where nothing was read");
+        assert!(bars.iter().all(|bar| place.contains_rect(*bar)), "{bars:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! The table of sessions: a row each, with what is done with it at its end.
 
 use crate::app::action::Action;
-use crate::app::sessions::{SessionAction, SessionItem};
+use crate::app::sessions::{SessionAction, SessionForm, SessionItem};
 use crate::record::EventKind;
 use crate::ui::kit::{Button, Label, Pane, TextField, Weight, format};
 use crate::ui::sessions::strip;
@@ -97,7 +97,10 @@ fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) 
             let began: String = item.began().replace('T', " ").chars().take(16).collect();
             number(ui, &began, palette.muted);
         }
-        3 => number(ui, &format::duration(item.length), palette.text),
+        3 => {
+            let length = pane.state.sessions.length(item);
+            number(ui, &format::duration(length), palette.text);
+        }
         4 => {
             let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
             let (place, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -202,6 +205,17 @@ fn ends_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
         if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
             let reveal = SessionAction::Reveal(item.path.clone());
             pane.actions.push(Action::Session(reveal));
+            ui.close();
+        }
+        let exports = ui.menu_button(look.say(sessions::EXPORT), |ui| {
+            SessionForm::ALL.into_iter().find(|form| {
+                let name = look.say(sessions::form(*form));
+                ui.button(name).clicked()
+            })
+        });
+        if let Some(form) = exports.inner.flatten() {
+            let export = SessionAction::Export(item.path.clone(), form);
+            pane.actions.push(Action::Session(export));
             ui.close();
         }
         let copy = ui.button(look.say(sessions::COPY_PATH));

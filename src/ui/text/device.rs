@@ -20,7 +20,7 @@ texts! {
     UNDO: "Undo apply", "撤销应用", "Writes back what the last apply changed, and reads it back.", "写回上次应用所改动的值，并读回核对。";
     UNSTAGE_ALL: "Drop staged", "清除暂存", "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
     UNSTAGE: "Drop", "清除", "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
-    COPY: "Copy live speed and force", "取当前速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
+    COPY: "Copy the hand's speed and force", "取手当前的速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
     COPY_UNKNOWN: "SPEED_SET and FORCE_SET are not known now.", "SPEED_SET 与 FORCE_SET 目前未知。";
     CHANGE: "Change...", "更改...", "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通信地址，并保留退路。";
     CHANGE_NONE: "Type another value first.", "请先输入另一个值。";
@@ -92,6 +92,8 @@ texts! {
     FLASH_BODY: "Flash itself cannot be read. \"Last saved\" is what this program saved.", "闪存本身无法读取。“上次保存”是本程序所保存的内容。";
     SAVE: "Save to flash", "保存到闪存", "Shows what would change, makes a backup, then lets the hand write all its parameters to flash. Takes up to 3 seconds.", "先显示将要改变的内容并备份，然后让灵巧手把全部参数写入闪存，最多 3 秒。";
     SAVE_TITLE: "Save these changes to flash?", "把这些更改保存到闪存？";
+    SAVE_NOTHING: "Nothing to save, as far as this program knows", "据本程序所知，没有可保存的更改";
+    SAVE_NOTHING_BODY: "No row differs from what was read first. This program never saved on this hand, so what its flash holds is not known. SAVE writes all parameters as they are now.", "没有与最初读取不同的行。本程序从未在此灵巧手上保存过，闪存内容未知。保存会把当前全部参数写入闪存。";
     SAVE_CHANGES: "SAVE writes all parameters of the hand. After the next power-up these are not as before:", "保存会写入灵巧手的全部参数。下次上电后，以下各项与以前不同：";
     SAVE_FROM: "Until now", "以前";
     SAVE_TO: "Will be saved", "将保存";
@@ -148,6 +150,7 @@ texts! {
         ParamRefusal::Moving => "The hand moves: wait until it rests.", "灵巧手在运动：请等它静止。";
         ParamRefusal::RestUnknown => "It is not known whether the hand rests: wait for its status.", "尚不清楚灵巧手是否静止：请等待状态更新。";
         ParamRefusal::Busy => "Something is under way.", "正在进行其他操作。";
+        ParamRefusal::NothingToSave => "Nothing to save: the hand holds what was saved last.", "没有可保存的更改：灵巧手的值与上次保存的一致。";
         ParamRefusal::NothingStaged => "Nothing is staged that can be applied.", "没有可应用的暂存值。";
         ParamRefusal::NothingToUndo => "No apply of this session changed anything.", "本次没有可撤销的应用。";
         ParamRefusal::NoFolder => "There is no place for the backup.", "没有存放备份的位置。";

@@ -21,6 +21,7 @@ texts! {
     STREAM_AT: "Address for lines", "数据地址";
     UDP: "UDP", "UDP";
     TCP: "TCP", "TCP";
+    ON: "On: press to end", "已开启：按下结束", "It is open. Press to end it: whoever moves the hand through it is stopped.", "已开启。按下即结束；正在由此驱动的灵巧手会停止。";
     LISTEN: "Listen", "接收", "Takes lines at this address; nothing moves by that.", "在此地址接收数据；不会移动灵巧手。";
     NOBODY_SENDS: "Nobody sends now.", "目前没有数据。";
     SENDER: "Sender", "来源";
@@ -55,6 +56,8 @@ texts! {
     VIEWERS_NOW: "Viewers", "查看者";
     PAD: "Gamepad", "手柄", "Try it here first: nothing moves until you let it. Click a control to change what it does.", "可先在此试用：未经允许不会移动灵巧手。点击控件可更改其动作。";
     DRY_RUN: "Where it wants the hand, while it is held to run:", "按住运行键时，手柄所指的姿态：";
+    DISARM_IDLE: "Disarm after five minutes without a command", "五分钟无指令时自动解除使能", "An armed hand that is asked nothing for five minutes is disarmed. It keeps its pose.", "已使能的灵巧手五分钟内未收到指令时自动解除使能，姿态保持不变。";
+    IDLE_DISARMED: "Disarmed: it was asked nothing for five minutes.", "已解除使能：五分钟内没有指令。";
     HOLD_TO_RUN: "Hold to run (H key)", "按住运行（H 键）", "Whoever moves the hand: it moves only while H is held here. Let go, or in another window, it stops at once.", "无论由谁控制：只有在此按住 H 键时灵巧手才会运动。松开或切换窗口即停。";
     SHARED: "Shared", "共享中", "Others can reach this hand: press to see who, and to end it.", "其他程序可以访问此灵巧手：点击查看或结束。";
     LISTENING: "Listening", "接收中";

@@ -61,6 +61,7 @@ texts! {
     FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints do not pass until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
     LIST_END: ". ", "。";
+    IDLE_TITLE: "ARMED", "已使能", "Asked nothing for", "未收到指令已有";
     STALE_TITLE: "OLD VALUES", "数据过时", "No fresh feedback for", "没有新反馈已有";
 
     TAB_LIVE: "Live", "总览";
@@ -99,6 +100,9 @@ texts! {
     NAME_LOCK: "lock", "锁定";
     NAME_DRIVE: "current and temperature", "电流与温度";
     NAME_IMPACT: "impact warning", "冲击警告";
+    RECORDED: "A recording is shown: nothing is sent.", "正在显示记录：不会发送任何内容。";
+    HAND_HOLDS: "hand", "手", "The hand holds this instead: read back from it. What you set is sent by arming, or the next time you set it.", "灵巧手当前持有的是此值（回读所得）。你的设定会在使能时或下次设定时发送。";
+    HAND_DIFFERS: "!=", "!=", "The hand holds other values than you set.", "灵巧手持有的值与你的设定不同。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
     LOCK_TIP: "Locks the joint: it is left alone by Open and by its slider.", "锁定：“张开”与滑块都不再移动该自由度。";

@@ -9,7 +9,7 @@ use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::style::{Look, format};
-use crate::ui::text::{errors, main, panels, poses, scan, sessions, tune, window, words};
+use crate::ui::text::{errors, inputs, main, panels, poses, scan, sessions, tune, window, words};
 use std::path::Path;
 
 texts! {
@@ -186,6 +186,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             let what = words::setpoint(look, conflict);
             look.fill(panels::DISARMED_BY_OTHER, &[&what])
         }
+        NoticeKind::IdleDisarmed => said(inputs::IDLE_DISARMED),
         NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])

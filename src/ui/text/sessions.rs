@@ -1,5 +1,6 @@
 //! Sentences of recorded sessions: the list, the time line, the lamp in the header.
 
+use crate::app::sessions::SessionForm;
 use crate::ui::style::phrase::texts;
 
 texts! {
@@ -30,9 +31,10 @@ texts! {
     REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
     REPLAY_STRETCH: "Replay", "回放", "Replays the recorded session from two seconds before, this stretch again and again.", "从此前两秒开始循环回放录制会话的这一段。";
     REPLAY_NONE: "No session of this run of the program holds it.", "本次运行录制的会话中没有这一段。";
-    MORE: "More", "更多", "Rename, show in the folder, delete.", "重命名、打开所在文件夹、删除。";
+    MORE: "More", "更多", "Rename, show in the folder, export, delete.", "重命名、打开所在文件夹、导出、删除。";
     RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
     REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";
+    EXPORT: "Export the whole session", "导出整个会话";
     NOT_DELETED: "Could not be deleted:", "无法删除：";
     NOT_REVEALED: "The file manager did not start: {}. The file is {}", "无法启动文件管理器：{}。文件位于 {}";
     COPY_PATH: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
@@ -95,4 +97,13 @@ texts! {
     NOT_NOW: "Not replayed now: a series of trials or a question about the hand must be ended first.", "现在不能回放：请先结束抓取试验或完成关于灵巧手的询问。";
     DELETED: "Sessions deleted:", "已删除会话：";
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their sessions are marked.", "仿真手也会被录制，其会话会有标记。";
+
+    /// The formats that a session can be exported in.
+    fn form(SessionForm) {
+        SessionForm::Csv => "Table (CSV)", "表格（CSV）";
+        SessionForm::Parquet => "Table (Parquet)", "表格（Parquet）";
+        SessionForm::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
+        SessionForm::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
+        SessionForm::Mcap => "Session file (MCAP)", "会话文件（MCAP）";
+    }
 }

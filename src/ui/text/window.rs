@@ -11,6 +11,9 @@ texts! {
     MOVES_CALIBRATION: "Force calibration moves the hand", "力传感器校准正在驱动灵巧手";
     MOVES_STEP: "step", "第";
     MOVES_SETPOINTS: "The hand moves to your setpoints", "灵巧手正在移向设定值";
+    MOVES_TASK: "A pose, a sequence or another task of the program moves the hand", "姿态、序列或程序的其他任务正在驱动灵巧手";
+    MOVES_EXHIBIT: "An exhibition moves the hand", "展示模式正在驱动灵巧手";
+    MOVES_UNRECORDED: "The hand moves; who moves it is not in the recording", "灵巧手正在运动；记录中没有是谁在驱动它";
     MOVES_UNKNOWN: "The hand moves, and not because of this window", "灵巧手正在运动，但并非由本窗口发起";
     END: "End", "结束", "Ends it and holds the hand where it is.", "结束并保持灵巧手当前位置。";
     STOP_NOT_SENT: "STOP COULD NOT BE SENT", "停止命令未能发出", "No hand answers. If it moves, switch off its 24 V supply.", "没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";

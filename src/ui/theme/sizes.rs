@@ -60,6 +60,8 @@ pub(crate) const FIGURE_ROW: f32 = 18.0;
 pub(crate) const TITLE_LINE: f32 = 20.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
+/// A word and a number on a track.
+pub(crate) const OTHER: f32 = 62.0;
 /// Room inside a number field.
 pub(crate) const NUMBER_INSET: Margin = Margin::symmetric(6, 0);
 /// Room inside a text field.

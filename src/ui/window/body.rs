@@ -76,8 +76,13 @@ impl Body {
         if slot == self.slot {
             return false;
         }
-        let next = self.others.remove(&slot).unwrap_or_default();
-        let before = std::mem::replace(&mut self.own, next);
+        let next = self.others.remove(&slot);
+        let is_new = next.is_none() && state.hand().connection.endpoint.is_none();
+        let mut before = std::mem::replace(&mut self.own, next.unwrap_or_default());
+        if is_new {
+            // Where the next hand is was typed before its place was made.
+            self.own.connection = std::mem::take(&mut before.connection);
+        }
         self.others
             .insert(std::mem::replace(&mut self.slot, slot), before);
         let is_there = |slot: &SlotId| state.hands.iter().any(|hand| hand.label.slot == *slot);

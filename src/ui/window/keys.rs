@@ -82,7 +82,7 @@ const ALT: Modifiers = Modifiers::ALT;
 const HOLD_TO_RUN: Key = Key::H;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 42] = [
+pub(crate) static ROWS: [KeyRow; 43] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -140,6 +140,11 @@ pub(crate) static ROWS: [KeyRow; 42] = [
         Key::R,
         Wish::Opens(ViewRequest::View(View::Sessions)),
     ),
+    row(
+        COMMAND,
+        Key::I,
+        Wish::Opens(ViewRequest::View(View::Inputs)),
+    ),
     row(ALT, Key::Num1, Wish::Hand(0)),
     row(ALT, Key::Num2, Wish::Hand(1)),
     row(ALT, Key::Num3, Wish::Hand(2)),
@@ -154,10 +159,10 @@ pub(crate) static ROWS: [KeyRow; 42] = [
     row(NONE, Key::Num4, Wish::Joint(Dof::Index)),
     row(NONE, Key::Num5, Wish::Joint(Dof::ThumbBend)),
     row(NONE, Key::Num6, Wish::Joint(Dof::ThumbRotate)),
-    row(NONE, Key::L, Wish::LinkFingers),
+    row(ALT, Key::L, Wish::LinkFingers),
     row(NONE, Key::U, Wish::AngleUnit),
-    row(SHIFT, Key::T, Wish::UndoTare),
-    row(NONE, Key::T, Wish::Tare),
+    row(SHIFT, Key::T, Wish::Tare),
+    row(COMMAND, Key::T, Wish::UndoTare),
     row(NONE, Key::P, Wish::Pause),
     row(NONE, Key::N, Wish::Opens(ViewRequest::Note)),
     row(COMMAND, Key::L, Wish::Language),
@@ -239,6 +244,22 @@ impl Wish {
             Self::Opens(ViewRequest::Drive(dof)) => words::dof(dof),
             Self::Opens(ViewRequest::Faults) => View::Faults.title(),
         }
+    }
+
+    /// True if a hand may move because of it, now or later.
+    pub(crate) const fn moves(self) -> bool {
+        matches!(
+            self,
+            Self::ArmOrNot
+                | Self::HoldToRun
+                | Self::Open
+                | Self::Half
+                | Self::Close
+                | Self::Entry(_)
+                | Self::LinkFingers
+                | Self::Tare
+                | Self::UndoTare
+        )
     }
 
     /// Its group in the list of keys.

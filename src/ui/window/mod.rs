@@ -47,12 +47,18 @@ use crate::ui::window::keys::{Escape, Wish};
 use crate::ui::window::palette::{Command, CommandPalette};
 use crate::ui::window::stop_first::stop_first;
 use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
+use std::time::Duration;
+
+/// So long after a field had the keyboard a key may be meant for it.
+const ASTRAY: Duration = Duration::from_secs(1);
 
 /// What the window remembers between frames: the open tab, text in progress, what is hidden.
 #[derive(Debug, Default)]
 pub struct Window {
     body: Body,
     installed: Option<(Theme, Language)>,
+    /// When a field had the keyboard last, in seconds of the window's time.
+    typed_at: Option<f64>,
     typing: Typing,
     /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
     typed: bool,
@@ -115,6 +121,9 @@ impl Window {
             None => self.installed.and_then(|_| zoom_action(ui, state)),
         };
         self.install_if_changed(ui, state);
+        if ui.ctx().text_edit_focused() {
+            self.typed_at = Some(ui.input(|input| input.time));
+        }
         if self.body.follow_shown(state) {
             self.typing = Typing::default();
             let_go(ui);
@@ -126,6 +135,9 @@ impl Window {
         } else {
             keys::take(ui, escape)
         };
+        if self.may_be_typed(ui) {
+            wishes.retain(|wish| !wish.moves());
+        }
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
@@ -149,6 +161,7 @@ impl Window {
         for wish in wishes {
             self.obey(ui, &mut pane, wish);
         }
+        let view = self.body.view;
         match self.parts_ui(ui, &mut pane) {
             Some(Command::Wish(wish)) => {
                 stopped |= wish == Wish::Stop;
@@ -159,6 +172,10 @@ impl Window {
             }
             Some(Command::Entry(_)) | None => {}
         }
+        typing.after(&actions);
+        if view != self.body.view && typing.refused.is_some() {
+            typing = Typing::default();
+        }
         self.typing = typing;
         self.typed = ui.ctx().text_edit_focused();
         if let Some(opens) = opens {
@@ -166,6 +183,13 @@ impl Window {
             ui.request_repaint();
         }
         stop_first(actions, stopped)
+    }
+
+    /// True if what is pressed may be meant for a field that had the keyboard a moment ago.
+    fn may_be_typed(&self, ui: &Ui) -> bool {
+        let now = ui.input(|input| input.time);
+        self.typed_at
+            .is_some_and(|at| now - at < ASTRAY.as_secs_f64())
     }
 
     /// What Esc does now: it closes what is open while the hand rests for certain.

@@ -101,6 +101,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
         stale(pane),
         connecting(pane),
         empty(pane),
+        idle(pane),
     ];
     all.into_iter().flatten().collect()
 }
@@ -235,6 +236,13 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
     is_none.then(|| warning().help(help))
 }
 
+/// An armed hand that is asked nothing any more.
+fn idle(pane: &Pane<'_>) -> Option<Warning> {
+    let idle = pane.state.hand().idle(pane.state.now)?;
+    let warning = Warning::new(pane, main::IDLE_TITLE, pane.look.palette.warn);
+    Some(warning.more(format::duration(idle)))
+}
+
 /// What moves the hand, in words, and what ends it.
 fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
@@ -276,6 +284,9 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             (words, Some(Action::Input(InputAction::TakeBack)))
         }
         Mover::Setpoints => (say(window::MOVES_SETPOINTS), None),
+        Mover::Task => (say(window::MOVES_TASK), None),
+        Mover::Exhibition => (say(window::MOVES_EXHIBIT), None),
+        Mover::Unrecorded => (say(window::MOVES_UNRECORDED), None),
         Mover::Unknown => (say(window::MOVES_UNKNOWN), None),
     })
 }

@@ -15,7 +15,7 @@ use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
 use handscope::app::readings::faults::FaultKind;
 use handscope::app::scan::ScanTarget;
-use handscope::app::sessions::SessionAction;
+use handscope::app::sessions::{SessionAction, SessionForm};
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SessionId, TrialAction};
 use handscope::exhibit::run::ExhibitWish;
@@ -121,6 +121,7 @@ fn sessions() -> Vec<SessionAction> {
         SessionAction::OpenAt(path(), (at, at)),
         SessionAction::Close,
         SessionAction::Reveal(path()),
+        SessionAction::Export(path(), SessionForm::Csv),
         SessionAction::Name(path(), "name".into()),
         SessionAction::Star(path(), true),
         SessionAction::AskDelete(path()),
@@ -188,6 +189,7 @@ fn all(things: Things) -> Vec<Action> {
         Action::Arm,
         Action::Disarm,
         Action::HoldToRun(true),
+        Action::DisarmIdle(false),
         Action::HoldToRun(false),
         Action::Target(Dof::Index, Angle::nearest(500)),
         Action::Force(None, Force::RATED),

@@ -123,6 +123,7 @@ async fn settings_are_kept_and_setpoints_never() {
         keys,
         [
             "angle_unit",
+            "disarm_idle",
             "first_client_moves",
             "follow",
             "gesture_names",
@@ -291,5 +292,19 @@ async fn a_dialog_that_was_cancelled_changes_nothing_and_the_next_one_opens() {
     assert!(
         matches!(told[..], [NoticeKind::FileRefused { .. }, _]),
         "{told:?}"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_frame_after_the_end_begins_no_recording() {
+    let mut bench = Bench::live().await;
+    assert!(bench.hand().recording.is_some());
+    while !bench.app.close(bench.clock.now()) {
+        bench.run(10).await;
+    }
+    bench.run(100).await;
+    assert!(
+        bench.hand().recording.is_none(),
+        "it would be a file of nothing"
     );
 }

@@ -23,7 +23,7 @@ use handscope::app::notices::NoticeKind;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
-use handscope::hand::{Angle, Dof};
+use handscope::hand::{Angle, Dof, Force, Speed};
 use handscope::link::Clock;
 use handscope::record::LinkState;
 use handscope::sim::{JournalEntry, Personality, SharedHand, SimConfig};
@@ -90,7 +90,10 @@ impl Bench {
         bench
     }
 
+    /// As a careful person arms.
     async fn arm(&mut self) {
+        self.act(Action::Speed(None, Speed::GENTLE));
+        self.act(Action::Force(None, Force::GENTLE));
         self.act(Action::Arm);
         self.run(100).await;
         assert!(self.hand().connection.is_armed());

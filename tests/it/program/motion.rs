@@ -18,7 +18,6 @@ use handscope::transport::Endpoint;
 use tokio::time::{Duration, sleep};
 
 const SPEED_SET: u16 = 1522;
-const FORCE_SET: u16 = 1498;
 const GESTURE: u16 = 1008;
 
 #[tokio::test(start_paused = true)]
@@ -42,26 +41,76 @@ async fn nothing_is_told_by_starting_connecting_or_dragging_while_not_armed() {
         "the slider shows where the joint is"
     );
     let kept = bench.hand().controls.joints[Dof::Index].force;
-    assert_eq!(kept, Force::RATED, "kept for arming");
+    assert_eq!(kept, Some(Force::RATED), "kept for arming");
 }
 
 #[tokio::test(start_paused = true)]
-async fn arming_sends_the_staged_limits_and_no_angle() {
+async fn arming_sends_the_limits_that_differ_and_no_angle() {
     let mut bench = Bench::live().await;
+    bench.arm().await;
+    bench.act(Action::Disarm);
+    bench.run(1500).await;
+    bench.forget();
     bench.act(Action::Speed(Some(Dof::Ring), Speed::MIN));
     bench.act(Action::Arm);
     bench.run(300).await;
     assert!(bench.hand().connection.is_armed());
-    let mut speeds = [Speed::GENTLE.get(); 6];
-    speeds[Dof::Ring as usize] = Speed::MIN.get();
     let written = bench.written();
     let sent: Vec<_> = written
         .iter()
         .map(|one| (one.address, shorts(one)))
         .collect();
-    let forces = vec![Force::GENTLE.get(); 6];
-    assert_eq!(sent, [(SPEED_SET, speeds.to_vec()), (FORCE_SET, forces)]);
+    let ring = SPEED_SET + 2 * Dof::Ring as u16;
+    assert_eq!(
+        sent,
+        [(ring, vec![Speed::MIN.get()])],
+        "what it holds already is not written"
+    );
     assert_eq!(bench.target(Dof::Ring), Some(bench.angle(Dof::Ring)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn wishes_are_gentle_and_arming_a_hand_that_holds_them_writes_nothing() {
+    let mut bench = Bench::live().await;
+    let joint = bench.hand().controls.joints[Dof::Index];
+    let gentle = (Some(Speed::GENTLE), Some(Force::GENTLE));
+    assert_eq!((joint.speed, joint.force), gentle);
+    let held = bench.hand().other_speed(Dof::Index);
+    assert_eq!(held, Some(Speed::MAX), "and it is told what it holds");
+    for writes in [2, 0] {
+        bench.forget();
+        bench.act(Action::Arm);
+        bench.run(1500).await;
+        assert!(bench.hand().connection.is_armed());
+        assert_eq!(bench.addresses().len(), writes);
+        assert_eq!(bench.hand().other_speed(Dof::Index), None);
+        bench.act(Action::Disarm);
+        bench.run(300).await;
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_wish_that_the_hand_does_not_hold_is_told_apart_until_it_does() {
+    let mut bench = Bench::live().await;
+    let slow = Speed::nearest(200);
+    bench.act(Action::Speed(Some(Dof::Index), slow));
+    assert_eq!(bench.hand().other_speed(Dof::Index), Some(Speed::MAX));
+    bench.act(Action::Arm);
+    bench.run(1500).await;
+    assert_eq!(bench.hand().other_speed(Dof::Index), None, "it holds it");
+    let other = 25_i16.to_le_bytes();
+    let index = SPEED_SET + 2 * Dof::Index as u16;
+    bench
+        .hand
+        .with(|hand, now| hand.write(index, &other, now))
+        .unwrap();
+    bench.run(1500).await;
+    let joint = bench.hand().controls.joints[Dof::Index];
+    assert_eq!(joint.speed, Some(slow), "another program changes no wish");
+    assert_eq!(
+        bench.hand().other_speed(Dof::Index),
+        Some(Speed::nearest(25))
+    );
 }
 
 #[tokio::test(start_paused = true)]
@@ -179,6 +228,23 @@ async fn stop_works_in_every_live_state_and_again() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn messages_of_the_former_hand_carry_its_name_under_the_next() {
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    spoil(&line, Trouble::Gone(Duration::from_secs(60)));
+    bench.run(2000).await;
+    let lost = |bench: &Bench| {
+        let mut log = bench.state().notices.log();
+        let lost = log.find(|notice| matches!(notice.what, NoticeKind::LinkLost(_)));
+        lost.unwrap().hand.clone()
+    };
+    assert_eq!(lost(&bench), None, "there is only one");
+    let name = bench.hand().label.name.clone();
+    bench.act(Action::Connect("rs485:y".parse().unwrap()));
+    bench.run(500).await;
+    assert_eq!(lost(&bench).map(|hand| hand.name), Some(name));
+}
+
+#[tokio::test(start_paused = true)]
 async fn another_hand_inherits_nothing() {
     let mut bench = Bench::armed().await;
     bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
@@ -191,6 +257,8 @@ async fn another_hand_inherits_nothing() {
     assert_eq!(bench.hand().readings.sample, HandSample::default());
     assert_eq!(bench.target(Dof::Index), None);
     assert!(!bench.hand().connection.is_armed());
+    let speed = bench.hand().controls.joints[Dof::Index].speed;
+    assert_eq!(speed, None, "nothing is known of it");
     let first = bench.hand().measured.history.first_secs();
     assert_eq!(first, None, "its curves are not shown under the new name");
     bench.run(1000).await;
@@ -404,4 +472,27 @@ async fn records_come_in_the_order_in_which_it_happened() {
     }
     assert!(last >= 3 && open.is_none(), "limits and a stop");
     assert_eq!(records.lost(), 0);
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_armed_hand_that_is_asked_nothing_is_told_of_and_disarmed_only_if_that_is_set() {
+    async fn minutes(bench: &mut Bench, minutes: u64) {
+        for _ in 0..minutes * 120 {
+            sleep(Duration::from_millis(500)).await;
+            bench.run(10).await;
+        }
+    }
+    let mut bench = Bench::armed().await;
+    minutes(&mut bench, 4).await;
+    assert_eq!(bench.hand().idle(bench.state().now), None);
+    minutes(&mut bench, 2).await;
+    assert!(bench.hand().idle(bench.state().now).is_some());
+    assert!(bench.hand().connection.is_armed(), "off by default");
+    bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
+    bench.run(100).await;
+    assert_eq!(bench.hand().idle(bench.state().now), None);
+    bench.act(Action::DisarmIdle(true));
+    minutes(&mut bench, 6).await;
+    assert!(!bench.hand().connection.is_armed());
+    assert!(bench.told().contains(&NoticeKind::IdleDisarmed));
 }

@@ -224,6 +224,13 @@ async fn a_save_is_told_and_noted_beside_its_backup() {
     let mut bench = gentle().await;
     ask(&mut bench, ParamAction::Save);
     done(&mut bench).await;
+    assert_eq!(bench.addresses(), [0_u16; 0], "nothing was read yet");
+    read(&mut bench).await;
+    ask(&mut bench, ParamAction::Save);
+    done(&mut bench).await;
+    assert_eq!(bench.addresses(), [0_u16; 0], "it asks first");
+    ask(&mut bench, ParamAction::Agree);
+    done(&mut bench).await;
     assert_eq!(bench.addresses(), [SAVE]);
     let end = bench.hand().params.save.clone().unwrap().0;
     assert_eq!(end, SaveEnd::Told(Saved::Confirmed));

@@ -4,8 +4,8 @@ use crate::program::{ANGLE_SET, Bench, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
-use handscope::hand::Finger;
-use handscope::hand::{Angle, Dof, Fault, Force, PerDof, Speed};
+use handscope::app::state::State;
+use handscope::hand::{Angle, Dof, Fault, Finger, Force, PerDof, Span, Speed};
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
@@ -38,6 +38,126 @@ pub(super) fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
         bench.act(edit(SequenceEdit::Change(at, short)));
     }
     (ids[0], own)
+}
+
+/// SPEED_SET (manual 2.6.13).
+const SPEED_SET: u16 = 1522;
+/// FORCE_SET (manual 2.6.12).
+const FORCE_SET: u16 = 1498;
+
+/// What the hand holds in six shorts.
+fn holds(bench: &Bench, address: u16) -> Vec<i16> {
+    let read = |span| bench.hand.with(|hand, now| hand.read(span, now));
+    let bytes = read(Span::new(address, 12)).unwrap();
+    let (pairs, _) = bytes.as_chunks::<2>();
+    pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect()
+}
+
+fn is_over(state: &State) -> bool {
+    let run = state.hand().sequence.as_ref();
+    run.is_some_and(|run| matches!(run.view.phase, PlayPhase::Ended(_)))
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_is_played_runs_at_its_own_speed_and_force_and_gives_the_own_back() {
+    let mut bench = Bench::live().await;
+    let (pose, sequence) = library(&mut bench);
+    for edit in [
+        PoseEdit::Speed(Speed::nearest(600)),
+        PoseEdit::Force(Force::nearest(900)),
+    ] {
+        bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+    }
+    bench.arm().await;
+    let wave = starter().entries().find(|entry| {
+        starter()
+            .named(*entry)
+            .is_some_and(|names| names.text == "Wave")
+    });
+    let sequence = EntryId::Sequence(sequence);
+    for (what, act) in [
+        ("pose", Action::Recall(pose)),
+        ("demo", Action::Play(Play::Start(wave.unwrap()))),
+        ("sequence", Action::Play(Play::Start(sequence))),
+    ] {
+        bench.act(act);
+        bench.run(150).await;
+        // A step of a new sequence is as gentle as the person.
+        let is_own = holds(&bench, SPEED_SET)[3] != 200;
+        assert!(is_own || what == "sequence", "{what}");
+        let wish = bench.hand().controls.joints[Dof::Index];
+        assert_eq!(wish.speed, Some(Speed::GENTLE), "{what}");
+        assert_eq!(wish.force, Some(Force::GENTLE), "{what}");
+        if what == "demo" {
+            bench.run(1500).await;
+            bench.act(Action::Play(Play::End));
+        }
+        bench.until(what, is_over).await;
+        bench.run(300).await;
+        assert_eq!(holds(&bench, SPEED_SET), [200; 6], "{what}");
+        assert_eq!(holds(&bench, FORCE_SET), [500; 6], "{what}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_is_broken_off_gives_the_own_speed_and_force_back_before_the_hand_moves_again() {
+    type Break = fn(&mut Bench);
+    let ends: [(&str, Break); 6] = [
+        ("stop", |bench| bench.act(Action::Stop)),
+        ("end", |bench| bench.act(Action::Play(Play::End))),
+        ("disarming", |bench| bench.act(Action::Disarm)),
+        ("a preset", |bench| bench.act(Action::Preset(Preset::Open))),
+        ("at once", |_| ()),
+        ("pause", |bench| bench.act(Action::Play(Play::Pause))),
+    ];
+    for (what, end) in ends {
+        let mut bench = Bench::live().await;
+        let (pose, _) = library(&mut bench);
+        let edit = PoseEdit::Speed(Speed::nearest(600));
+        bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+        bench.arm().await;
+        bench.act(Action::Recall(pose));
+        if what != "at once" {
+            bench.run(100).await;
+            assert_eq!(holds(&bench, SPEED_SET), [600; 6], "{what}");
+        }
+        end(&mut bench);
+        bench.run(1500).await;
+        if !bench.hand().connection.is_armed() {
+            bench.act(Action::Arm);
+            bench.run(300).await;
+            assert!(bench.hand().connection.is_armed(), "{what}");
+        }
+        bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
+        bench.run(300).await;
+        assert_eq!(holds(&bench, SPEED_SET), [200; 6], "{what}");
+        assert_eq!(holds(&bench, FORCE_SET), [500; 6], "{what}");
+        let speed = bench.hand().controls.joints[Dof::Index].speed;
+        assert_eq!(speed, Some(Speed::GENTLE), "{what}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_link_that_is_lost_in_a_pose_gives_the_own_speed_back_when_the_hand_is_armed_again() {
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    let (pose, _) = library(&mut bench);
+    let edit = PoseEdit::Speed(Speed::nearest(600));
+    bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+    bench.arm().await;
+    bench.act(Action::Recall(pose));
+    bench.run(100).await;
+    spoil(&line, Trouble::Gone(Duration::from_secs(2)));
+    bench.run(6000).await;
+    assert_eq!(
+        holds(&bench, SPEED_SET),
+        [600; 6],
+        "connecting writes nothing"
+    );
+    let told = bench.hand().other_speed(Dof::Index);
+    assert_eq!(told, Some(Speed::nearest(600)), "and that is said");
+    bench.act(Action::Arm);
+    bench.run(300).await;
+    assert_eq!(holds(&bench, SPEED_SET), [200; 6]);
 }
 
 fn phase(bench: &Bench) -> Option<PlayPhase> {
@@ -198,10 +318,8 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     let mut bench = Bench::armed().await;
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(6000).await;
-    assert!(
-        bench.hand().sequence.is_none(),
-        "straight from the open hand"
-    );
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    assert_eq!(angles_told(&bench).len(), 1, "straight from the open hand");
     bench.forget();
     bench.act(Action::Recall(shipped("Fist")));
     bench.run(400).await;

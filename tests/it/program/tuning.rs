@@ -87,7 +87,10 @@ async fn nothing_else_moves_the_hand_while_a_series_runs() {
     for (now, before) in others(&bench).iter().zip(before) {
         assert!((now - before).abs() <= 3);
     }
-    assert_ne!(bench.hand().controls.joints[Dof::Index].speed, Speed::MAX);
+    assert_ne!(
+        bench.hand().controls.joints[Dof::Index].speed,
+        Some(Speed::MAX)
+    );
 }
 
 #[tokio::test(start_paused = true)]

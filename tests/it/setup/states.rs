@@ -86,6 +86,7 @@ pub(crate) fn live() -> State {
     }
     for (dof, joint) in state.hand_mut().controls.joints.iter_mut() {
         joint.target = Some(Angle::nearest(angle[dof.index()]));
+        (joint.speed, joint.force) = (Some(Speed::GENTLE), Some(Force::GENTLE));
     }
 
     fill(&mut state.hand_mut().measured.history);
@@ -158,8 +159,8 @@ pub(crate) fn armed() -> State {
             [1000, 1000, 300, 300, 420, 655][dof.index()],
         ));
     }
-    state.hand_mut().controls.joints[Dof::Index].speed = Speed::nearest(600);
-    state.hand_mut().controls.joints[Dof::Index].force = Force::nearest(900);
+    state.hand_mut().controls.joints[Dof::Index].speed = Some(Speed::nearest(600));
+    state.hand_mut().controls.joints[Dof::Index].force = Some(Force::nearest(900));
     state.hand_mut().controls.joints[Dof::ThumbRotate].locked = true;
     state
 }

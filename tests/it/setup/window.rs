@@ -16,7 +16,7 @@ use handscope::app::hands::action::HandsAction;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::exhibit::plan::ExhibitPlan;
-use handscope::hand::{Dof, Moment, SerialSpeed};
+use handscope::hand::{Dof, Force, Moment, SerialSpeed, Speed};
 use handscope::record::LinkState;
 use handscope::sim::serve::SharedHand;
 use handscope::sim::{SimConfig, SimHand, SimHands};
@@ -355,6 +355,7 @@ impl Bench {
     /// The first start, then the hand armed by a click.
     pub(crate) fn armed() -> Self {
         let mut bench = Self::live();
+        bench.gentle();
         bench.click("Arm the hand");
         bench.run(200);
         assert!(
@@ -363,6 +364,12 @@ impl Bench {
             bench.state().hand().connection.status
         );
         bench
+    }
+
+    /// Sets every joint as a careful person does before arming.
+    pub(crate) fn gentle(&mut self) {
+        self.act(Action::Speed(None, Speed::GENTLE));
+        self.act(Action::Force(None, Force::GENTLE));
     }
 
     pub(crate) fn run(&mut self, millis: u64) {

@@ -681,3 +681,14 @@ fn joints_do_not_overlap_and_stay_on_the_screen() {
         }
     }
 }
+
+#[test]
+fn an_armed_hand_that_is_asked_nothing_for_minutes_says_so() {
+    let mut state = states::armed();
+    state.now = handscope::hand::Moment::from_micros(400_000_000);
+    let angle = state.hand_mut().readings.sample.angle.as_mut().unwrap();
+    angle.asked = handscope::hand::Moment::from_micros(399_990_000);
+    let harness = open(state);
+    let said = harness.query_all_by_label_contains("Asked nothing for");
+    assert!(said.count() > 0);
+}

@@ -48,6 +48,14 @@ fn stage(bench: &mut Bench, field: &str, text: &str) {
     bench.run(60);
 }
 
+/// Saves what nobody changed here: what the flash holds is not known.
+fn save(bench: &mut Bench) {
+    bench.click("Save to flash");
+    bench.run(60);
+    assert!(bench.shows("Nothing to save, as far as this program knows"));
+    bench.click("Save anyway");
+}
+
 fn settle(bench: &mut Bench) {
     bench.run(60);
     bench.until(9000, |bench| !bench.state().hand().params.is_busy());
@@ -381,7 +389,7 @@ fn a_save_is_backed_up_confirmed_by_the_hand_and_shown_with_its_date() {
     let mut bench = Bench::keeping(SimConfig::default());
     defaults(&mut bench, 100);
     open(&mut bench);
-    bench.click("Save to flash");
+    save(&mut bench);
     bench.until(2000, |bench| {
         bench.state().hand().params.doing == Doing::Saving
     });
@@ -428,7 +436,7 @@ fn a_wire_without_a_result_frame_is_told_as_read_back_and_not_as_confirmed() {
         bench.wait(1500);
         defaults(&mut bench, 100);
         open(&mut bench);
-        bench.click("Save to flash");
+        save(&mut bench);
         settle(&mut bench);
         let told = bench.texts_with("acknowledged, and read back the same");
         assert_eq!(told.len(), 1, "{endpoint}");
@@ -445,7 +453,7 @@ fn arming_while_the_hand_saves_is_refused_with_its_own_reason() {
     let mut bench = Bench::keeping(SimConfig::default());
     defaults(&mut bench, 100);
     open(&mut bench);
-    bench.click("Save to flash");
+    save(&mut bench);
     bench.until(2000, |bench| {
         bench.state().hand().params.doing == Doing::Saving
     });
@@ -485,7 +493,7 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
         let mut bench = Bench::keeping(quirk("save-result", value));
         defaults(&mut bench, 100);
         open(&mut bench);
-        bench.click("Save to flash");
+        save(&mut bench);
         settle(&mut bench);
         let (end, _) = bench.state().hand().params.save.clone().unwrap();
         assert_eq!(end, SaveEnd::Told(told));
@@ -553,7 +561,7 @@ fn the_speed_that_the_hand_has_now_is_staged_for_all() {
     bench.wait(3000);
     open(&mut bench);
     let before = bench.writes().len();
-    bench.click("Copy live speed and force");
+    bench.click("Copy the hand's speed and force");
     bench.run(60);
     for dof in Dof::ALL {
         let speed = staged(&bench, ParamId::DefaultSpeed(dof));
@@ -645,7 +653,7 @@ fn a_backup_is_a_way_back() {
     let mut bench = Bench::keeping(SimConfig::default());
     defaults(&mut bench, 100);
     open(&mut bench);
-    bench.click("Save to flash");
+    save(&mut bench);
     settle(&mut bench);
     defaults(&mut bench, 50);
     bench.click("Read again");
@@ -688,14 +696,24 @@ fn everything_can_be_reached_in_the_least_window_in_both_languages() {
 }
 
 #[test]
-fn what_nobody_changed_is_saved_without_a_warning() {
+fn with_nothing_to_save_it_says_so_and_writes_nothing() {
     let mut bench = Bench::keeping(SimConfig::default());
     open(&mut bench);
     assert_eq!(bench.reading("Thumb rotate force live"), "1000", "hard");
     bench.click("Save to flash");
+    bench.wait(4000);
+    assert!(bench.shows("Nothing to save, as far as this program knows"));
+    assert_eq!(bench.addresses(), [0_u16; 0], "one click writes nothing");
+    bench.click("Save anyway");
     settle(&mut bench);
-    assert!(bench.all(Role::AlertDialog).is_empty());
-    assert!(bench.addresses().contains(&SAVE));
+    let saves = |bench: &Bench| bench.addresses().iter().filter(|at| **at == SAVE).count();
+    assert_eq!(saves(&bench), 1);
+    bench.wait(2000);
+    assert!(bench.is_disabled(Role::Button, "Save to flash"));
+    let told = bench.texts_with("Nothing to save: the hand holds what was saved last.");
+    assert_eq!(told.len(), 1);
+    stage(&mut bench, "Index speed staged", "50");
+    assert!(!bench.is_disabled(Role::Button, "Save to flash"));
 }
 
 #[test]

@@ -248,7 +248,7 @@ fn keys_and_strips_show_a_hand_and_carry_nothing_over() {
 #[test]
 fn a_note_and_joints_that_are_linked_stay_with_their_hand() {
     let mut bench = two();
-    bench.key(Key::L);
+    bench.key_with(Modifiers::ALT, Key::L);
     bench.key(Key::N);
     let is_note = |(name, _): &(String, _)| name == "Words of the note";
     assert!(bench.all(Role::TextInput).iter().any(is_note));

@@ -333,3 +333,14 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
         assert_eq!(bench.writes().is_empty(), !allows);
     }
 }
+
+#[test]
+fn a_switch_shows_that_it_is_on_and_ends_where_it_began() {
+    let mut bench = Bench::live();
+    listening(&mut bench);
+    assert!(bench.is_on("Listen") && !bench.is_on("Share"));
+    bench.click_button("Listen");
+    bench.run(200);
+    assert!(!bench.is_on("Listen"));
+    assert_eq!(bench.state().hand().inputs.stream_at, None);
+}

@@ -9,7 +9,7 @@ fn a_preset_goes_at_the_speeds_that_are_set_and_leaves_locked_joints() {
     bench.drag("Index speed", 0.2, 0.9);
     bench.run(200);
     let speed = bench.state().hand().controls.joints[Dof::Index].speed;
-    assert!(speed > Speed::GENTLE);
+    assert!(speed > Some(Speed::GENTLE));
     bench.click("Ring lock");
     bench.run(60);
     let before = bench.writes().len();
@@ -64,13 +64,16 @@ fn all_joints_take_one_threshold_and_one_speed() {
     bench.drag("All speed", 0.2, 0.4);
     bench.run(500);
     let joints = bench.state().hand().controls.joints;
-    let first = joints[Dof::Little];
-    assert!(first.force.get() > 1200 && first.speed.get() > 300);
+    let of = |dof: Dof| {
+        (
+            joints[dof].force.unwrap().get(),
+            joints[dof].speed.unwrap().get(),
+        )
+    };
+    let (force, speed) = of(Dof::Little);
+    assert!(force > 1200 && speed > 300);
     for dof in Dof::ALL {
-        assert_eq!(
-            (joints[dof].force, joints[dof].speed),
-            (first.force, first.speed)
-        );
+        assert_eq!(of(dof), (force, speed));
     }
     let writes = bench.writes();
     let last = |address: u16| {
@@ -79,8 +82,8 @@ fn all_joints_take_one_threshold_and_one_speed() {
             .rev()
             .find(|write| write.address == address)
     };
-    assert_eq!(last(FORCE_SET).unwrap().shorts(), [first.force.get(); 6]);
-    assert_eq!(last(SPEED_SET).unwrap().shorts(), [first.speed.get(); 6]);
+    assert_eq!(last(FORCE_SET).unwrap().shorts(), [force; 6]);
+    assert_eq!(last(SPEED_SET).unwrap().shorts(), [speed; 6]);
 }
 
 #[test]
@@ -127,6 +130,9 @@ fn the_wheel_moves_only_the_track_that_has_the_keyboard() {
 #[test]
 fn a_rough_pair_of_speed_and_threshold_is_said_with_its_figure() {
     let mut bench = Bench::live();
+    assert!(bench.shows("Index impact warning"), "the hand holds 1000");
+    bench.gentle();
+    bench.run(60);
     assert!(!bench.shows("Index impact warning"));
     bench.drag("Index speed", 0.2, 0.95);
     bench.run(60);
@@ -202,4 +208,42 @@ fn no_tooltip_covers_a_joint_until_the_pointer_has_left_its_track() {
     rest(&mut bench, egui::pos2(2.0, 2.0));
     rest(&mut bench, track.lerp_inside(egui::vec2(0.4, 0.5)));
     assert!(tip(&bench), "again once it came back");
+}
+
+#[test]
+fn a_refused_text_goes_with_the_next_key_stop_or_motion() {
+    type Way = fn(&mut Bench);
+    let ways: [(&str, Way); 4] = [
+        ("Enter", |bench| bench.key(egui::Key::Enter)),
+        ("Esc", |bench| bench.key(egui::Key::Escape)),
+        ("STOP", |bench| bench.click_button("STOP")),
+        ("a preset", |bench| bench.click("Half")),
+    ];
+    for (what, way) in ways {
+        let mut bench = Bench::armed();
+        bench.type_into("Index force number", "abc");
+        bench.key(egui::Key::Enter);
+        bench.run(100);
+        assert_eq!(bench.typed("Index force number"), "abc", "told why");
+        way(&mut bench);
+        bench.run(100);
+        assert_eq!(bench.typed("Index force number"), "500", "{what}");
+    }
+}
+
+#[test]
+fn what_the_hand_holds_otherwise_stands_beside_what_is_set() {
+    let mut bench = Bench::live();
+    let name = "Index speed number 200 · hand 1000";
+    assert!(!bench.shows(name));
+    bench.gentle();
+    bench.run(60);
+    assert_eq!(bench.reading(name), "hand 1000");
+    assert_eq!(
+        bench.reading("Index force number 500 · hand 1000"),
+        "hand 1000"
+    );
+    bench.click("Arm the hand");
+    bench.run(1500);
+    assert!(!bench.shows(name), "{:?}", bench.texts_with("hand"));
 }

@@ -96,8 +96,14 @@ fn switches_of_the_window_have_keys() {
     assert_eq!(bench.state().settings.angle_unit, AngleUnit::Degrees);
     bench.key(Key::T);
     bench.wait(100);
-    assert!(bench.state().hand().readings.tare.can_undo());
+    assert!(
+        !bench.state().hand().readings.tare.can_undo(),
+        "a plain letter"
+    );
     bench.key_with(Modifiers::SHIFT, Key::T);
+    bench.wait(100);
+    assert!(bench.state().hand().readings.tare.can_undo());
+    bench.key_with(Modifiers::COMMAND, Key::T);
     bench.wait(100);
     assert!(!bench.state().hand().readings.tare.can_undo());
     bench.key(Key::P);
@@ -134,6 +140,31 @@ fn keys_are_letters_while_somebody_types() {
     assert!(!bench.state().hand().connection.is_armed());
     assert_eq!(bench.state().settings.angle_unit, AngleUnit::Raw);
     assert!(!bench.state().hand().readings.tare.can_undo());
+}
+
+#[test]
+fn a_capital_letter_that_missed_its_field_moves_and_arms_nothing() {
+    let mut bench = Bench::armed();
+    let writes = bench.writes().len();
+    bench.type_into("Index force number", "700");
+    bench.key(Key::Enter);
+    bench.run(100);
+    let limits = bench.writes().len();
+    assert!(limits > writes, "the number counts");
+    bench.key_with(Modifiers::SHIFT, Key::F);
+    bench.key_with(Modifiers::SHIFT, Key::C);
+    bench.key_with(Modifiers::SHIFT, Key::A);
+    bench.run(300);
+    assert_eq!(
+        bench.writes().len(),
+        limits,
+        "the field had the keyboard just now"
+    );
+    assert!(bench.state().hand().connection.is_armed());
+    bench.run(1000);
+    bench.key_with(Modifiers::SHIFT, Key::F);
+    bench.run(300);
+    assert!(bench.writes().len() > limits);
 }
 
 #[test]

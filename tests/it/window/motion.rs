@@ -25,6 +25,7 @@ fn pose(bench: &mut Bench, angle: i16) {
 #[test]
 fn arming_writes_speeds_and_forces_and_no_angle() {
     let mut bench = Bench::live();
+    bench.gentle();
     bench.click("Arm the hand");
     bench.wait(500);
     assert!(bench.shows("Disarm the hand") && bench.shows("Link state: Armed"));

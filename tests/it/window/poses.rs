@@ -89,7 +89,7 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
     let runs = |first: u16| writes.iter().filter(|write| is(write, first)).count();
     assert_eq!(
         (runs(SPEED_SET), runs(FORCE_SET), runs(ANGLE_SET)),
-        (1, 1, 1),
+        (2, 2, 1),
         "{order:?}"
     );
     assert!(is(&writes[0], SPEED_SET) && is(&writes[1], FORCE_SET) && is(&writes[2], ANGLE_SET));
@@ -99,6 +99,7 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
         "neither the left nor the locked joint"
     );
     assert_eq!(writes[1].shorts(), [700; 4]);
+    assert_eq!(writes[3].shorts(), [1000; 4], "the own ones are back");
     let angles = writes[2].shorts();
     assert_eq!(angles[..2], [LEAVE, LEAVE]);
     assert!(

@@ -1,16 +1,17 @@
 //! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
 
-use crate::setup::window::{ANGLE_SET, Bench, LARGE};
+use crate::setup::window::{ANGLE_SET, Bench, LARGE, Role};
 use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
+use handscope::app::hands::Mover;
 use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
-use handscope::app::sessions::{SessionAbout, SessionAction, SessionItem};
+use handscope::app::sessions::{SessionAbout, SessionAction, SessionForm, SessionItem};
 use handscope::app::settings::Theme;
-use handscope::hand::Moment;
+use handscope::hand::{Angle, Dof, Moment};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::record::Entry;
 use handscope::record::EventKind;
@@ -237,6 +238,61 @@ fn while_a_recording_is_shown_nothing_is_sent_and_stop_reaches_the_live_hand() {
     bench.run(100);
     assert!(bench.state().timeline.is_none());
     assert!(!bench.state().hand().connection.is_armed());
+}
+
+#[test]
+fn a_replay_tells_speed_force_target_and_mover_as_they_were() {
+    let mut bench = bench(Scenario::Free);
+    bench.gentle();
+    bench.click("Arm the hand");
+    bench.run(1500);
+    bench.act(Action::Target(Dof::Index, Angle::nearest(300)));
+    bench.run(700);
+    let at = bench.now();
+    let live = bench.state().hand().controls.joints[Dof::Index];
+    let mover = Mover::of(bench.state().hand(), at);
+    assert_eq!(mover, Some(Mover::Setpoints));
+    bench.wait(3000);
+    let path = ended(&mut bench);
+    replay(&mut bench, path);
+    seek(&mut bench, at);
+    let shown = bench.state().hand();
+    let joint = shown.controls.joints[Dof::Index];
+    assert_eq!((joint.speed, joint.force), (live.speed, live.force));
+    assert_eq!(joint.target, Some(Angle::nearest(300)), "not where it is");
+    assert_eq!(Mover::of(shown, at), mover);
+    for button in ["Open all", "Half", "Close", "Index lock"] {
+        assert!(bench.is_disabled(Role::Button, button), "{button}");
+    }
+    for track in ["Index angle target", "Index force threshold", "All speed"] {
+        assert!(bench.is_disabled(Role::Slider, track), "{track}");
+    }
+    let goes = bench.all(Role::Button).into_iter();
+    let goes = goes.filter(|(name, _)| name.starts_with("Go to ")).count();
+    assert!(goes > 0, "tiles are shown");
+    assert!(bench.all_disabled("Go to Fist").iter().all(|is| *is));
+}
+
+#[test]
+fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
+    let mut bench = bench(Scenario::Grasp);
+    let path = ended(&mut bench);
+    for form in SessionForm::ALL {
+        let saved = |bench: &Bench| {
+            let notices = bench.state().notices.iter();
+            let paths = notices.filter_map(|notice| match &notice.what {
+                NoticeKind::Saved { path, entries } => Some((path.clone(), *entries)),
+                NoticeKind::NotSaved { error, .. } => panic!("{form:?}: {error:?}"),
+                _ => None,
+            });
+            paths.collect::<Vec<_>>()
+        };
+        let before = saved(&bench).len();
+        session(&mut bench, SessionAction::Export(path.clone(), form));
+        settle(&mut bench, |bench| saved(bench).len() > before);
+        let (to, entries) = saved(&bench).remove(0);
+        assert!(to.exists() && entries > 10, "{form:?}: {entries} in {to:?}");
+    }
 }
 
 #[test]
@@ -886,4 +942,7 @@ fn a_trial_is_replayed_from_two_seconds_before_its_closing_command() {
     let (close, _) = trials.stretch(trials.trials[0].summary.number).unwrap();
     let looped = replay_listed(&mut bench, "Replay: 1 ", &path);
     assert_eq!(looped.0.plus(Duration::from_secs(2)), close);
+    seek(&mut bench, close.plus(Duration::from_millis(200)));
+    let mover = Mover::of(bench.state().hand(), bench.now());
+    assert!(matches!(mover, Some(Mover::Series(1, _))), "{mover:?}");
 }
