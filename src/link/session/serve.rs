@@ -1,12 +1,10 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::register::{FORCE_SET, Register, SPEED_SET};
 use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, RegisterWrite, Target};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::Started;
-use crate::link::image::Seen;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
@@ -187,8 +185,7 @@ impl Session {
         wanted.stop || wanted.disarm || wanted.closed || is_ended
     }
 
-    /// Sends the limits that the hand does not hold already, and lets setpoints pass once it acknowledged them. No angle is
-    /// written.
+    /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
     /// An armed hand stays armed as it is.
     async fn arm(
         &mut self,
@@ -208,14 +205,9 @@ impl Session {
             return Ok(());
         }
         let holder = self.guard.moves(&self.dialled);
-        let (speeds, forces) = (self.held(&SPEED_SET), self.held(&FORCE_SET));
         let limits = [
-            HandCommand::Speeds(PerDof::from_fn(|dof| {
-                Some(request.speed[dof]).filter(|speed| speeds[dof] != Some(speed.get()))
-            })),
-            HandCommand::Forces(PerDof::from_fn(|dof| {
-                Some(request.force[dof]).filter(|force| forces[dof] != Some(force.get()))
-            })),
+            HandCommand::Speeds(request.speed.map(Some)),
+            HandCommand::Forces(request.force.map(Some)),
         ];
         for write in limits.iter().flat_map(HandCommand::writes) {
             self.turn(bus).await?;
@@ -250,17 +242,6 @@ impl Session {
         self.plan.look_at_settings(now);
         self.go(LinkState::Armed);
         Ok(())
-    }
-
-    /// What the hand holds now, as far as it was read and nothing was written there since.
-    fn held(&self, register: &Register) -> PerDof<Option<i16>> {
-        let now = self.now();
-        let read = self.ends.image.borrow().look(register.span(), now, now);
-        let Seen::Bytes(bytes) = read else {
-            return PerDof::splat(None);
-        };
-        let (pairs, _odd) = bytes.as_chunks::<2>();
-        PerDof::from_fn(|dof| pairs.get(dof.index()).copied().map(i16::from_le_bytes))
     }
 
     fn refuse_arm(&mut self, reason: ArmRefusal) {

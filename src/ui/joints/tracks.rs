@@ -5,7 +5,7 @@ use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed, impact};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
-use crate::ui::kit::{Label, Look, NumberField, Pane};
+use crate::ui::kit::{self, Label, Look, NumberField, Pane};
 use crate::ui::style::format::UNKNOWN;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
@@ -59,8 +59,11 @@ impl TrackRow<'_> {
         let wanted = self.track.target.map_or_else(|| UNKNOWN.into(), shown);
         let name = format!("{} {wanted} · {text}", self.number_name);
         let width = theme::OTHER.min(track.width() / 2.0);
-        // Where room is short the number alone, in its colour.
-        let short = (width < theme::OTHER).then(|| shown(other));
+        // Where room is short the number alone, in its colour; where there is none, that it is another.
+        let fits = |number: &String| kit::text_width(ui, number, theme::small()) <= width;
+        let number = || Some(shown(other)).filter(fits);
+        let short = (width < theme::OTHER)
+            .then(|| number().unwrap_or_else(|| look.say(main::HAND_DIFFERS).into()));
         let place = match self.track.target {
             Some(target) if target > self.track.max / 2 => track.with_max_x(track.left() + width),
             _ => track.with_min_x(track.right() - width),

@@ -105,8 +105,7 @@ async fn two_clients_at_once_one_moves_the_hand_and_the_other_looks_on() {
     let place = first_may().await;
     let (mut mover, mut other) = (place.client().await, place.client().await);
     assert_eq!(put(&mut mover, INDEX, &[300]).await, Ok(()));
-    // It is armed with the speeds and forces that it holds: they are not written again.
-    assert_eq!(place.wires.writes(), [1486]);
+    assert_eq!(place.wires.writes(), [1522, 1498, 1486]);
     assert_eq!(put(&mut other, INDEX, &[700]).await, BUSY);
     assert_eq!(put(&mut other, 1522, &[700]).await, BUSY);
     // What the hand holds is seen by both from then on.
