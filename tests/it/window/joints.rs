@@ -130,9 +130,6 @@ fn the_wheel_moves_only_the_track_that_has_the_keyboard() {
 #[test]
 fn a_rough_pair_of_speed_and_threshold_is_said_with_its_figure() {
     let mut bench = Bench::live();
-    assert!(bench.shows("Index impact warning"), "the hand holds 1000");
-    bench.gentle();
-    bench.run(60);
     assert!(!bench.shows("Index impact warning"));
     bench.drag("Index speed", 0.2, 0.95);
     bench.run(60);

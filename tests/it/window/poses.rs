@@ -5,7 +5,7 @@ use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Language;
-use handscope::hand::Dof;
+use handscope::hand::{Dof, Speed};
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::ui::View;
 
@@ -99,7 +99,8 @@ fn a_captured_pose_is_renamed_and_taken_with_speed_and_force_first() {
         "neither the left nor the locked joint"
     );
     assert_eq!(writes[1].shorts(), [700; 4]);
-    assert_eq!(writes[3].shorts(), [1000; 4], "the own ones are back");
+    let own = [Speed::GENTLE.get(); 4];
+    assert_eq!(writes[3].shorts(), own, "the own ones are back");
     let angles = writes[2].shorts();
     assert_eq!(angles[..2], [LEAVE, LEAVE]);
     assert!(

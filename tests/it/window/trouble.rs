@@ -308,6 +308,8 @@ fn saving() -> Bench {
     bench.until(2000, |bench| bench.state().hand().params.read_at.is_some());
     bench.run(200);
     bench.click("Save to flash");
+    bench.run(60);
+    bench.click("Save anyway");
     bench.until(2000, |bench| {
         bench.state().hand().connection.status.line_left
     });
