@@ -49,6 +49,11 @@ macro_rules! reading {
         impl JointValue for $name {
             const BYTES: usize = size_of::<$inner>();
 
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a register of bytes gives 0 to 255"
+            )]
             fn decode(raw: i16) -> Self {
                 Self(raw as $inner)
             }
