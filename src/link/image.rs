@@ -1,9 +1,8 @@
 //! The hand's memory as it was read last, with the time of each stretch, for those who share one hand. Pure: replies, writes
 //! and failures come in, bytes with an age go out. What was not read is not there.
 
-use crate::hand::feedback::group::TIP_BYTES;
-use crate::hand::{Group, Moment, Reply, Span};
-use crate::link::poll::window::GAPS;
+use crate::hand::{Moment, Reply, Span};
+use crate::link::poll::window::{GAPS, ReadPart, TIP};
 use crate::link::request::RequestError;
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -17,7 +16,7 @@ const JOIN_WITHIN: Duration = Duration::from_millis(250);
 /// Stretches that were asked for which are remembered; the oldest makes room. Clients of one hand ask for the same few.
 const AREAS_MAX: usize = 16;
 /// Stretches that are read as a whole.
-const BLOCKS: usize = Group::ALL.len() + GAPS.len();
+const BLOCKS: usize = ReadPart::ALL.len() + GAPS.len();
 
 /// What the image says to whoever wants a stretch of memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,7 +55,7 @@ struct Came {
     asked: Moment,
     /// After the one before.
     after: Duration,
-    bytes: ArrayVec<u8, { TIP_BYTES as usize }>,
+    bytes: ArrayVec<u8, { TIP as usize }>,
 }
 
 /// A stretch that somebody asked for, and what became of that.
@@ -69,7 +68,7 @@ struct Area {
 
 impl RegisterImage {
     /// Of a hand that answers from now on, whose parts are read with these periods.
-    pub(crate) fn live(periods: impl Iterator<Item = (Group, Duration)>) -> Self {
+    pub(crate) fn live(periods: impl Iterator<Item = (ReadPart, Duration)>) -> Self {
         let parts = periods.map(|(part, period)| (part.span(), period));
         // Gaps come along with their neighbours where the hand allows it.
         let all = parts.chain(GAPS.map(|gap| (gap, AREA_FRESH)));
@@ -86,7 +85,7 @@ impl RegisterImage {
     }
 
     /// The parts are read at other rates from now on.
-    pub(crate) fn change_periods(&mut self, periods: impl Iterator<Item = (Group, Duration)>) {
+    pub(crate) fn change_periods(&mut self, periods: impl Iterator<Item = (ReadPart, Duration)>) {
         for (part, period) in periods {
             let mut blocks = self.blocks.iter_mut();
             if let Some(block) = blocks.find(|block| block.span == part.span()) {
@@ -232,15 +231,18 @@ fn overlap(a: Span, b: Span) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link::poll::plan::is_motion;
 
     const MS: Duration = Duration::from_millis(1);
     const ANGLES: Span = Span::new(1546, 12);
     const SET: Span = Span::new(1486, 12);
 
     fn image() -> RegisterImage {
-        let period = |part: Group| if is_motion(part) { 10 } else { 500 };
-        RegisterImage::live(Group::ALL.map(|part| (part, MS * period(part))).into_iter())
+        let period = |part: ReadPart| if part.is_motion() { 10 } else { 500 };
+        RegisterImage::live(
+            ReadPart::ALL
+                .map(|part| (part, MS * period(part)))
+                .into_iter(),
+        )
     }
 
     fn at(ms: u64) -> Moment {
@@ -324,13 +326,12 @@ mod tests {
         take(&mut image, Span::new(1486, 48), 10, 7);
         assert_eq!(seen(&image, SET, 100), Seen::Bytes(vec![7; 12]));
         image.forget(Span::new(1488, 2));
-        assert_eq!(seen(&image, SET, 100), Seen::Missing(SET));
-        let forces = Span::new(1498, 12);
-        assert_eq!(seen(&image, forces, 100), Seen::Bytes(vec![7; 12]));
-        image.take_area(SET, at(100), Ok(vec![9; 12]));
+        let block = Span::new(1486, 24);
+        assert_eq!(seen(&image, SET, 100), Seen::Missing(block));
+        image.take_area(block, at(100), Ok(vec![9; 24]));
         assert_eq!(seen(&image, SET, 101), Seen::Bytes(vec![9; 12]));
         image.forget(Span::new(1488, 2));
-        assert_eq!(seen(&image, SET, 101), Seen::Missing(SET));
+        assert_eq!(seen(&image, SET, 101), Seen::Missing(block));
     }
 
     #[test]

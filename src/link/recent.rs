@@ -1,10 +1,11 @@
 //! Reads that many may ask for without asking the hand more often: what the session read just now serves all, and what it
 //! does not read by itself is asked for once, seldom, for all who wait.
 
-use crate::hand::{Group, Span};
+use crate::hand::Span;
 use crate::link::clock::Clock;
 use crate::link::handle::LinkHandle;
 use crate::link::image::{RegisterImage, Seen};
+use crate::link::poll::window::ReadPart;
 use crate::link::request::RequestError;
 use std::sync::Arc;
 use std::time::Duration;
@@ -87,7 +88,7 @@ impl RecentReads {
     /// Asks the hand, one at a time and seldom, unless somebody else did meanwhile. The session puts the answer into the image.
     async fn ask(&self, span: Span) -> Result<(), RequestError> {
         let [parts, others] = &self.turns;
-        let is_part = Group::ALL.into_iter().any(|part| part.span() == span);
+        let is_part = ReadPart::ALL.into_iter().any(|part| part.span() == span);
         let (turn, pause_min) = if is_part {
             (parts, Duration::ZERO)
         } else {

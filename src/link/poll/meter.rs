@@ -1,8 +1,10 @@
 //! What the time of the line is spent on, as a budget over the last second. Counts only.
 
-use crate::hand::{Group, Moment, RateClass, Span};
+use crate::hand::RateClass;
+use crate::hand::{Moment, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
+use crate::link::poll::window::ReadPart;
 use crate::link::stats::{GroupUse, LineUse};
 use std::time::Duration;
 
@@ -34,13 +36,13 @@ impl LineMeter {
         self.busy += took;
         self.on_wire += cost.on_wire(window.len);
         let held = || {
-            Group::ALL
+            ReadPart::ALL
                 .into_iter()
                 .filter(|part| window.covers(part.span()))
         };
         let bytes: u32 = held().map(|part| u32::from(part.span().len)).sum();
         for part in held() {
-            if let Some(sum) = self.groups.get_mut(part.rate() as usize) {
+            if let Some(sum) = self.groups.get_mut(part.group() as usize) {
                 sum.time += took * u32::from(part.span().len) / bytes.max(1);
                 sum.parts += 1;
             }
@@ -96,7 +98,9 @@ impl LineMeter {
     }
 }
 
-fn parts_of(class: RateClass) -> u32 {
-    let parts = Group::ALL.into_iter().filter(|part| part.rate() == class);
+fn parts_of(group: RateClass) -> u32 {
+    let parts = ReadPart::ALL
+        .into_iter()
+        .filter(|part| part.group() == group);
     u32::try_from(parts.count()).unwrap_or(1).max(1)
 }

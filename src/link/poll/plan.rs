@@ -6,10 +6,10 @@
 //! and nobody asks for more states than usual, some fingertips come at once. The motion state then has every second turn
 //! at least, or every third where fingertips come first, and brings what the drives say along where there is room.
 
-use crate::hand::feedback::group::TIP_BYTES;
-use crate::hand::{Group, Moment, RateClass, Span};
+use crate::hand::RateClass;
+use crate::hand::{Moment, Span};
 use crate::link::poll::cost::{Turnaround, WireCost};
-use crate::link::poll::window::{Gaps, Joining, SHAPES_MAX};
+use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX, TIP};
 use crate::link::quirks::GapRead;
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
@@ -75,12 +75,12 @@ impl PollRates {
         settings_hz: 2.0,
     };
 
-    fn of(&self, part: Group) -> f64 {
-        match part.rate() {
-            RateClass::Motion | RateClass::Drives => self.state_hz,
-            RateClass::Temperature => self.state_hz.min(TEMPERATURE_HZ),
-            RateClass::Settings => self.settings_hz,
-            RateClass::Tactile => self.tactile_hz,
+    fn of(&self, part: ReadPart) -> f64 {
+        match part {
+            ReadPart::Angle | ReadPart::Force | ReadPart::Drives => self.state_hz,
+            ReadPart::Temperature => self.state_hz.min(TEMPERATURE_HZ),
+            ReadPart::Targets | ReadPart::Speeds | ReadPart::Position => self.settings_hz,
+            ReadPart::Tip(_) => self.tactile_hz,
         }
     }
 }
@@ -108,7 +108,7 @@ pub(crate) struct NextRead {
 /// Due time of one part.
 #[derive(Debug, Clone, Copy)]
 struct Due {
-    part: Group,
+    part: ReadPart,
     period: Duration,
     next: Moment,
     /// Not asked for before this, however late it is by then.
@@ -126,7 +126,7 @@ pub(crate) struct PollPlan {
     wrote: Option<(Moment, bool)>,
     /// Setpoints are read before each write until then.
     doubtful_until: Moment,
-    parts: [Due; Group::ALL.len()],
+    parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
     gaps: Gaps,
@@ -143,7 +143,7 @@ impl PollPlan {
             watched: false,
             wrote: None,
             doubtful_until: now,
-            parts: Group::ALL.map(|part| Due {
+            parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
                 next: now,
@@ -174,7 +174,7 @@ impl PollPlan {
 
     fn keep_rates(&mut self, now: Moment) {
         for due in &mut self.parts {
-            let is_watched = due.part.is_setpoint();
+            let is_watched = matches!(due.part, ReadPart::Targets | ReadPart::Speeds);
             let least = if self.watched && is_watched {
                 WATCHED_HZ
             } else {
@@ -186,7 +186,7 @@ impl PollPlan {
     }
 
     /// How far apart the reads of each part are meant to be.
-    pub(crate) fn periods(&self) -> impl Iterator<Item = (Group, Duration)> {
+    pub(crate) fn periods(&self) -> impl Iterator<Item = (ReadPart, Duration)> {
         self.parts.iter().map(|due| (due.part, due.period))
     }
 
@@ -216,13 +216,14 @@ impl PollPlan {
     }
 
     /// Whole reads of a group a second, if the wire carried nothing else; 0 before the first answer.
-    pub(crate) fn could_hz(&self, class: RateClass) -> f64 {
+    pub(crate) fn could_hz(&self, group: RateClass) -> f64 {
         let Some(turnaround) = self.turnaround.typical() else {
             return 0.0;
         };
         let joining = self.joining(Tempo::Rest);
-        let parts = Group::ALL.into_iter();
-        let mut left: Vec<Group> = parts.filter(|part| part.rate() == class).collect();
+        let mut left: ArrayVec<ReadPart, { ReadPart::ALL.len() }> =
+            ReadPart::ALL.into_iter().collect();
+        left.retain(|part| part.group() == group);
         let mut all = Duration::ZERO;
         while let Some(first) = left.first() {
             let window = joining.window(first.span(), left.iter().copied());
@@ -249,7 +250,7 @@ impl PollPlan {
     fn longest(&self, tempo: Tempo) -> u16 {
         let usual = period(PollRates::default().state_hz);
         let mut parts = self.parts.iter();
-        let is_usual = parts.all(|due| !is_motion(due.part) || due.period >= usual);
+        let is_usual = parts.all(|due| !due.part.is_motion() || due.period >= usual);
         let turnaround = self.turnaround.longest();
         match tempo {
             Tempo::Rest => self.cost.window(turnaround),
@@ -264,7 +265,7 @@ impl PollPlan {
         let due = || self.wanted(tempo).filter(is_due);
         let motion = || {
             due()
-                .filter(|due| is_motion(due.part))
+                .filter(|due| due.part.is_motion())
                 .reduce(|a, b| a.later(b, now))
         };
         let any = || due().reduce(|a, b| a.later(b, now));
@@ -287,17 +288,17 @@ impl PollPlan {
     }
 
     /// True for what is read with the motion state: while something moves what the drives say too, if there is room.
-    fn goes_with_motion(&self, part: Group, tempo: Tempo) -> bool {
-        let whole = Group::Status.span().end() - u32::from(Group::Angle.span().address);
+    fn goes_with_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
+        let whole = ReadPart::Drives.span().end() - u32::from(ReadPart::Angle.span().address);
         let has_room = || u32::from(self.longest(tempo)) >= whole;
-        is_motion(part) || part.rate() == RateClass::Drives && tempo == Tempo::Motion && has_room()
+        part.is_motion() || part == ReadPart::Drives && tempo == Tempo::Motion && has_room()
     }
 
     /// The motion state, due or not.
     pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> NextRead {
-        let angle = self.parts.iter().find(|due| due.part == Group::Angle);
+        let angle = self.parts.iter().find(|due| due.part == ReadPart::Angle);
         let angle = angle.copied().unwrap_or(Due {
-            part: Group::Angle,
+            part: ReadPart::Angle,
             period: Duration::ZERO,
             next: now,
             held_until: now,
@@ -349,14 +350,17 @@ impl PollPlan {
     /// last one is there until then.
     pub(crate) fn before_write(&self, now: Moment) -> Option<NextRead> {
         let (wrote, _) = self.wrote.filter(|_| self.watched_in_stream(now))?;
-        let targets = self.parts.iter().find(|due| due.part == Group::AngleSet)?;
+        let targets = self
+            .parts
+            .iter()
+            .find(|due| due.part == ReadPart::Targets)?;
         let is_doubtful = now < self.doubtful_until && targets.held_until <= now;
         let is_due = targets.at() <= now || is_doubtful && targets.asked <= wrote;
         is_due.then(|| self.question(targets, now, Tempo::Motion))
     }
 
-    fn waits_for_write(&self, part: Group, now: Moment) -> bool {
-        part.is_setpoint() && self.watched_in_stream(now)
+    fn waits_for_write(&self, part: ReadPart, now: Moment) -> bool {
+        matches!(part, ReadPart::Targets | ReadPart::Speeds) && self.watched_in_stream(now)
     }
 
     /// True while setpoints are read before writes, and only there.
@@ -373,7 +377,7 @@ impl PollPlan {
     /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
     pub(crate) fn look_at_settings(&mut self, at: Moment) {
         for due in &mut self.parts {
-            if due.part.is_setpoint() {
+            if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
                 due.next = due.next.min(at);
             }
         }
@@ -400,7 +404,7 @@ impl PollPlan {
                 // A part that came along in company before its time is not put off for all the times it did.
                 due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
-                if is_motion(due.part) {
+                if due.part.is_motion() {
                     self.since_motion = 0;
                 }
             }
@@ -409,7 +413,7 @@ impl PollPlan {
 
     fn wanted(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
         self.parts.iter().filter(move |due| {
-            tempo != Tempo::Stopping || is_motion(due.part) || due.part.rate() == RateClass::Drives
+            tempo != Tempo::Stopping || due.part.is_motion() || due.part == ReadPart::Drives
         })
     }
 
@@ -425,11 +429,11 @@ impl PollPlan {
         let alike = joins.clone().filter(|due| due.period == first.period);
         let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
         let wide = joining.window(narrow, joins.map(|due| due.part));
-        let is_motion = wide.covers(Group::Angle.span());
+        let is_motion = wide.covers(ReadPart::Angle.span());
         let mut forms = joining.shapes(wide);
         if is_motion {
             // Shorter ones, for a line on which each longer one may still be answered late.
-            let shorter = [narrow, Group::Angle.span()].into_iter();
+            let shorter = [narrow, ReadPart::Angle.span()].into_iter();
             for window in shorter.filter(|window| *window != wide) {
                 forms.extend(
                     joining
@@ -479,20 +483,15 @@ impl Due {
     fn joins(&self, first: &Self, now: Moment, longest: u16) -> bool {
         match (self.part, first.part) {
             // Always the same ones together: else the first and the last may be left alone, which nothing then ends.
-            (Group::Tactile(one), Group::Tactile(other)) => {
-                let together = (longest / TIP_BYTES).max(1);
-                one as u16 / together == other as u16 / together
+            (ReadPart::Tip(one), ReadPart::Tip(other)) => {
+                let together = (longest / TIP).max(1);
+                u16::from(one) / together == u16::from(other) / together
             }
             // What belongs together stays together, and what is wanted seldom is not read much more often for company.
             _ if self.period == first.period => self.next <= now.plus(self.period / 2),
             _ => self.next <= now.plus(self.period / 8),
         }
     }
-}
-
-/// True for what tells where the hand is and what it feels.
-pub(crate) fn is_motion(part: Group) -> bool {
-    part.rate() == RateClass::Motion
 }
 
 fn period(hz: f64) -> Duration {

@@ -1,7 +1,9 @@
 //! Tests of the poll plan, on a line that is nothing but its cost model.
-use crate::hand::{Finger, Group, Moment, RateClass, Span};
+use crate::hand::RateClass;
+use crate::hand::{Moment, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::{PollPlan, PollPriority, PollRates, Tempo};
+use crate::link::poll::window::ReadPart;
 use crate::link::quirks::GapRead;
 use std::time::Duration;
 
@@ -11,17 +13,17 @@ const SECONDS: u64 = 10;
 /// What a run gave.
 struct Run {
     asked: Vec<Span>,
-    /// Reads of each part a second, in the order of `Group::ALL`.
-    hz: [f64; Group::ALL.len()],
+    /// Reads of each part a second, in the order of `ReadPart::ALL`.
+    hz: [f64; ReadPart::ALL.len()],
 }
 
 impl Run {
-    fn of(&self, part: Group) -> f64 {
-        self.hz[Group::ALL.iter().position(|each| *each == part).unwrap()]
+    fn of(&self, part: ReadPart) -> f64 {
+        self.hz[ReadPart::ALL.iter().position(|each| *each == part).unwrap()]
     }
 
     fn check_all(&self, least: f64) {
-        for (part, hz) in Group::ALL.iter().zip(self.hz) {
+        for (part, hz) in ReadPart::ALL.iter().zip(self.hz) {
             assert!(hz >= least, "{part:?} is read {hz} times a second");
         }
     }
@@ -38,7 +40,7 @@ fn read(plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
 
 fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: Tempo) -> Run {
     let (cost, end) = (*plan.cost(), now.plus(Duration::from_secs(SECONDS)));
-    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; Group::ALL.len()]);
+    let (mut asked, mut counts) = (Vec::<Span>::new(), [0_u32; ReadPart::ALL.len()]);
     while now < end {
         let Some(question) = plan.next(now, tempo) else {
             now = plan.next_due(now, tempo);
@@ -53,7 +55,7 @@ fn read_from(mut now: Moment, mut plan: PollPlan, turnaround: Duration, tempo: T
         plan.answered(window, now, took);
         now = now.plus(took);
         asked.push(window);
-        for (count, part) in counts.iter_mut().zip(Group::ALL) {
+        for (count, part) in counts.iter_mut().zip(ReadPart::ALL) {
             *count += u32::from(window.covers(part.span()));
         }
     }
@@ -71,12 +73,12 @@ fn rs485(baud: u32) -> WireCost {
 fn rates_are_kept_where_the_line_allows() {
     for cost in [WireCost::rs485(None), WireCost::tcp()] {
         let run = run(cost, MS / 5, PollRates::default(), Tempo::Rest);
-        for part in [Group::Angle, Group::Force, Group::Status] {
+        for part in [ReadPart::Angle, ReadPart::Force, ReadPart::Drives] {
             assert!((99.0..=101.0).contains(&run.of(part)), "{}", run.of(part));
         }
-        assert!((29.0..=31.0).contains(&run.of(Group::Tactile(Finger::ALL[3]))));
-        assert!((4.9..=6.0).contains(&run.of(Group::Temperature)));
-        assert!((1.9..=2.5).contains(&run.of(Group::SpeedSet)));
+        assert!((29.0..=31.0).contains(&run.of(ReadPart::Tip(3))));
+        assert!((4.9..=6.0).contains(&run.of(ReadPart::Temperature)));
+        assert!((1.9..=2.5).contains(&run.of(ReadPart::Speeds)));
     }
 }
 
@@ -100,7 +102,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
         for rates in [PollRates::default(), PollRates::FULL] {
             let run = run(cost, MS * 15, rates, Tempo::Motion);
             for pair in run.asked.windows(2) {
-                let motion = |span: &Span| span.covers(Group::Angle.span());
+                let motion = |span: &Span| span.covers(ReadPart::Angle.span());
                 assert!(pair.iter().any(motion), "{pair:?}");
             }
             let slowest = run.asked.iter().map(|span| cost.read(span.len, MS * 15));
@@ -108,7 +110,7 @@ fn while_something_moves_every_second_read_is_motion_and_a_stop_is_in_time_behin
             assert!(slowest.max().unwrap() + hold <= MS * 30);
             let rest = self::run(cost, MS * 15, rates, Tempo::Rest);
             assert!(
-                run.of(Group::Angle) > rest.of(Group::Angle),
+                run.of(ReadPart::Angle) > rest.of(ReadPart::Angle),
                 "motion comes first"
             );
         }
@@ -123,18 +125,22 @@ fn while_something_moves_touch_comes_at_10_hz_and_more_often_where_it_comes_firs
         read(plan, MS * 6, Tempo::Motion)
     };
     let (force, touch) = (run(PollPriority::Force), run(PollPriority::Touch));
-    assert!(force.of(Group::Angle) >= 25.0 && force.of(Group::Status) >= 25.0);
+    assert!(force.of(ReadPart::Angle) >= 25.0 && force.of(ReadPart::Drives) >= 25.0);
     assert!(
-        force.of(Group::Tactile(Finger::ALL[4])) >= 10.0,
+        force.of(ReadPart::Tip(4)) >= 10.0,
         "{}",
-        force.of(Group::Tactile(Finger::ALL[4]))
+        force.of(ReadPart::Tip(4))
     );
     assert!(
-        touch.of(Group::Tactile(Finger::ALL[4])) >= 14.0,
+        touch.of(ReadPart::Tip(4)) >= 14.0,
         "{}",
-        touch.of(Group::Tactile(Finger::ALL[4]))
+        touch.of(ReadPart::Tip(4))
     );
-    assert!(touch.of(Group::Angle) >= 15.0, "{}", touch.of(Group::Angle));
+    assert!(
+        touch.of(ReadPart::Angle) >= 15.0,
+        "{}",
+        touch.of(ReadPart::Angle)
+    );
     touch.check_all(0.3);
 }
 
@@ -144,7 +150,7 @@ fn at_full_rate_and_rest_a_cycle_is_one_state_and_two_reads_of_fingertips() {
     let late = &run.asked[200..];
     let states = late
         .iter()
-        .filter(|span| span.covers(Group::Status.span()))
+        .filter(|span| span.covers(ReadPart::Drives.span()))
         .count();
     let tips = late.iter().filter(|span| span.address >= 2950).count();
     assert!(
@@ -168,10 +174,7 @@ fn fingertips_at_the_ends_that_were_read_alone_are_not_read_alone_for_ever() {
     // So often that the turnaround is known, and with it how much one read may hold.
     for _ in 0..32 {
         for (tip, together) in [(1, 3), (4, 1), (0, 1)] {
-            let window = Span::new(
-                Group::Tactile(Finger::ALL[tip]).span().address,
-                58 * together,
-            );
+            let window = Span::new(ReadPart::Tip(tip).span().address, 58 * together);
             let took = cost.read(window.len, MS * 6);
             plan.answered(window, now, took);
             now = now.plus(took);
@@ -212,9 +215,9 @@ fn while_a_stop_is_confirmed_only_motion_and_faults_are_read() {
     assert!(
         run.asked
             .iter()
-            .all(|span| span.covers(Group::Angle.span()) || span.covers(Group::Status.span()))
+            .all(|span| span.covers(ReadPart::Angle.span()) || span.covers(ReadPart::Drives.span()))
     );
-    assert!(run.of(Group::Angle) > 20.0 && run.of(Group::Status) > 15.0);
+    assert!(run.of(ReadPart::Angle) > 20.0 && run.of(ReadPart::Drives) > 15.0);
 }
 
 #[test]
@@ -230,7 +233,11 @@ fn the_motion_state_has_forms_enough_for_a_line_with_late_replies() {
                 shapes.len() >= forms && seen.len() >= lens,
                 "{tempo:?} {shapes:?}"
             );
-            assert!(shapes.iter().all(|shape| shape.covers(Group::Angle.span())));
+            assert!(
+                shapes
+                    .iter()
+                    .all(|shape| shape.covers(ReadPart::Angle.span()))
+            );
         }
     }
 }
@@ -272,8 +279,8 @@ fn a_hand_known_to_refuse_the_gap_is_never_asked_through_it() {
     for _ in 0..300 {
         let window = plan.next(now, Tempo::Rest).unwrap().shapes[0];
         assert!(window.end() <= 1558 || window.address >= 1582, "{window:?}");
-        seen[0] += u32::from(window.covers(Group::Angle.span()));
-        seen[1] += u32::from(window.covers(Group::Force.span()));
+        seen[0] += u32::from(window.covers(ReadPart::Angle.span()));
+        seen[1] += u32::from(window.covers(ReadPart::Force.span()));
         let took = cost.read(window.len, MS * 6);
         plan.answered(window, now, took);
         now = now.plus(took);

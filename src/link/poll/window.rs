@@ -1,8 +1,12 @@
 //! Which stretch of memory one read takes: the parts that are wanted now, joined where one longer read is cheaper than
 //! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
 
-use crate::hand::register::{POS_SET, TOUCH, by_address};
-use crate::hand::{Group, Span};
+use crate::hand::RateClass;
+use crate::hand::Span;
+use crate::hand::register::{
+    ANGLE_ACT, ANGLE_SET, CURRENT, FORCE_ACT, FORCE_SET, POS_ACT, POS_SET, Register, SPEED_SET,
+    STATUS, TEMP, TOUCH, by_address,
+};
 use crate::link::poll::cost::WireCost;
 use crate::link::quirks::GapRead;
 use arrayvec::ArrayVec;
@@ -20,6 +24,83 @@ pub(crate) const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
 const REGIONS: [Span; 2] = [Span::new(POS_SET.address, 1624 - POS_SET.address), TOUCH];
 /// Times that a window failed which led through a gap, before the gap is blamed: once may be chance.
 const STRIKES: u8 = 2;
+
+/// What is read as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ReadPart {
+    /// ANGLE_ACT.
+    Angle,
+    /// FORCE_ACT.
+    Force,
+    /// CURRENT, ERROR and STATUS.
+    Drives,
+    /// TEMP.
+    Temperature,
+    /// POS_ACT.
+    Position,
+    /// ANGLE_SET and FORCE_SET.
+    Targets,
+    /// SPEED_SET.
+    Speeds,
+    /// One fingertip, in the order of addresses.
+    Tip(u8),
+}
+
+/// Bytes of one fingertip.
+pub(crate) const TIP: u16 = 58;
+
+impl ReadPart {
+    pub(crate) const ALL: [Self; 12] = [
+        Self::Angle,
+        Self::Force,
+        Self::Drives,
+        Self::Temperature,
+        Self::Position,
+        Self::Targets,
+        Self::Speeds,
+        Self::Tip(0),
+        Self::Tip(1),
+        Self::Tip(2),
+        Self::Tip(3),
+        Self::Tip(4),
+    ];
+
+    /// Where it lies.
+    pub(crate) fn span(self) -> Span {
+        match self {
+            Self::Angle => ANGLE_ACT.span(),
+            Self::Force => FORCE_ACT.span(),
+            Self::Drives => through(&CURRENT, &STATUS),
+            Self::Temperature => TEMP.span(),
+            Self::Position => POS_ACT.span(),
+            Self::Targets => through(&ANGLE_SET, &FORCE_SET),
+            Self::Speeds => SPEED_SET.span(),
+            Self::Tip(finger) => Span::new(TOUCH.address + TIP * u16::from(finger), TIP),
+        }
+    }
+
+    /// The group that it is shown in.
+    pub(crate) const fn group(self) -> RateClass {
+        match self {
+            Self::Angle | Self::Force => RateClass::Motion,
+            Self::Drives => RateClass::Drives,
+            Self::Temperature => RateClass::Temperature,
+            Self::Tip(_) => RateClass::Tactile,
+            Self::Targets | Self::Speeds | Self::Position => RateClass::Settings,
+        }
+    }
+
+    /// True for what tells where the hand is and what it feels.
+    pub(crate) const fn is_motion(self) -> bool {
+        matches!(self, Self::Angle | Self::Force)
+    }
+}
+
+/// The memory of neighbouring registers, the first to the last.
+fn through(first: &Register, last: &Register) -> Span {
+    let from = first.address;
+    Span::new(from, last.address + last.len - from)
+}
 
 /// What is known of the gaps on this connection.
 #[derive(Debug, Clone, Copy, Default)]
@@ -94,7 +175,11 @@ pub(crate) struct Joining {
 
 impl Joining {
     /// The window around what is asked for: it takes in whichever of the others costs less in it than by itself.
-    pub(crate) fn window(&self, first: Span, others: impl Iterator<Item = Group> + Clone) -> Span {
+    pub(crate) fn window(
+        &self,
+        first: Span,
+        others: impl Iterator<Item = ReadPart> + Clone,
+    ) -> Span {
         let mut window = first;
         loop {
             let wider = others
@@ -180,7 +265,6 @@ fn hull(a: Span, b: Span) -> Span {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::Finger;
 
     const MS: Duration = Duration::from_millis(1);
 
@@ -193,69 +277,79 @@ mod tests {
         }
     }
 
-    fn window(joining: &Joining, first: Group, others: &[Group]) -> (u16, u16) {
+    fn window(joining: &Joining, first: ReadPart, others: &[ReadPart]) -> (u16, u16) {
         let window = joining.window(first.span(), others.iter().copied());
         (window.address, window.len)
     }
 
-    const STATE_PARTS: [Group; 6] = [
-        Group::Angle,
-        Group::Force,
-        Group::Current,
-        Group::Faults,
-        Group::Status,
-        Group::Temperature,
+    const STATE_PARTS: [ReadPart; 4] = [
+        ReadPart::Angle,
+        ReadPart::Force,
+        ReadPart::Drives,
+        ReadPart::Temperature,
     ];
 
     #[test]
     fn a_gap_is_read_through_where_that_is_cheaper_than_asking_twice() {
         let fast = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
-        assert_eq!(window(&fast, Group::Angle, &STATE_PARTS), (1546, 78));
+        assert_eq!(window(&fast, ReadPart::Angle, &STATE_PARTS), (1546, 78));
         // 24 bytes take 12.5 ms at 19200 baud, another request and reply 8.9 and the hand's turnaround.
         let slow = WireCost::rs485(Some(19_200));
         let quick_hand = joining(slow, MS, 252);
-        assert_eq!(window(&quick_hand, Group::Angle, &STATE_PARTS), (1546, 12));
-        assert_eq!(window(&quick_hand, Group::Force, &STATE_PARTS), (1582, 42));
+        assert_eq!(
+            window(&quick_hand, ReadPart::Angle, &STATE_PARTS),
+            (1546, 12)
+        );
+        assert_eq!(
+            window(&quick_hand, ReadPart::Force, &STATE_PARTS),
+            (1582, 42)
+        );
         let slow_hand = joining(slow, MS * 8, 252);
-        assert_eq!(window(&slow_hand, Group::Angle, &STATE_PARTS), (1546, 78));
+        assert_eq!(
+            window(&slow_hand, ReadPart::Angle, &STATE_PARTS),
+            (1546, 78)
+        );
         // Pieces of 8 bytes: the gap is three more of them, and apart costs none more.
         let can = joining(WireCost::can(1_000_000), MS, 250);
-        assert_eq!(window(&can, Group::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&can, ReadPart::Angle, &STATE_PARTS), (1546, 12));
     }
 
     #[test]
     fn a_window_keeps_to_the_longest_reply() {
-        let tips = Finger::ALL.map(Group::Tactile);
+        let tips: Vec<ReadPart> = (0..5).map(ReadPart::Tip).collect();
         for (longest, wanted) in [(252, 4), (135, 2), (58, 1)] {
             let joining = joining(WireCost::rs485(Some(115_200)), MS, longest);
             assert_eq!(
-                window(&joining, Group::Tactile(Finger::ALL[0]), &tips),
+                window(&joining, ReadPart::Tip(0), &tips),
                 (3000, 58 * wanted)
             );
         }
         let short = joining(WireCost::rs485(Some(115_200)), MS * 3, 58);
-        assert_eq!(window(&short, Group::Angle, &STATE_PARTS), (1546, 48));
-        assert_eq!(window(&short, Group::Status, &STATE_PARTS[2..]), (1594, 30));
+        assert_eq!(window(&short, ReadPart::Angle, &STATE_PARTS), (1546, 48));
+        assert_eq!(
+            window(&short, ReadPart::Drives, &[ReadPart::Temperature]),
+            (1594, 30)
+        );
     }
 
     #[test]
     fn a_gap_that_is_refused_twice_splits_the_window_and_other_failures_do_not() {
         let mut joining = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
-        let through = joining.window(Group::Angle.span(), STATE_PARTS.into_iter());
-        let single = Group::Angle.span();
+        let through = joining.window(ReadPart::Angle.span(), STATE_PARTS.into_iter());
+        let single = ReadPart::Angle.span();
         joining.gaps.failed(through);
-        assert_eq!(window(&joining, Group::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&joining, ReadPart::Angle, &STATE_PARTS), (1546, 12));
         joining.gaps.failed(single);
         joining.gaps.answered(single);
         assert_eq!(
-            joining.window(Group::Angle.span(), STATE_PARTS.into_iter()),
+            joining.window(ReadPart::Angle.span(), STATE_PARTS.into_iter()),
             through
         );
         joining.gaps.failed(through);
         joining.gaps.answered(single);
         assert!(joining.gaps.are_split());
-        assert_eq!(window(&joining, Group::Angle, &STATE_PARTS), (1546, 12));
-        assert_eq!(window(&joining, Group::Force, &STATE_PARTS), (1582, 42));
+        assert_eq!(window(&joining, ReadPart::Angle, &STATE_PARTS), (1546, 12));
+        assert_eq!(window(&joining, ReadPart::Force, &STATE_PARTS), (1582, 42));
         // Once it was read through, it is never blamed.
         let mut known = Gaps::default();
         known.answered(through);
@@ -270,16 +364,16 @@ mod tests {
     fn the_forms_of_a_window_differ_cover_it_and_stay_within_registers() {
         let (rs485, rtu) = (WireCost::rs485(Some(115_200)), WireCost::rtu(115_200, MS));
         for (cost, part, others, longest, least) in [
-            (rs485, Group::Angle, &STATE_PARTS[..2], 58, 6),
-            (rs485, Group::Angle, &STATE_PARTS[..3], 252, 12),
-            (rs485, Group::Status, &STATE_PARTS[2..], 58, 7),
-            (rs485, Group::Tactile(Finger::ALL[0]), &[][..], 58, 1),
-            (rs485, Group::Tactile(Finger::ALL[4]), &[][..], 60, 2),
-            (rs485, Group::AngleSet, &[Group::SpeedSet][..], 58, 6),
-            (rtu, Group::Angle, &STATE_PARTS[..3], 250, 6),
-            (rtu, Group::Status, &STATE_PARTS[2..], 60, 2),
-            (rtu, Group::Tactile(Finger::ALL[4]), &[][..], 116, 1),
-            (WireCost::tcp(), Group::Angle, &STATE_PARTS[..3], 250, 6),
+            (rs485, ReadPart::Angle, &STATE_PARTS[..2], 58, 6),
+            (rs485, ReadPart::Angle, &STATE_PARTS[..3], 252, 12),
+            (rs485, ReadPart::Drives, &STATE_PARTS[2..], 58, 7),
+            (rs485, ReadPart::Tip(0), &[][..], 58, 1),
+            (rs485, ReadPart::Tip(4), &[][..], 60, 2),
+            (rs485, ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
+            (rtu, ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
+            (rtu, ReadPart::Drives, &STATE_PARTS[2..], 60, 2),
+            (rtu, ReadPart::Tip(4), &[][..], 116, 1),
+            (WireCost::tcp(), ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
         ] {
             let joining = joining(cost, MS * 3, longest);
             let window = joining.window(part.span(), others.iter().copied());

@@ -112,8 +112,9 @@ impl Run {
         };
         assert!(
             self.until(LIVE_WITHIN, whole).await,
-            "all groups are read: {:?}",
-            self.link.status()
+            "all groups are read: {:?} after {:?}",
+            self.link.status(),
+            self.states
         );
         self.verdict.connected = 1;
         assert!(self.journal().is_empty(), "connecting writes nothing");
