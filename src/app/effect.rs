@@ -57,7 +57,7 @@ impl Effect {
 
     /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All
     /// else is about a live hand, and is refused.
-    pub const fn passes_in_replay(self) -> bool {
+    const fn passes_in_replay(self) -> bool {
         matches!(
             self,
             Self::StopsAll | Self::Records | Self::Shows | Self::Dresses

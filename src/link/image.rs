@@ -1,8 +1,9 @@
 //! The hand's memory as it was read last, with the time of each stretch, for those who share one hand. Pure: replies, writes
 //! and failures come in, bytes with an age go out. What was not read is not there.
 
+use crate::hand::feedback::group::TIP_BYTES;
 use crate::hand::{Moment, Reply, Span};
-use crate::link::poll::window::{GAPS, ReadPart, TIP};
+use crate::link::poll::window::{GAPS, ReadPart};
 use crate::link::request::RequestError;
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -55,7 +56,7 @@ struct Came {
     asked: Moment,
     /// After the one before.
     after: Duration,
-    bytes: ArrayVec<u8, { TIP as usize }>,
+    bytes: ArrayVec<u8, { TIP_BYTES as usize }>,
 }
 
 /// A stretch that somebody asked for, and what became of that.

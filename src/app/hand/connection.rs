@@ -12,12 +12,16 @@ use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
 use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Records taken in one frame: a tenth of a second of the fastest link and far more than a frame brings. The rest waits
 /// for the next frame, so that a window that was held up catches up without a jerk.
 const RECORDS_PER_FRAME: usize = 256;
 /// Requests whose end is still awaited; the link itself lets fewer wait.
 const REQUESTS_MAX: usize = 32;
+
+/// An armed hand that is asked nothing for so long is told of.
+const IDLE_AFTER: Duration = Duration::from_secs(300);
 
 /// One connection with a hand.
 #[derive(Debug, Default)]
@@ -39,6 +43,8 @@ pub struct Connection {
     /// Angles received before this belong to a link that is gone.
     pub(crate) seen_from: Option<Moment>,
     pub(crate) was_live: bool,
+    /// When the hand was armed, or asked for something since.
+    pub(crate) asked_at: Moment,
 }
 
 impl Connection {
@@ -50,6 +56,7 @@ impl Connection {
                 ..LinkStatus::default()
             },
             seen_from: Some(now),
+            asked_at: now,
             ..Self::default()
         }
     }
@@ -91,6 +98,12 @@ impl Connection {
     /// Whether setpoints pass.
     pub fn is_armed(&self) -> bool {
         self.status.state == LinkState::Armed
+    }
+
+    /// How long an armed hand was asked nothing, once that is long.
+    pub fn idle(&self, now: Moment) -> Option<Duration> {
+        let idle = now.since(self.asked_at);
+        (self.is_armed() && idle >= IDLE_AFTER).then_some(idle)
     }
 
     pub(crate) fn link(&self) -> Option<&LinkHandle> {

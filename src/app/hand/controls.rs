@@ -35,6 +35,17 @@ pub(crate) enum JointChange {
     Lock(bool),
 }
 
+/// What the hand holds of one joint, each `None` where it is what was set, or not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HeldOtherwise {
+    /// Its speed.
+    pub speed: Option<Speed>,
+    /// Its force threshold.
+    pub force: Option<Force>,
+    /// Its target, where the joint was sent elsewhere in this arming.
+    pub target: Option<Angle>,
+}
+
 /// The six joints as a person sets them.
 #[derive(Debug, Default)]
 pub struct Controls {
@@ -47,8 +58,8 @@ pub struct Controls {
     steered: PerDof<bool>,
     /// Where the joint was sent in this arming; `None` = nowhere, or it was left alone since.
     sent: PerDof<Option<Angle>>,
-    /// Joints that were given the speed and force of what is played, or was.
-    lent: PerDof<bool>,
+    /// Joints that have the speed and force of what is played, or was.
+    overridden: PerDof<bool>,
 }
 
 impl Controls {
@@ -131,31 +142,37 @@ impl Controls {
                 request.force[dof] = force.unwrap_or(request.force[dof]);
             }
         }
-        self.lent = PerDof::default();
+        self.overridden = PerDof::default();
         request
     }
 
-    /// Where the joint was sent, if a person or what they started sent it in this arming.
-    pub fn sent(&self, dof: Dof) -> Option<Angle> {
-        self.sent[dof]
-    }
-
     /// What is played from now on sends these joints with its own speed and force.
-    pub(crate) fn lend(&mut self, targets: &PerDof<Option<Angle>>) {
+    pub(crate) fn override_limits(&mut self, targets: &PerDof<Option<Angle>>) {
         for (dof, to) in targets.iter() {
-            self.lent[dof] |= to.is_some();
+            self.overridden[dof] |= to.is_some();
         }
     }
 
-    /// The person's own speed and force for the joints that have others from what was played; `None` if no free joint has.
-    pub(crate) fn give_back(&mut self, epoch: ArmEpoch) -> Option<Setpoints> {
-        let mut own = Setpoints::none(epoch);
+    /// Adds the person's own speed and force to what is sent, for the free joints that have others from what was played.
+    pub(crate) fn restore_limits(&mut self, sent: &mut Setpoints) {
         for (dof, joint) in self.joints.iter().filter(|(_, joint)| !joint.locked) {
-            if std::mem::take(&mut self.lent[dof]) {
-                (own.speed[dof], own.force[dof]) = (joint.speed, joint.force);
+            if std::mem::take(&mut self.overridden[dof]) {
+                (sent.speed[dof], sent.force[dof]) = (joint.speed, joint.force);
             }
         }
-        (!own.is_empty()).then_some(own)
+    }
+
+    /// What a hand holds of a joint, where that is not what was set.
+    pub(crate) fn held_otherwise(&self, dof: Dof, held: &HandSample) -> HeldOtherwise {
+        let joint = self.joints[dof];
+        let speed = held.speed_set.and_then(|all| all.value[dof]);
+        let force = held.force_set.and_then(|all| all.value[dof]);
+        let target = held.angle_set.and_then(|all| all.value[dof]?.angle());
+        HeldOtherwise {
+            speed: speed.filter(|speed| joint.speed != Some(*speed)),
+            force: force.filter(|force| joint.force != Some(*force)),
+            target: target.filter(|held| self.sent[dof].is_some_and(|sent| sent != *held)),
+        }
     }
 
     /// Takes a change. `epoch` is the arming in which the person may move the hand; gives what is to be sent in it.
@@ -299,22 +316,25 @@ mod tests {
     }
 
     #[test]
-    fn what_is_played_gives_the_own_speed_and_force_back_once_and_to_its_joints_only() {
+    fn own_speed_and_force_are_restored_once_and_for_the_joints_that_were_played() {
         let mut controls = Controls::default();
         controls.take(Dof::Ring, JointChange::Speed(Speed::MIN), None);
         controls.take(Dof::Index, JointChange::Speed(Speed::MIN), None);
         let mut targets = PerDof::splat(None);
         targets[Dof::Ring] = Some(Angle::MIN);
-        controls.lend(&targets);
+        controls.override_limits(&targets);
         let mut sent = Setpoints::none(EPOCH);
         sent.angle[Dof::Ring] = Some(Target::Go(Angle::MIN));
         sent.speed[Dof::Ring] = Some(Speed::MAX);
         controls.show(&sent);
         assert_eq!(controls.joints[Dof::Ring].speed, Some(Speed::MIN));
-        let own = controls.give_back(EPOCH).unwrap();
+        let mut own = Setpoints::none(EPOCH);
+        controls.restore_limits(&mut own);
         assert_eq!(own.speed[Dof::Ring], Some(Speed::MIN));
-        assert_eq!(own.speed[Dof::Index], None, "it was not lent");
-        assert_eq!(controls.give_back(EPOCH), None);
+        assert_eq!(own.speed[Dof::Index], None, "nothing played moved it");
+        let mut again = Setpoints::none(EPOCH);
+        controls.restore_limits(&mut again);
+        assert!(again.is_empty(), "once");
     }
 
     #[test]

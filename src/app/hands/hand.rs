@@ -3,7 +3,7 @@
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::hand::controls::JointChange;
+use crate::app::hand::controls::{HeldOtherwise, JointChange};
 use crate::app::hand::open::Leaving;
 use crate::app::hand::status_news::StatusReport;
 use crate::app::hand::{Activity, Connection, Controls, HoldKey, RecordedMover, SequenceRun};
@@ -20,7 +20,7 @@ use crate::app::trials::{SeriesRun, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Gesture, GestureRoute, HandCommand, Moment, PerDof,
-    Setpoints, Speed, Target,
+    Setpoints,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
@@ -36,8 +36,6 @@ use tokio::sync::mpsc;
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
 /// which the link itself gives the alarm, and a little.
 pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
-/// An armed hand that is asked nothing for so long is told of.
-pub const IDLE_AFTER: Duration = Duration::from_secs(300);
 /// Commands to a sequence that may wait: a person cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
 
@@ -64,8 +62,6 @@ pub struct Hand {
     pub params: ParamsState,
     /// The session that is recorded of it.
     pub recording: Option<HandRecording>,
-    /// When it was armed, or asked for something since.
-    pub(crate) asked_at: Moment,
     /// Who moves it, of a hand that is replayed.
     pub(crate) recorded: Option<RecordedMover>,
     /// The hand is being left: it was told to hold.
@@ -99,12 +95,6 @@ impl Hand {
         start_refusal(plan, self.series.is_some(), armed, &self.controls.locked())
     }
 
-    /// How long an armed hand was asked nothing, once that is long.
-    pub fn idle(&self, now: Moment) -> Option<Duration> {
-        let idle = now.since(self.asked_at);
-        (self.connection.is_armed() && idle >= IDLE_AFTER).then_some(idle)
-    }
-
     /// How fresh a value asked for at `asked` is now.
     pub fn freshness(&self, asked: Option<Moment>, now: Moment) -> Freshness {
         let is_live = self.connection.is_live();
@@ -117,33 +107,19 @@ impl Hand {
         self.readings.tip_freshness(finger, is_live, now)
     }
 
-    /// The speed that a live hand holds, where that is not the person's.
-    pub fn other_speed(&self, dof: Dof) -> Option<Speed> {
-        let set = self.readings.sample.speed_set;
-        let held = set.filter(|_| self.connection.is_live())?.value[dof];
-        held.filter(|held| self.controls.joints[dof].speed != Some(*held))
-    }
-
-    /// The force threshold that a live hand holds, where that is not the person's.
-    pub fn other_force(&self, dof: Dof) -> Option<Force> {
-        let set = self.readings.sample.force_set;
-        let held = set.filter(|_| self.connection.is_live())?.value[dof];
-        held.filter(|held| self.controls.joints[dof].force != Some(*held))
+    /// What a live hand holds of a joint, where that is not what was set.
+    pub fn held_otherwise(&self, dof: Dof) -> HeldOtherwise {
+        if self.connection.is_live() {
+            self.controls.held_otherwise(dof, &self.readings.sample)
+        } else {
+            HeldOtherwise::default()
+        }
     }
 
     /// The threshold that stops a joint: what the hand holds, else what the person wants.
     pub fn stops_at(&self, dof: Dof) -> Option<Force> {
         let wanted = self.controls.joints[dof].force;
-        self.other_force(dof).or(wanted)
-    }
-
-    /// The target that a live hand holds, where the joint was sent elsewhere.
-    pub fn other_target(&self, dof: Dof) -> Option<Angle> {
-        let (set, sent) = (self.readings.sample.angle_set, self.controls.sent(dof)?);
-        match set.filter(|_| self.connection.is_live())?.value[dof] {
-            Some(Target::Go(held)) if held != sent => Some(held),
-            _ => None,
-        }
+        self.held_otherwise(dof).force.or(wanted)
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.
@@ -227,7 +203,6 @@ impl Hand {
             inputs: HandInputs::default(),
             recording: None,
             recorded: None,
-            asked_at: ctx.now,
         };
         let is_over =
             |what: &NoticeKind| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_));
@@ -263,7 +238,7 @@ impl Hand {
                 state: LinkState::Holding,
             } => self.measured.history.mark(*at, MarkKind::Stop),
             Record::Sent { at, write, .. } => {
-                self.asked_at = *at;
+                self.connection.asked_at = *at;
                 self.measured.history.sent(*at, write);
             }
             Record::State { .. } | Record::Answered { .. } => {}
@@ -290,7 +265,7 @@ impl Hand {
             self.params.link_lost(now);
         }
         if news.is_armed {
-            self.asked_at = now;
+            self.connection.asked_at = now;
             self.controls.stand();
         }
     }
@@ -398,18 +373,20 @@ impl Hand {
         if let Some(mut setpoints) = wanted {
             if let JointChange::Target(_) = change {
                 self.take_over();
-                if let Some(own) = self.controls.give_back(setpoints.epoch) {
-                    setpoints.merge(&own);
-                }
+                self.controls.restore_limits(&mut setpoints);
             }
             self.connection.send(&setpoints);
         }
     }
 
     /// What was played is over: the person's own speed and force are in force again.
-    pub(crate) fn give_back(&mut self) {
-        let own = self.own_epoch();
-        if let Some(own) = own.and_then(|epoch| self.controls.give_back(epoch)) {
+    pub(crate) fn restore_limits(&mut self) {
+        let Some(epoch) = self.own_epoch() else {
+            return;
+        };
+        let mut own = Setpoints::none(epoch);
+        self.controls.restore_limits(&mut own);
+        if !own.is_empty() {
             self.connection.send(&own);
         }
     }
@@ -426,9 +403,7 @@ impl Hand {
         };
         self.take_over();
         self.controls.show(&setpoints);
-        if let Some(own) = self.controls.give_back(setpoints.epoch) {
-            setpoints.merge(&own);
-        }
+        self.controls.restore_limits(&mut setpoints);
         self.connection.send(&setpoints);
         true
     }
@@ -449,7 +424,7 @@ impl Hand {
         let entry = plan.entry;
         self.take_over();
         for cue in plan.cues() {
-            self.controls.lend(&cue.targets);
+            self.controls.override_limits(&cue.targets);
         }
         let Some(open) = &mut self.connection.open else {
             return false;
@@ -502,7 +477,7 @@ impl Hand {
             ctx.tell(NoticeKind::GestureWouldMoveLocked { dof });
         } else {
             self.take_over();
-            self.give_back();
+            self.restore_limits();
             self.controls.gesture = Some(gesture);
             if self.ask(what, HandCommand::Gesture(gesture, route), ctx) {
                 let number = MarkKind::Gesture(gesture.get());

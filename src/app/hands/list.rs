@@ -1,7 +1,9 @@
 //! The hands of the program, and which of them is shown.
 
+use crate::app::hand::Connection;
 use crate::app::hands::Hand;
 use crate::app::slot::SlotId;
+use crate::hand::Moment;
 
 /// Hands in one window: as many keys as there are for them, and as many strips as fit a header.
 pub const HANDS_MAX: usize = 8;
@@ -97,12 +99,15 @@ impl HandList {
     }
 
     /// Another slot, which is shown from now on. Nothing where there is no room.
-    pub fn add(&mut self) {
+    pub fn add(&mut self, now: Moment) {
         if !self.has_room() {
             return;
         }
         self.given = self.given.next();
-        let mut hand = Hand::default();
+        let mut hand = Hand {
+            connection: Connection::none(now),
+            ..Hand::default()
+        };
         hand.label.slot = self.given;
         self.more.push(hand);
         self.shown = self.more.len();
@@ -139,7 +144,7 @@ mod tests {
     fn there_is_always_a_hand_and_never_more_than_fit() {
         let mut list = HandList::default();
         for _ in 0..20 {
-            list.add();
+            list.add(Moment::ZERO);
         }
         assert_eq!(list.count(), HANDS_MAX);
         for slot in slots(&list) {
@@ -151,8 +156,8 @@ mod tests {
     #[test]
     fn the_shown_hand_stays_shown_while_others_go_and_no_slot_comes_again() {
         let mut list = HandList::default();
-        list.add();
-        list.add();
+        list.add(Moment::ZERO);
+        list.add(Moment::ZERO);
         let [first, second, third] = slots(&list)[..] else {
             panic!("three")
         };
@@ -161,7 +166,7 @@ mod tests {
         assert_eq!(list.shown().label.slot, second);
         list.remove(third);
         assert_eq!(list.shown().label.slot, second);
-        list.add();
+        list.add(Moment::ZERO);
         assert!(![first, second, third].contains(&list.shown().label.slot));
         list.remove(list.shown().label.slot);
         assert_eq!(list.shown().label.slot, second);

@@ -35,13 +35,13 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
         sent.iter().for_each(|setpoints| hand.sent(setpoints));
         let runs = hand.sequence.as_ref().is_some_and(SequenceRun::is_running);
         if was_running && !runs {
-            hand.give_back();
+            hand.restore_limits();
         }
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
     hand.tick_requests(ctx);
-    if shared.settings.disarm_idle && hand.idle(ctx.now).is_some() {
+    if shared.settings.disarm_idle && hand.connection.idle(ctx.now).is_some() {
         hand.disarm(ctx.now);
         ctx.tell(NoticeKind::IdleDisarmed);
     }

@@ -2,7 +2,7 @@
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
-use crate::app::hand::{Connection, HoldKey};
+use crate::app::hand::HoldKey;
 use crate::app::hands::Hand;
 use crate::app::hands::action::HandsAction;
 use crate::app::notices::NoticeKind;
@@ -15,11 +15,7 @@ use crate::transport::Endpoint;
 pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
     match action {
         HandsAction::Add => {
-            if state.hands.has_room() {
-                state.hands.add();
-                let now = state.now;
-                state.hand_mut().connection = Connection::none(now);
-            }
+            state.hands.add(state.now);
             hand_is_shown(state);
         }
         HandsAction::Show(slot) => {

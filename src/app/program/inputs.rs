@@ -9,7 +9,7 @@ use crate::app::poses::PoseState;
 use crate::app::program::leading;
 use crate::app::settings::Settings;
 use crate::app::state::State;
-use crate::hand::Moment;
+use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
 use crate::record::{ArmRefusal, Disarmed};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms};
@@ -77,9 +77,10 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
     let lease = link.grant(offered.owner);
     // Of an armed hand that played something: whoever moves it now does so with the person's speed and force.
     let armed = hand.connection.status.armed;
-    if let Some(own) = armed.and_then(|epoch| hand.controls.give_back(epoch)) {
+    if let Some(mut own) = armed.map(Setpoints::none) {
+        hand.controls.restore_limits(&mut own);
         // One that is refused has ended, and takes nothing.
-        let _sent = link.set(lease, &own);
+        let _sent = (!own.is_empty()).then(|| link.set(lease, &own));
     }
     let arm = hand.controls.arm_request(&hand.readings.sample);
     let start = |terms| FollowStart {

@@ -26,7 +26,7 @@ pub(super) fn open_beside(state: &mut State, endpoints: Vec<Endpoint>, env: &Env
         state.now = now;
         let is_new = !hands::is_open_elsewhere(state, &endpoint, None);
         if is_new && state.hands.has_room() {
-            state.hands.add();
+            state.hands.add(now);
             open(state, Some(endpoint), env, now);
         }
     }

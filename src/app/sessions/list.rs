@@ -141,11 +141,8 @@ fn is_known(item: &SessionItem, bytes: u64) -> bool {
         return item.bytes == bytes;
     }
     let grew = bytes.saturating_sub(item.bytes);
-    grew < item.bytes / GROWS_BY
-        && !item
-            .files
-            .last()
-            .is_none_or(|last| is_ended(last).unwrap_or(true))
+    let goes_on = |last: &PathBuf| is_ended(last).is_ok_and(|ended| !ended);
+    grew < item.bytes / GROWS_BY && item.files.last().is_some_and(goes_on)
 }
 
 /// True if a file ends as it begins: MCAP files that were ended do.

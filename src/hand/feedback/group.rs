@@ -128,11 +128,6 @@ impl Group {
     pub const fn name(self) -> &'static str {
         self.row().name
     }
-
-    /// True for what the hand was told, not what it measures.
-    pub const fn is_setpoint(self) -> bool {
-        matches!(self, Self::AngleSet | Self::ForceSet | Self::SpeedSet)
-    }
 }
 
 impl Row {

@@ -1,7 +1,6 @@
 //! What the time of the line is spent on, as a budget over the last second. Counts only.
 
-use crate::hand::RateClass;
-use crate::hand::{Moment, Span};
+use crate::hand::{Moment, RateClass, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
 use crate::link::poll::window::ReadPart;
@@ -42,7 +41,7 @@ impl LineMeter {
         };
         let bytes: u32 = held().map(|part| u32::from(part.span().len)).sum();
         for part in held() {
-            if let Some(sum) = self.groups.get_mut(part.group() as usize) {
+            if let Some(sum) = self.groups.get_mut(part.rate() as usize) {
                 sum.time += took * u32::from(part.span().len) / bytes.max(1);
                 sum.parts += 1;
             }
@@ -98,9 +97,9 @@ impl LineMeter {
     }
 }
 
-fn parts_of(group: RateClass) -> u32 {
+fn parts_of(class: RateClass) -> u32 {
     let parts = ReadPart::ALL
         .into_iter()
-        .filter(|part| part.group() == group);
+        .filter(|part| part.rate() == class);
     u32::try_from(parts.count()).unwrap_or(1).max(1)
 }

@@ -6,10 +6,10 @@
 //! and nobody asks for more states than usual, some fingertips come at once. The motion state then has every second turn
 //! at least, or every third where fingertips come first, and brings what the drives say along where there is room.
 
-use crate::hand::RateClass;
-use crate::hand::{Moment, Span};
+use crate::hand::feedback::group::TIP_BYTES;
+use crate::hand::{Moment, RateClass, Span};
 use crate::link::poll::cost::{Turnaround, WireCost};
-use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX, TIP};
+use crate::link::poll::window::{Gaps, Joining, ReadPart, SHAPES_MAX};
 use crate::link::quirks::GapRead;
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
@@ -76,11 +76,11 @@ impl PollRates {
     };
 
     fn of(&self, part: ReadPart) -> f64 {
-        match part {
-            ReadPart::Angle | ReadPart::Force | ReadPart::Drives => self.state_hz,
-            ReadPart::Temperature => self.state_hz.min(TEMPERATURE_HZ),
-            ReadPart::Targets | ReadPart::Speeds | ReadPart::Position => self.settings_hz,
-            ReadPart::Tip(_) => self.tactile_hz,
+        match part.rate() {
+            RateClass::Motion | RateClass::Drives => self.state_hz,
+            RateClass::Temperature => self.state_hz.min(TEMPERATURE_HZ),
+            RateClass::Settings => self.settings_hz,
+            RateClass::Tactile => self.tactile_hz,
         }
     }
 }
@@ -215,15 +215,15 @@ impl PollPlan {
         self.gaps.are_split()
     }
 
-    /// Whole reads of a group a second, if the wire carried nothing else; 0 before the first answer.
-    pub(crate) fn could_hz(&self, group: RateClass) -> f64 {
+    /// Whole reads of a class a second, if the wire carried nothing else; 0 before the first answer.
+    pub(crate) fn could_hz(&self, class: RateClass) -> f64 {
         let Some(turnaround) = self.turnaround.typical() else {
             return 0.0;
         };
         let joining = self.joining(Tempo::Rest);
         let mut left: ArrayVec<ReadPart, { ReadPart::ALL.len() }> =
             ReadPart::ALL.into_iter().collect();
-        left.retain(|part| part.group() == group);
+        left.retain(|part| part.rate() == class);
         let mut all = Duration::ZERO;
         while let Some(first) = left.first() {
             let window = joining.window(first.span(), left.iter().copied());
@@ -484,8 +484,8 @@ impl Due {
         match (self.part, first.part) {
             // Always the same ones together: else the first and the last may be left alone, which nothing then ends.
             (ReadPart::Tip(one), ReadPart::Tip(other)) => {
-                let together = (longest / TIP).max(1);
-                u16::from(one) / together == u16::from(other) / together
+                let together = (longest / TIP_BYTES).max(1);
+                one as u16 / together == other as u16 / together
             }
             // What belongs together stays together, and what is wanted seldom is not read much more often for company.
             _ if self.period == first.period => self.next <= now.plus(self.period / 2),

@@ -1,6 +1,5 @@
 //! Tests of the poll plan, on a line that is nothing but its cost model.
-use crate::hand::RateClass;
-use crate::hand::{Moment, Span};
+use crate::hand::{Finger, Moment, RateClass, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::{PollPlan, PollPriority, PollRates, Tempo};
 use crate::link::poll::window::ReadPart;
@@ -76,7 +75,7 @@ fn rates_are_kept_where_the_line_allows() {
         for part in [ReadPart::Angle, ReadPart::Force, ReadPart::Drives] {
             assert!((99.0..=101.0).contains(&run.of(part)), "{}", run.of(part));
         }
-        assert!((29.0..=31.0).contains(&run.of(ReadPart::Tip(3))));
+        assert!((29.0..=31.0).contains(&run.of(ReadPart::Tip(Finger::ALL[3]))));
         assert!((4.9..=6.0).contains(&run.of(ReadPart::Temperature)));
         assert!((1.9..=2.5).contains(&run.of(ReadPart::Speeds)));
     }
@@ -127,14 +126,14 @@ fn while_something_moves_touch_comes_at_10_hz_and_more_often_where_it_comes_firs
     let (force, touch) = (run(PollPriority::Force), run(PollPriority::Touch));
     assert!(force.of(ReadPart::Angle) >= 25.0 && force.of(ReadPart::Drives) >= 25.0);
     assert!(
-        force.of(ReadPart::Tip(4)) >= 10.0,
+        force.of(ReadPart::Tip(Finger::ALL[4])) >= 10.0,
         "{}",
-        force.of(ReadPart::Tip(4))
+        force.of(ReadPart::Tip(Finger::ALL[4]))
     );
     assert!(
-        touch.of(ReadPart::Tip(4)) >= 14.0,
+        touch.of(ReadPart::Tip(Finger::ALL[4])) >= 14.0,
         "{}",
-        touch.of(ReadPart::Tip(4))
+        touch.of(ReadPart::Tip(Finger::ALL[4]))
     );
     assert!(
         touch.of(ReadPart::Angle) >= 15.0,
@@ -174,7 +173,10 @@ fn fingertips_at_the_ends_that_were_read_alone_are_not_read_alone_for_ever() {
     // So often that the turnaround is known, and with it how much one read may hold.
     for _ in 0..32 {
         for (tip, together) in [(1, 3), (4, 1), (0, 1)] {
-            let window = Span::new(ReadPart::Tip(tip).span().address, 58 * together);
+            let window = Span::new(
+                ReadPart::Tip(Finger::ALL[tip]).span().address,
+                58 * together,
+            );
             let took = cost.read(window.len, MS * 6);
             plan.answered(window, now, took);
             now = now.plus(took);

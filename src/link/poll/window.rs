@@ -1,12 +1,8 @@
 //! Which stretch of memory one read takes: the parts that are wanted now, joined where one longer read is cheaper than
 //! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
 
-use crate::hand::RateClass;
-use crate::hand::Span;
-use crate::hand::register::{
-    ANGLE_ACT, ANGLE_SET, CURRENT, FORCE_ACT, FORCE_SET, POS_ACT, POS_SET, Register, SPEED_SET,
-    STATUS, TEMP, TOUCH, by_address,
-};
+use crate::hand::register::{POS_SET, TOUCH, by_address};
+use crate::hand::{Finger, Group, RateClass, Span};
 use crate::link::poll::cost::WireCost;
 use crate::link::quirks::GapRead;
 use arrayvec::ArrayVec;
@@ -42,12 +38,9 @@ pub(crate) enum ReadPart {
     Targets,
     /// SPEED_SET.
     Speeds,
-    /// One fingertip, in the order of addresses.
-    Tip(u8),
+    /// One fingertip.
+    Tip(Finger),
 }
-
-/// Bytes of one fingertip.
-pub(crate) const TIP: u16 = 58;
 
 impl ReadPart {
     pub(crate) const ALL: [Self; 12] = [
@@ -58,48 +51,42 @@ impl ReadPart {
         Self::Position,
         Self::Targets,
         Self::Speeds,
-        Self::Tip(0),
-        Self::Tip(1),
-        Self::Tip(2),
-        Self::Tip(3),
-        Self::Tip(4),
+        Self::Tip(Finger::Little),
+        Self::Tip(Finger::Ring),
+        Self::Tip(Finger::Middle),
+        Self::Tip(Finger::Index),
+        Self::Tip(Finger::Thumb),
     ];
 
-    /// Where it lies.
-    pub(crate) fn span(self) -> Span {
+    /// The first and the last of its groups, between which no register is left out.
+    const fn groups(self) -> (Group, Group) {
         match self {
-            Self::Angle => ANGLE_ACT.span(),
-            Self::Force => FORCE_ACT.span(),
-            Self::Drives => through(&CURRENT, &STATUS),
-            Self::Temperature => TEMP.span(),
-            Self::Position => POS_ACT.span(),
-            Self::Targets => through(&ANGLE_SET, &FORCE_SET),
-            Self::Speeds => SPEED_SET.span(),
-            Self::Tip(finger) => Span::new(TOUCH.address + TIP * u16::from(finger), TIP),
+            Self::Angle => (Group::Angle, Group::Angle),
+            Self::Force => (Group::Force, Group::Force),
+            Self::Drives => (Group::Current, Group::Status),
+            Self::Temperature => (Group::Temperature, Group::Temperature),
+            Self::Position => (Group::Position, Group::Position),
+            Self::Targets => (Group::AngleSet, Group::ForceSet),
+            Self::Speeds => (Group::SpeedSet, Group::SpeedSet),
+            Self::Tip(finger) => (Group::Tactile(finger), Group::Tactile(finger)),
         }
     }
 
-    /// The group that it is shown in.
-    pub(crate) const fn group(self) -> RateClass {
-        match self {
-            Self::Angle | Self::Force => RateClass::Motion,
-            Self::Drives => RateClass::Drives,
-            Self::Temperature => RateClass::Temperature,
-            Self::Tip(_) => RateClass::Tactile,
-            Self::Targets | Self::Speeds | Self::Position => RateClass::Settings,
-        }
+    /// Where it lies.
+    pub(crate) fn span(self) -> Span {
+        let (first, last) = self.groups();
+        hull(first.span(), last.span())
+    }
+
+    /// How often it is wanted.
+    pub(crate) const fn rate(self) -> RateClass {
+        self.groups().0.rate()
     }
 
     /// True for what tells where the hand is and what it feels.
     pub(crate) const fn is_motion(self) -> bool {
         matches!(self, Self::Angle | Self::Force)
     }
-}
-
-/// The memory of neighbouring registers, the first to the last.
-fn through(first: &Register, last: &Register) -> Span {
-    let from = first.address;
-    Span::new(from, last.address + last.len - from)
 }
 
 /// What is known of the gaps on this connection.
@@ -316,11 +303,11 @@ mod tests {
 
     #[test]
     fn a_window_keeps_to_the_longest_reply() {
-        let tips: Vec<ReadPart> = (0..5).map(ReadPart::Tip).collect();
+        let tips: Vec<ReadPart> = Finger::ALL.map(ReadPart::Tip).to_vec();
         for (longest, wanted) in [(252, 4), (135, 2), (58, 1)] {
             let joining = joining(WireCost::rs485(Some(115_200)), MS, longest);
             assert_eq!(
-                window(&joining, ReadPart::Tip(0), &tips),
+                window(&joining, ReadPart::Tip(Finger::ALL[0]), &tips),
                 (3000, 58 * wanted)
             );
         }
@@ -367,12 +354,12 @@ mod tests {
             (rs485, ReadPart::Angle, &STATE_PARTS[..2], 58, 6),
             (rs485, ReadPart::Angle, &STATE_PARTS[..3], 252, 12),
             (rs485, ReadPart::Drives, &STATE_PARTS[2..], 58, 7),
-            (rs485, ReadPart::Tip(0), &[][..], 58, 1),
-            (rs485, ReadPart::Tip(4), &[][..], 60, 2),
+            (rs485, ReadPart::Tip(Finger::ALL[0]), &[][..], 58, 1),
+            (rs485, ReadPart::Tip(Finger::ALL[4]), &[][..], 60, 2),
             (rs485, ReadPart::Targets, &[ReadPart::Speeds][..], 58, 6),
             (rtu, ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
             (rtu, ReadPart::Drives, &STATE_PARTS[2..], 60, 2),
-            (rtu, ReadPart::Tip(4), &[][..], 116, 1),
+            (rtu, ReadPart::Tip(Finger::ALL[4]), &[][..], 116, 1),
             (WireCost::tcp(), ReadPart::Angle, &STATE_PARTS[..3], 250, 6),
         ] {
             let joining = joining(cost, MS * 3, longest);

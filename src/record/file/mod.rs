@@ -1,10 +1,10 @@
 //! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
 //!
-//! `message` says what stands in a message, `topic` which there are; `encode` and `decode` go between entries and messages;
-//! `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when and into which file, of which there is a
-//! new one each hour, `recorder` is the thread that does it; `parts` tells which files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader` reads its
-//! entries, `by_time` those of a file that another program wrote, `damage` is what was missing, `contents` what can be read, `overview` is what a file tells
-//! without being read whole.
+//! `format` says what stands in it. Written: `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when
+//! and into which file, of which there is a new one each hour, and `recorder` is the thread that does it. Read: `parts` tells which
+//! files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader`
+//! reads its entries, `by_time` those of a file that another program wrote. `damage` is what was missing, `contents` what can be
+//! read, `overview` what a file tells without being read whole.
 
 mod by_time;
 mod channels;

@@ -151,11 +151,11 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
         let held = look.told(main::HAND_HOLDS, held);
         format!("{} {wanted} · {held}", look.say(caption))
     };
-    let speed = hand.other_speed(row.dof);
-    let speed = speed.map(|held| one(main::SPEED, joint.speed.map(Speed::get), held.get()));
-    let force = hand.other_force(row.dof);
-    let force = force.map(|held| one(main::FORCE, joint.force.map(Force::get), held.get()));
-    let all: Vec<String> = force.into_iter().chain(speed).collect();
+    let held = hand.held_otherwise(row.dof);
+    let speed = |held: Speed| one(main::SPEED, joint.speed.map(Speed::get), held.get());
+    let force = |held: Force| one(main::FORCE, joint.force.map(Force::get), held.get());
+    let all = [held.force.map(force), held.speed.map(speed)];
+    let all: Vec<String> = all.into_iter().flatten().collect();
     if all.is_empty() {
         // What comes after it keeps its id.
         return ui.skip_ahead_auto_ids(1);

@@ -98,7 +98,12 @@ impl JointRow {
                 ..SlideTrack::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
             },
             scale: NumberScale::of_angle(pane.state.settings.angle_unit, self.dof),
-            other: pane.state.hand().other_target(self.dof).map(Angle::get),
+            other: pane
+                .state
+                .hand()
+                .held_otherwise(self.dof)
+                .target
+                .map(Angle::get),
             after: READING + theme::GAP,
         };
         if let Some(value) = setting.ui(ui, pane) {
@@ -130,7 +135,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     let name = named(pane, row, main::NAME_FORCE_THRESHOLD);
     let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
     let value = value_of(row, joints.map(|joint| joint.force.map(Force::get)));
-    let others = PerDof::from_fn(|dof| hand.other_force(dof).map(Force::get));
+    let others = PerDof::from_fn(|dof| hand.held_otherwise(dof).force.map(Force::get));
     let mut track = SlideTrack {
         tip: &staged(pane, main::FORCE.tip()),
         disabled: off,
@@ -173,7 +178,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
     let value = value_of(row, joints.map(|joint| joint.speed.map(Speed::get)));
     let value = value.filter(|_| runs.is_none());
-    let others = PerDof::from_fn(|dof| hand.other_speed(dof).map(Speed::get));
+    let others = PerDof::from_fn(|dof| hand.held_otherwise(dof).speed.map(Speed::get));
     let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force?));
     let name = named(pane, row, main::NAME_SPEED);
     let setting = TrackRow {

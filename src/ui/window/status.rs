@@ -238,7 +238,7 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
 
 /// An armed hand that is asked nothing any more.
 fn idle(pane: &Pane<'_>) -> Option<Warning> {
-    let idle = pane.state.hand().idle(pane.state.now)?;
+    let idle = pane.state.hand().connection.idle(pane.state.now)?;
     let warning = Warning::new(pane, main::IDLE_TITLE, pane.look.palette.warn);
     Some(warning.more(format::duration(idle)))
 }

@@ -70,11 +70,11 @@ async fn wishes_are_gentle_at_most_and_what_the_hand_holds_is_told_until_it_hold
     let joint = bench.hand().controls.joints[Dof::Index];
     let gentle = (Some(Speed::GENTLE), Some(Force::GENTLE));
     assert_eq!((joint.speed, joint.force), gentle);
-    let held = bench.hand().other_speed(Dof::Index);
+    let held = bench.hand().held_otherwise(Dof::Index).speed;
     assert_eq!(held, Some(Speed::MAX), "and it is told what it holds");
     bench.act(Action::Arm);
     bench.run(1500).await;
-    assert_eq!(bench.hand().other_speed(Dof::Index), None);
+    assert_eq!(bench.hand().held_otherwise(Dof::Index).speed, None);
 }
 
 #[tokio::test(start_paused = true)]
@@ -82,10 +82,17 @@ async fn a_wish_that_the_hand_does_not_hold_is_told_apart_until_it_does() {
     let mut bench = Bench::live().await;
     let slow = Speed::nearest(200);
     bench.act(Action::Speed(Some(Dof::Index), slow));
-    assert_eq!(bench.hand().other_speed(Dof::Index), Some(Speed::MAX));
+    assert_eq!(
+        bench.hand().held_otherwise(Dof::Index).speed,
+        Some(Speed::MAX)
+    );
     bench.act(Action::Arm);
     bench.run(1500).await;
-    assert_eq!(bench.hand().other_speed(Dof::Index), None, "it holds it");
+    assert_eq!(
+        bench.hand().held_otherwise(Dof::Index).speed,
+        None,
+        "it holds it"
+    );
     let other = 25_i16.to_le_bytes();
     let index = SPEED_SET + 2 * Dof::Index as u16;
     bench
@@ -96,7 +103,7 @@ async fn a_wish_that_the_hand_does_not_hold_is_told_apart_until_it_does() {
     let joint = bench.hand().controls.joints[Dof::Index];
     assert_eq!(joint.speed, Some(slow), "another program changes no wish");
     assert_eq!(
-        bench.hand().other_speed(Dof::Index),
+        bench.hand().held_otherwise(Dof::Index).speed,
         Some(Speed::nearest(25))
     );
 }
@@ -472,13 +479,13 @@ async fn an_armed_hand_that_is_asked_nothing_is_told_of_and_disarmed_only_if_tha
     }
     let mut bench = Bench::armed().await;
     minutes(&mut bench, 4).await;
-    assert_eq!(bench.hand().idle(bench.state().now), None);
+    assert_eq!(bench.hand().connection.idle(bench.state().now), None);
     minutes(&mut bench, 2).await;
-    assert!(bench.hand().idle(bench.state().now).is_some());
+    assert!(bench.hand().connection.idle(bench.state().now).is_some());
     assert!(bench.hand().connection.is_armed(), "off by default");
     bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
     bench.run(100).await;
-    assert_eq!(bench.hand().idle(bench.state().now), None);
+    assert_eq!(bench.hand().connection.idle(bench.state().now), None);
     bench.act(Action::DisarmIdle(true));
     minutes(&mut bench, 6).await;
     assert!(!bench.hand().connection.is_armed());

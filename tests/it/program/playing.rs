@@ -153,7 +153,7 @@ async fn a_link_that_is_lost_in_a_pose_gives_the_own_speed_back_when_the_hand_is
         [600; 6],
         "connecting writes nothing"
     );
-    let told = bench.hand().other_speed(Dof::Index);
+    let told = bench.hand().held_otherwise(Dof::Index).speed;
     assert_eq!(told, Some(Speed::nearest(600)), "and that is said");
     bench.act(Action::Arm);
     bench.run(300).await;

@@ -240,13 +240,13 @@ pub(crate) fn usb_port(path: &str) -> PortFound {
 pub(crate) fn several() -> State {
     let mut state = armed();
     let mut other = faulted();
-    state.hands.add();
+    state.hands.add(Moment::ZERO);
     let slot = state.hand().label.slot;
     *state.hand_mut() = std::mem::take(other.hand_mut());
     state.hand_mut().label.slot = slot;
     state.hand_mut().label.name = "bench at the window".into();
     state.hand_mut().side = handscope::hand::kinematics::Side::Left;
-    state.hands.add();
+    state.hands.add(Moment::ZERO);
     let hand = state.hand_mut();
     hand.connection.endpoint = Some("tcp:192.168.11.210:6000?unit=255".parse().unwrap());
     hand.label.name = "192.168.11.210:6000".into();
