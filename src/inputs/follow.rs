@@ -8,12 +8,6 @@ use std::time::Duration;
 
 /// A source that says nothing new for this long is held …
 pub const HOLDS_AFTER: Duration = Duration::from_millis(200);
-
-/// True if who was heard last at `last` still speaks at `now`.
-pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
-    now.since(last) < HOLDS_AFTER
-}
-
 /// … and after this it may move the hand no more.
 pub const ENDS_AFTER: Duration = Duration::from_secs(1);
 /// Targets that are the same to the last bit for this long, away from the ends of the range: tracking is frozen?
@@ -24,6 +18,11 @@ const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
 const ARMS_AGAIN_AFTER: Duration = Duration::from_millis(500);
 /// A look that comes late moves no further than one in time.
 const STEP_LONGEST: Duration = Duration::from_millis(40);
+
+/// True if who was heard last at `last` still speaks at `now`.
+pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
+    now.since(last) < HOLDS_AFTER
+}
 
 /// How far ahead of a joint its target may be, and how fast it may go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -30,7 +30,7 @@ pub struct FileError {
 pub enum FileCause {
     /// Not TOML, or not a row of a table, or a value that does not fit its field.
     #[error("{0}")]
-    Form(String),
+    Malformed(String),
     /// Another table.
     #[error("this is not a table of samples")]
     NotSamples,
@@ -199,7 +199,7 @@ impl<'a> FileText<'a> {
     /// What it holds.
     ///
     /// # Errors
-    /// [`FileCause::Form`] with line and field.
+    /// [`FileCause::Malformed`] with line and field.
     pub fn parse<T: DeserializeOwned>(self) -> Result<T, FileError> {
         toml::from_str(self.0).map_err(|error| self.toml_error(&error))
     }
@@ -216,7 +216,7 @@ impl<'a> FileText<'a> {
         FileError {
             field: named.or_else(|| self.key_before(span.start)),
             line: error.span().map(|span| self.line(span.start)),
-            cause: FileCause::Form(said),
+            cause: FileCause::Malformed(said),
         }
     }
 

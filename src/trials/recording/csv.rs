@@ -120,7 +120,7 @@ pub fn read(csv: &str) -> Result<TrialRecording, FileError> {
         let (got, want) = (cells.len(), columns.len());
         if got != want {
             let what = format!("{got} cells instead of {want}");
-            return Err(error_in(line, FileCause::Form(what)));
+            return Err(error_in(line, FileCause::Malformed(what)));
         }
         let mut cells = Cells {
             line,
@@ -171,7 +171,7 @@ impl Cells<'_> {
         let column = self.columns.get(at).map_or("", String::as_str);
         let text = self.cells.get(at).copied().unwrap_or_default();
         let what = format!("'{text}' is not a valid {column}");
-        error_in(self.line, FileCause::Form(what))
+        error_in(self.line, FileCause::Malformed(what))
     }
 
     /// The next cell; none if it is empty.

@@ -154,10 +154,8 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     let look = pane.look;
     let unknown = pane.state.hand().pose_now(pane.state.now).is_none();
     let button = button.disabled(unknown.then(|| look.say(poses::CAPTURE_UNKNOWN)));
-    if button.ui(ui, look).clicked() {
-        let name = look.say(poses::POSE).to_owned();
-        pane.actions.push(Action::Capture(name));
-    }
+    let name = look.say(poses::POSE).to_owned();
+    button.on_click(ui, pane, Action::Capture(name));
 }
 
 /// An entry that one press starts, and another press ends while it runs: its picture, its name, and its key.

@@ -197,7 +197,7 @@ chinese! {
     }
 
     fn file_cause_zh(&FileCause) {
-        FileCause::Form(_) => "格式不对";
+        FileCause::Malformed(_) => "格式不对";
         FileCause::NotSamples => "不是采样表";
         FileCause::Picture(_) => "图片格式不对";
         FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
@@ -645,7 +645,7 @@ mod tests {
         };
         let name = || "fist".to_owned();
         let all = [
-            FileCause::Form("invalid type".into()),
+            FileCause::Malformed("invalid type".into()),
             FileCause::NotSamples,
             FileCause::Picture("bad signature".into()),
             FileCause::Format {
@@ -695,7 +695,7 @@ mod tests {
         assert_eq!(file(chinese(), &none), "文件或文件夹不存在。");
         let cells = FileError {
             line: Some(4),
-            ..FileCause::Form("57 cells instead of 58".into()).into()
+            ..FileCause::Malformed("57 cells instead of 58".into()).into()
         };
         let named = cells.of_named("'trial-1.csv'".into());
         assert_eq!(

@@ -141,12 +141,7 @@ impl Window {
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
-        let dropped = ui.input(|input| {
-            let files = input.raw.dropped_files.iter();
-            let mut paths = files.map(|file| file.path().to_owned());
-            paths.find(|path| path.extension().is_some_and(|ending| ending == "mcap"))
-        });
-        actions.extend(dropped.map(|path| Action::Session(SessionAction::Open(path))));
+        actions.extend(dropped_session(ui));
         let mut stopped = wishes.contains(&Wish::Stop);
         actions.extend(held_key_action(ui, state, &wishes));
         let mut typing = std::mem::take(&mut self.typing);
@@ -346,6 +341,16 @@ fn bar_ui(
 ) {
     let bar = kit::bare(Panel::top(name), height, Margin::ZERO);
     bar.frame(frame).show(ui, add);
+}
+
+/// A session whose file was dropped onto the window is to be replayed.
+fn dropped_session(ui: &Ui) -> Option<Action> {
+    ui.input(|input| {
+        let files = input.raw.dropped_files.iter();
+        let mut paths = files.map(|file| file.path().to_owned());
+        let path = paths.find(|path| path.extension().is_some_and(|ending| ending == "mcap"));
+        path.map(|path| Action::Session(SessionAction::Open(path)))
+    })
 }
 
 /// Nothing that was begun at one hand goes on at another.

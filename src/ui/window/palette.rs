@@ -105,7 +105,7 @@ impl CommandPalette {
             query.ui(ui, (look, unready), &found)
         })?;
         let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
-        let entered = entered.filter(|listed| unready.is_none() || !listed.command.moves());
+        let entered = entered.filter(|listed| unready.is_none() || !listed.command.needs_arming());
         let chosen = shown
             .inner
             .flatten()
@@ -136,7 +136,7 @@ impl Query {
         if found.is_empty() {
             kit::say_ui(ui, look.say(window::COMMANDS_NONE), look.palette.muted);
         }
-        let mut clicked = None;
+        let (mut clicked, mut why_not) = (None, None);
         // A few around the chosen one.
         let from = self.chosen.saturating_sub(SHOWN_MAX - 1);
         for (place, listed) in found.iter().enumerate().skip(from).take(SHOWN_MAX) {
@@ -146,10 +146,10 @@ impl Query {
                 } else {
                     Weight::Quiet
                 };
-                let why_not = unready.filter(|_| listed.command.moves());
-                let button = Button::new(&listed.name, "")
-                    .weight(weight)
-                    .disabled(why_not);
+                let refused = unready.filter(|_| listed.command.needs_arming());
+                why_not = why_not.or(refused.filter(|_| place == self.chosen));
+                let button = Button::new(&listed.name, "").weight(weight);
+                let button = button.disabled(refused);
                 if button.ui(ui, look).clicked() {
                     clicked = Some(listed.command);
                 }
@@ -160,13 +160,16 @@ impl Query {
                 });
             });
         }
+        if let Some(why_not) = why_not {
+            kit::say_ui(ui, why_not, look.palette.warn);
+        }
         clicked
     }
 }
 
 impl Command {
-    /// Whether it asks a hand to move.
-    const fn moves(self) -> bool {
+    /// True for what is offered only while the hand is armed.
+    const fn needs_arming(self) -> bool {
         matches!(
             self,
             Self::Entry(_) | Self::Wish(Wish::Open | Wish::Half | Wish::Close)
@@ -174,26 +177,41 @@ impl Command {
     }
 }
 
+/// What it is called outside the list of keys.
+const fn name(wish: Wish) -> Text {
+    match wish {
+        Wish::Opens(ViewRequest::Keys) => window::KEYS,
+        wish => wish.words(),
+    }
+}
+
 /// All commands whose names have each word that was typed; those that begin with the first stand first.
 fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec<Listed> {
-    let said = |command, text: Text, keys| Listed {
-        command,
-        name: look.say(text).to_owned(),
-        names: format!("{} {}", text.en, text.zh).to_lowercase(),
-        keys,
+    let said = |wish: Wish| {
+        let text = name(wish);
+        Listed {
+            command: Command::Wish(wish),
+            name: look.say(text).to_owned(),
+            names: format!("{} {}", text.en, text.zh).to_lowercase(),
+            keys: wish.keys(),
+        }
     };
     let views = View::ALL.map(|view| Wish::Opens(ViewRequest::View(view)));
-    // What is held, and what is no act of its own, has a key only.
+    // What is held, what stands for many, and what the keyboard goes to has a key only.
     let is_act = |wish: &Wish| {
         !matches!(
             wish,
-            Wish::HoldToRun | Wish::Entry(_) | Wish::Hand(_) | Wish::Opens(ViewRequest::Palette)
+            Wish::HoldToRun
+                | Wish::Entry(_)
+                | Wish::Hand(_)
+                | Wish::Joint(_)
+                | Wish::Opens(ViewRequest::Palette)
         ) && !views.contains(wish)
     };
     let mut acts: Vec<Wish> = ROWS.iter().map(|row| row.wish).filter(is_act).collect();
     acts.dedup();
     let wishes = acts.into_iter().chain(views);
-    let wishes = wishes.map(|wish| said(Command::Wish(wish), wish.words(), wish.keys()));
+    let wishes = wishes.map(said);
     let entries = poses.ready(&settings.hidden_poses).into_iter();
     let entries = entries.filter_map(|entry| {
         let names = poses.named(entry)?;

@@ -376,6 +376,10 @@ fn the_palette_moves_only_an_armed_hand_and_esc_closes_it() {
     take_point(&mut bench);
     assert_eq!(bench.writes().len(), 0, "not armed");
     assert!(bench.shows("Commands"), "nothing was chosen");
+    assert!(
+        bench.shows("Not armed: press Arm first."),
+        "and it says why"
+    );
     bench.key(Key::Escape);
     bench.run(300);
     assert!(!bench.shows("Commands"));
