@@ -149,25 +149,15 @@ pub(crate) fn told_path(folder: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::Moment;
-    use crate::hand::kinematics::Side;
+    use crate::record::file::tests::parts::Parts;
     use crate::record::file::{Counts, Opening};
 
     const DAY_S: u64 = 24 * 3600;
     const NOW_S: u64 = 100 * DAY_S;
 
     fn item(name: &str, bytes: u64) -> SessionItem {
-        let opening = Opening {
-            base_nanos: 0,
-            began: Moment::ZERO,
-            hand: String::new(),
-            simulated: false,
-            side: Side::Right,
-            version: String::new(),
-            part: None,
-        };
         SessionItem {
-            opening,
+            opening: Opening::unknown(0),
             path: name.into(),
             files: vec![name.into()],
             bytes,
@@ -273,5 +263,22 @@ mod tests {
         assert!(planned.carry_out().unwrap());
         assert!(!path.exists() && !SessionAbout::path(&path).exists());
         assert!(!planned.carry_out().unwrap(), "it is gone already");
+    }
+
+    #[test]
+    fn all_files_of_a_recording_go_and_only_if_none_changed() {
+        let parts = Parts::new();
+        let another = parts.path("another.mcap");
+        std::fs::write(&another, "abc").unwrap();
+        let (item, unread) = SessionItem::read(&super::parts::of(&parts.path("a.mcap")));
+        let item = item.unwrap();
+        assert_eq!((item.files.len(), unread.len()), (3, 0));
+        let mut planned = told("", item.bytes - 1, 0);
+        planned.path.clone_from(&item.path);
+        assert!(!planned.carry_out().unwrap(), "it grew since");
+        assert!(item.files.iter().all(|file| file.exists()));
+        planned.bytes = item.bytes;
+        assert!(planned.carry_out().unwrap());
+        assert!(item.files.iter().all(|file| !file.exists()) && another.exists());
     }
 }

@@ -145,7 +145,10 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let mut files: Vec<SessionFile> = Vec::new();
     for path in &args.files {
         // The files of one recording, which a pattern like *.mcap names one by one, are one session.
-        let is_it = |open: &Path| open == path;
+        let file = path.canonicalize();
+        let file = file.unwrap_or_else(|_unknown| path.clone());
+        let is_it =
+            |open: &Path| open.canonicalize().is_ok_and(|open| open == file) || open == path;
         if !files.iter().flat_map(SessionFile::paths).any(is_it) {
             files.push(session_file::open_or_stdin(path)?);
         }

@@ -1,7 +1,7 @@
 //! Sessions written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
 mod failing;
-mod parts;
+pub(crate) mod parts;
 mod rewritten;
 mod unended;
 

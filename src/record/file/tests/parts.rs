@@ -16,8 +16,8 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 /// Nine seconds in files of three.
-struct Parts {
-    folder: TempDir,
+pub(crate) struct Parts {
+    pub(crate) folder: TempDir,
     wanted: Vec<Atom>,
 }
 
@@ -50,7 +50,7 @@ fn record(opening: Opening, path: PathBuf, entries: &[Entry]) -> PathBuf {
 }
 
 impl Parts {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let entries = entries(7, 4500);
         let last = record(opening(), folder.path().join("a.mcap"), &entries);
@@ -61,7 +61,7 @@ impl Parts {
         }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
