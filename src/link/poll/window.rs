@@ -21,7 +21,8 @@ const REGIONS: [Span; 2] = [Span::new(POS_SET.address, 1624 - POS_SET.address), 
 /// Times that a window failed which led through a gap, before the gap is blamed: once may be chance.
 const STRIKES: u8 = 2;
 
-/// What is read as a whole.
+/// What is read as a whole: groups that belong together, as one. On Modbus RTU a reply is known by its length alone, and of short
+/// ones that are alike a hand that doubles its replies is lost ([`LinkTrouble::Ambiguous`](crate::link::LinkTrouble::Ambiguous)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ReadPart {
     /// ANGLE_ACT.
