@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::effect::Effect;
-use crate::app::layout::{Breakpoint, RoomLayouts};
+use crate::app::layout::{Breakpoint, Layout, RoomLayouts};
 use crate::app::readings::Freshness;
 use crate::app::state::State;
 use crate::hand::{Dof, Moment, PerDof, Timed};
@@ -54,8 +54,12 @@ impl Pane<'_> {
 
     /// Divides windows as large as this one so.
     pub(crate) fn lay_out(&mut self, ui: &Ui, layouts: RoomLayouts) {
-        let layout = self.state.settings.layout.with(breakpoint(ui), layouts);
-        self.actions.push(Action::Layout(layout));
+        self.actions.push(Action::Layout(self.layout(ui, layouts)));
+    }
+
+    /// The whole layout with windows as large as this one divided so.
+    pub(crate) fn layout(&self, ui: &Ui, layouts: RoomLayouts) -> Layout {
+        self.state.settings.layout.with(breakpoint(ui), layouts)
     }
 
     /// Why nothing that moves the hand can be asked for now.

@@ -125,7 +125,7 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
 
 fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let mut chosen = pane.state.settings.plot_window;
-    let all = PlotWindow::ALL.map(|window| (window, window_text(window)));
+    let all = PlotWindow::ALL.map(|window| (window, span_text(window)));
     ui.spacing_mut().combo_width = 68.0;
     // All of them without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
@@ -136,7 +136,8 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     }
 }
 
-const fn window_text(window: PlotWindow) -> &'static str {
+/// A span of time in words.
+pub(crate) const fn span_text(window: PlotWindow) -> &'static str {
     match window {
         PlotWindow::S5 => "5 s",
         PlotWindow::S10 => "10 s",

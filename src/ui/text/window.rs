@@ -69,6 +69,7 @@ texts! {
     KEY_NOTE: "Write a note", "写备注";
     KEY_LANGUAGE: "English or Chinese", "中文或英文";
     KEY_LIST: "This list", "本列表";
+    RECORD: "Record, or end the recording", "开始或停止录制";
     KEY_COMMANDS: "Find a command", "查找命令";
     COMMANDS: "Commands", "命令", "Type a part of a name: an act, a view, a pose", "输入名称的一部分：操作、页面、姿态";
     COMMANDS_NONE: "Nothing is called so.", "没有匹配的命令。";

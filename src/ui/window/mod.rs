@@ -164,6 +164,7 @@ impl Window {
             Some(Command::Entry(entry)) if pane.unready().is_none() => {
                 pane.actions.push(press(state, entry));
             }
+            Some(Command::Act(action)) => pane.actions.push(action),
             Some(Command::Entry(_)) | None => {}
         }
         typing.after(&actions);
@@ -275,9 +276,7 @@ impl Window {
         self.key_list.ui(ui, below, pane.look);
         let asked = self.cards.ui(ui, covered, card_of(pane.state, pane.look));
         pane.actions.extend(asked);
-        let library = (&pane.state.poses, &pane.state.settings);
-        self.palette
-            .ui(ui, below, (pane.look, pane.unready()), library)
+        self.palette.ui(ui, below, pane)
     }
 
     /// The bars at the top. STOP can be pressed in them whatever card is open, the rest only if `is_free`.

@@ -1,11 +1,15 @@
-//! The command palette: everything that has a key, each view and each pose or demo, found by a part of its name in either
-//! language. Carries nothing out.
+//! The command palette: everything that has a key, each view, pose and demo, and the settings of the window, found by a part of
+//! its name in either language. Carries nothing out.
 
-use crate::app::poses::PoseState;
-use crate::app::settings::Settings;
+use crate::app::action::Action;
+use crate::app::exhibit::ExhibitAction;
+use crate::app::layout::RoomLayouts;
+use crate::app::sessions::SessionAction;
+use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
-use crate::ui::kit::{self, Button, Look, ViewRequest, Weight};
-use crate::ui::text::{Text, window};
+use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
+use crate::ui::plots::head::span_text;
+use crate::ui::text::{Text, exhibit, inputs, panels, window};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
 use crate::ui::window::key_list::cap_ui;
@@ -18,12 +22,14 @@ const SHOWN_MAX: usize = 10;
 const WIDTH: f32 = 520.0;
 
 /// What is chosen in the palette.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Command {
     /// What a key asks for.
     Wish(Wish),
     /// A pose, demo or reaction.
     Entry(EntryId),
+    /// What has no key.
+    Act(Action),
 }
 
 /// A command as it is listed.
@@ -71,15 +77,10 @@ impl CommandPalette {
         self.query = None;
     }
 
-    /// Draws it at the top of a place, if it is shown, and gives what was chosen. `unready` says why nothing can move the hand.
-    pub(super) fn ui(
-        &mut self,
-        ui: &Ui,
-        place: Rect,
-        (look, unready): (Look, Option<&str>),
-        (poses, settings): (&PoseState, &Settings),
-    ) -> Option<Command> {
+    /// Draws it at the top of a place, if it is shown, and gives what was chosen.
+    pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<Command> {
         let query = self.query.as_mut()?;
+        let (look, unready) = (pane.look, pane.unready());
         let steps = ui.input_mut(|input| {
             let mut taken = |key| input.count_and_consume_key(Modifiers::NONE, key);
             (
@@ -88,7 +89,7 @@ impl CommandPalette {
                 taken(Key::Enter),
             )
         });
-        let found = found(look, &query.text, poses, settings);
+        let found = found(ui, pane, &query.text);
         let last = found.len().saturating_sub(1);
         query.chosen = (query.chosen + steps.0).saturating_sub(steps.1).min(last);
         let edge = Stroke::new(theme::LINE, look.palette.accent);
@@ -109,7 +110,7 @@ impl CommandPalette {
         let chosen = shown
             .inner
             .flatten()
-            .or(entered.map(|listed| listed.command));
+            .or(entered.map(|listed| listed.command.clone()));
         let beside = query.drawn && shown.response.clicked_elsewhere();
         query.drawn = true;
         if chosen.is_some() || beside {
@@ -151,7 +152,7 @@ impl Query {
                 let button = Button::new(&listed.name, "").weight(weight);
                 let button = button.disabled(refused);
                 if button.ui(ui, look).clicked() {
-                    clicked = Some(listed.command);
+                    clicked = Some(listed.command.clone());
                 }
                 kit::right_ui(ui, |ui| {
                     if !listed.keys.is_empty() {
@@ -169,7 +170,7 @@ impl Query {
 
 impl Command {
     /// True for what is offered only while the hand is armed.
-    const fn needs_arming(self) -> bool {
+    const fn needs_arming(&self) -> bool {
         matches!(
             self,
             Self::Entry(_) | Self::Wish(Wish::Open | Wish::Half | Wish::Close)
@@ -185,8 +186,52 @@ const fn name(wish: Wish) -> Text {
     }
 }
 
+/// What has no key: settings of the window, recording, exhibitions. None of it moves a hand.
+fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
+    let settings = &pane.state.settings;
+    let hand = pane.state.hand();
+    let lay_out = |rooms| Action::Layout(pane.layout(ui, rooms));
+    let record = hand.recording.is_none();
+    let record = if hand.connection.is_simulated() {
+        SessionAction::RecordSimulated(record)
+    } else {
+        SessionAction::Record(record)
+    };
+    let hold_to_run = Action::HoldToRun(!settings.hold_to_run);
+    let disarm_idle = Action::DisarmIdle(!settings.disarm_idle);
+    let mut acts = vec![
+        (window::RESET, "", lay_out(RoomLayouts::default())),
+        (inputs::HOLD_TO_RUN, "", hold_to_run),
+        (inputs::DISARM_IDLE, "", disarm_idle),
+        (exhibit::ENTER, "", Action::Exhibit(ExhibitAction::Enter)),
+        (
+            exhibit::ENTER_FILE,
+            "",
+            Action::Exhibit(ExhibitAction::EnterFile),
+        ),
+    ];
+    let is_new = |span: &PlotWindow| *span != settings.plot_window;
+    let spans = PlotWindow::ALL.into_iter().filter(is_new);
+    acts.extend(spans.map(|span| {
+        (
+            panels::WINDOW_NAME,
+            span_text(span),
+            Action::PlotWindow(span),
+        )
+    }));
+    if pane.recorded().is_none() {
+        acts.push((window::RECORD, "", Action::Session(record)));
+        if hand.readings.faults.nothing_to_clear().is_none() {
+            acts.push((panels::CLEAR, "", Action::ClearErrors));
+        }
+    }
+    acts
+}
+
 /// All commands whose names have each word that was typed; those that begin with the first stand first.
-fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec<Listed> {
+fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
+    let look = pane.look;
+    let (poses, settings) = (&pane.state.poses, &pane.state.settings);
     let said = |wish: Wish| {
         let text = name(wish);
         Listed {
@@ -234,7 +279,15 @@ fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec
         let mut words = typed.split_whitespace();
         words.all(|word| listed.names.contains(word))
     };
-    let mut found: Vec<Listed> = wishes.chain(entries).filter(has_all).collect();
+    let unkeyed = unkeyed(ui, pane).into_iter();
+    let unkeyed = unkeyed.map(|(text, which, action)| Listed {
+        command: Command::Act(action),
+        name: format!("{} {which}", look.say(text)).trim().to_owned(),
+        names: format!("{} {} {which}", text.en, text.zh).to_lowercase(),
+        keys: String::new(),
+    });
+    let all = wishes.chain(entries).chain(unkeyed);
+    let mut found: Vec<Listed> = all.filter(has_all).collect();
     found.sort_by_key(|listed| {
         let mut words = listed.names.split_whitespace();
         !words.any(|word| word.starts_with(typed.trim()))

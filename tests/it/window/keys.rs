@@ -2,7 +2,7 @@
 
 use crate::setup::window::{Bench, Role};
 use egui::{Key, Modifiers};
-use handscope::app::settings::{AngleUnit, Language, Settings, Theme};
+use handscope::app::settings::{AngleUnit, Language, PlotWindow, Settings, Theme};
 use handscope::hand::Dof;
 use handscope::ui::View;
 
@@ -361,6 +361,16 @@ fn the_palette_finds_a_view_an_act_and_a_pose_in_either_language() {
     bench.key(Key::Enter);
     bench.run(100);
     assert_eq!(bench.state().settings.theme, Theme::default().other());
+    // What has no key of its own is found as well: a setting, with its value.
+    for typed in ["hold to run", "window 5 min"] {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", typed);
+        bench.key(Key::Enter);
+        bench.run(100);
+    }
+    assert!(bench.state().settings.hold_to_run);
+    assert_eq!(bench.state().settings.plot_window, PlotWindow::M5);
 }
 
 #[test]
