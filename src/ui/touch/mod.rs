@@ -8,7 +8,7 @@ use crate::app::action::Action;
 use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::fingertip::{self, Sense, Tip};
-use crate::ui::hand::panel::HandPanel;
+use crate::ui::hand::panel::{self, HandPanel};
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
@@ -17,8 +17,13 @@ use egui::{
     Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,
 };
 
-/// Lines of figures under a fingertip of the overview.
-const FIGURES: f32 = 3.0 * theme::LIST_LINE;
+/// Name and force of a fingertip of the overview; the height of its picture, as a
+/// part of the card, and at least.
+const FIGURES: f32 = 2.0 * theme::LIST_LINE;
+const TIP_PART: f32 = 0.13;
+const TIP_LEAST: f32 = 44.0;
+/// The hand has at least this height, whatever else there is no room for.
+const HAND_LEAST: f32 = 272.0;
 
 /// What the person chose for the fingertips.
 #[derive(Debug, Default)]
@@ -36,18 +41,20 @@ impl TouchView {
         let tips = heat::tips(pane);
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
-                heat::scale_ui(ui, pane);
+            kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
+                panel::side_ui(ui, pane);
+                heat::no_zero_ui(ui, pane);
             });
-            let width = ui.available_width();
-            let picture = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH * 0.8;
-            let room = ui.available_height() - 150.0 - theme::GAP;
+            let (width, height) = (ui.available_width(), ui.available_height());
+            let widest = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH;
+            let picture = (height * TIP_PART).max(TIP_LEAST).min(widest).round();
+            let room = height - HAND_LEAST - theme::GAP;
             let below = [picture + FIGURES, FIGURES, 0.0];
             let below = below
                 .into_iter()
                 .find(|below| *below <= room)
                 .unwrap_or(0.0);
-            let height = ui.available_height() - below - theme::GAP;
+            let height = height - below - theme::GAP;
             ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
             if below > 0.0 {
                 ui.spacing_mut().item_spacing.x = 0.0;
@@ -61,7 +68,7 @@ impl TouchView {
         });
     }
 
-    /// One fingertip of the overview: its name, its picture if it has a height, and its forces.
+    /// One fingertip of the overview: its name, its picture if it has a height, and its normal force.
     fn column_ui(
         &mut self,
         ui: &mut Ui,
@@ -81,13 +88,12 @@ impl TouchView {
                 fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-                if response.on_hover_text(look.tip(panels::TOUCH)).clicked() {
+                let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
+                if response.on_hover_text(tip).clicked() {
                     self.detail.finger = finger;
                 }
             }
-            for line in table::LINES.iter().take(2) {
-                table::value_ui(ui, pane, finger, line);
-            }
+            table::value_ui(ui, pane, finger, &table::NORMAL);
         });
     }
 
@@ -108,7 +114,9 @@ impl TouchView {
             let left = Panel::left("touch, hand");
             kit::bare(left, width, theme::GAP_RIGHT).show(ui, |ui| {
                 kit::card_ui(ui, look, |ui| {
-                    kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
+                    kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
+                        panel::side_ui(ui, pane);
+                    });
                     self.hand_ui(ui, pane);
                 });
             });

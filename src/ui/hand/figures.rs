@@ -1,0 +1,168 @@
+//! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to its tip.
+
+use crate::app::readings::Freshness;
+use crate::hand::heat::WARM;
+use crate::hand::{Dof, Finger, Quantity};
+use crate::ui::faults::drive_lamp::DriveWords;
+use crate::ui::hand::view::{HandPoints, HandView};
+use crate::ui::kit::{Label, Pane, format, text_width};
+use crate::ui::text::{panels, words};
+use crate::ui::theme;
+use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, pos2, vec2};
+
+/// Pictures that are lower than this have no figures.
+const LEAST: f32 = 200.0;
+/// Room of a figure: its column's width, and its three lines.
+const WIDTH: f32 = 76.0;
+const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
+/// How far apart the figures of a column are, as a part of the height.
+const APART: f32 = 0.17;
+/// Where the thumb's is.
+const THUMB: f32 = 0.42;
+/// What is left free between the hand and its figures.
+const CLEAR: f32 = 2.0 * theme::GAP;
+/// How strong a line is, and the ring at its end.
+const LINE_PART: f32 = 0.7;
+const RING: f32 = 2.5;
+
+/// Where the hand itself is drawn: between the columns of its figures.
+pub(crate) fn picture_place(place: Rect) -> Rect {
+    if place.height() < LEAST {
+        return place;
+    }
+    place.shrink2(vec2(WIDTH + CLEAR, 0.0))
+}
+
+/// Draws the figures beside what `view` drew last in the middle of a place.
+pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: Rect) {
+    let Some(points) = view.points().filter(|_| place.height() >= LEAST) else {
+        return;
+    };
+    for finger in Finger::ALL {
+        let (slot, on_left) = slot(place, &points, finger);
+        figure_ui(ui, pane, finger, (slot, on_left, points.tips[finger]));
+    }
+}
+
+/// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves: the three outer
+/// fingers in one column from the middle one down, index and thumb in the other, so that no line crosses another.
+fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
+    let apart = (place.height() * APART).max(HEIGHT);
+    let (is_outer, down) = match finger {
+        Finger::Middle => (true, 0.0),
+        Finger::Ring => (true, apart),
+        Finger::Little => (true, 2.0 * apart),
+        Finger::Index => (false, 0.0),
+        Finger::Thumb => (false, (place.height() * THUMB).max(2.0 * HEIGHT)),
+    };
+    let on_left = is_outer == points.is_forward;
+    let x = if on_left {
+        (points.bounds.left() - CLEAR - WIDTH).max(place.left())
+    } else {
+        (points.bounds.right() + CLEAR).min(place.right() - WIDTH)
+    };
+    let corner = pos2(x, place.top() + down);
+    (Rect::from_min_size(corner, vec2(WIDTH, HEIGHT)), on_left)
+}
+
+fn figure_ui(
+    ui: &mut Ui,
+    pane: &Pane<'_>,
+    finger: Finger,
+    (slot, on_left, tip): (Rect, bool, Pos2),
+) {
+    let look = pane.look;
+    let (name, color) = (
+        look.say(words::finger(finger)),
+        look.palette.dof[finger.bend()],
+    );
+    let [first, second, third] = [0.0, 1.0, 2.0].map(|line| {
+        let top = slot.top() + line * theme::TEXT_LINE;
+        Rect::from_min_size(pos2(slot.left(), top), vec2(WIDTH, theme::TEXT_LINE))
+    });
+    line_to(ui, (second, on_left, tip), color);
+    let aligned = |label: Label<'_>, ui: &mut Ui, rect: Rect| {
+        let label = if on_left { label.right() } else { label };
+        label.put(ui, rect)
+    };
+    aligned(Label::new(name, color).small(), ui, first);
+    let mut joints = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
+    if joints
+        .clone()
+        .any(|dof| pane.state.hand().controls.joints[dof].locked)
+    {
+        lock(ui, pane, (first, on_left), name);
+    }
+    let (force, over, freshness) = force(pane, finger);
+    let live = if over {
+        look.palette.warn
+    } else {
+        look.palette.text
+    };
+    let label = Label::new(&force, look.value(freshness, live)).number();
+    let label = label.font(egui::FontId::monospace(if over { 15.0 } else { 14.0 }));
+    let named = format!("{name} {}", look.say(panels::FINGER_FORCE));
+    aligned(label.named(&named), ui, second);
+    if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
+        let named = format!("{name} {}", look.say(panels::FINGER_TROUBLE));
+        aligned(Label::new(&words, color).small().named(&named), ui, third);
+    }
+}
+
+/// The force of the drive that bends a finger, whether it is at its threshold, and how fresh it is.
+fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
+    let (dof, hand) = (finger.bend(), pane.state.hand());
+    let (force, freshness) = pane.newest(dof, hand.readings.sample.force);
+    let raw = force.map(|force| i64::from(force.raw()));
+    let known = force.and_then(|force| force.documented());
+    let over = known.zip(hand.stops_at(dof));
+    let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
+    (
+        format::with_unit(raw, 4, Quantity::Force.row().unit),
+        over,
+        freshness,
+    )
+}
+
+/// What hurts a drive now, in a word: its fault, or how warm it is. Nothing of old values.
+fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
+    let palette = pane.look.palette;
+    let drive = DriveWords::of(pane, dof);
+    // The lamp of an old reading is faint.
+    if drive.lamp == palette.bad {
+        return Some((drive.short, palette.bad));
+    }
+    let (heat, freshness) = pane.newest(dof, pane.state.hand().readings.sample.temperature);
+    let degrees = heat.and_then(|heat| heat.documented());
+    let warm = degrees.filter(|degrees| *degrees >= WARM && freshness == Freshness::Live)?;
+    Some((format!("{warm} °C"), palette.warn))
+}
+
+/// A lock beside a finger's name.
+fn lock(ui: &Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &str) {
+    let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
+    let x = if on_left {
+        line.right() - width
+    } else {
+        line.left() + width
+    };
+    let (center, font) = (Align2::CENTER_CENTER, theme::icon_high(theme::SIGN_SMALL));
+    let color = pane.look.palette.muted;
+    ui.painter()
+        .text(pos2(x, line.center().y), center, theme::LOCKED, font, color);
+}
+
+/// A thin line from a figure to its fingertip.
+fn line_to(ui: &Ui, (line, on_left, tip): (Rect, bool, Pos2), color: Color32) {
+    let (end, way) = if on_left {
+        (line.right_center(), theme::GAP)
+    } else {
+        (line.left_center(), -theme::GAP)
+    };
+    let color = color.gamma_multiply(LINE_PART);
+    let (from, knee) = (end + vec2(way / 2.0, 0.0), end + vec2(1.5 * way, 0.0));
+    let stop = tip + (knee - tip).normalized() * RING;
+    let painter = ui.painter();
+    painter.line(vec![from, knee, stop], Stroke::new(1.0, color));
+    painter.circle_stroke(tip, RING, Stroke::new(theme::FOCUS_LINE, color));
+}
