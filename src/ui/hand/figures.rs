@@ -6,9 +6,9 @@ use crate::hand::{Dof, Finger, Quantity};
 use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::hand::view::{HandPoints, HandView};
 use crate::ui::kit::{Label, Pane, format, text_width};
-use crate::ui::text::{panels, words};
+use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
-use egui::{Align2, Color32, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Pictures that are lower than this have no figures.
 const LEAST: f32 = 200.0;
@@ -91,7 +91,7 @@ fn figure_ui(
         .clone()
         .any(|dof| pane.state.hand().controls.joints[dof].locked)
     {
-        lock(ui, pane, (first, on_left), name);
+        lock_ui(ui, pane, (first, on_left), name);
     }
     let (force, over, freshness) = force(pane, finger);
     let live = if over {
@@ -100,7 +100,7 @@ fn figure_ui(
         look.palette.text
     };
     let label = Label::new(&force, look.value(freshness, live)).number();
-    let label = label.font(egui::FontId::monospace(if over { 15.0 } else { 14.0 }));
+    let label = label.font(FontId::monospace(if over { 15.0 } else { 14.0 }));
     let named = format!("{name} {}", look.say(panels::FINGER_FORCE));
     aligned(label.named(&named), ui, second);
     if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
@@ -139,17 +139,18 @@ fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
 }
 
 /// A lock beside a finger's name.
-fn lock(ui: &Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &str) {
+fn lock_ui(ui: &mut Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &str) {
     let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
     let x = if on_left {
         line.right() - width
     } else {
         line.left() + width
     };
-    let (center, font) = (Align2::CENTER_CENTER, theme::icon_high(theme::SIGN_SMALL));
-    let color = pane.look.palette.muted;
-    ui.painter()
-        .text(pos2(x, line.center().y), center, theme::LOCKED, font, color);
+    let place = Rect::from_center_size(pos2(x, line.center().y), Vec2::splat(theme::TEXT_LINE));
+    let lock = Label::new(theme::LOCKED, pane.look.palette.muted);
+    let lock = lock.font(theme::icon_high(theme::SIGN_SMALL)).center();
+    let named = pane.look.pair(name, pane.look.say(main::LOCKED));
+    lock.named(&named).put(ui, place);
 }
 
 /// A thin line from a figure to its fingertip.

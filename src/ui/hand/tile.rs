@@ -17,10 +17,12 @@ use std::sync::Arc;
 
 /// From the thumb's side, where what it touches and holds is seen.
 const THUMB_SIDE: Turn = turn(-0.85, 0.12);
+/// Nearly along the fingers' joints, where a ring of thumb and finger is seen as a ring.
+const RING_SIDE: Turn = turn(-1.3, 0.08);
 /// From the side of the little finger, where fingers are seen to hook.
 const LITTLE_SIDE: Turn = turn(1.15, 0.0);
 /// A fist from the front, its thumb across it.
-const FRONT: Turn = turn(-0.25, 0.15);
+const FRONT: Turn = turn(0.3, 0.1);
 /// The thumb, which points to the right, up.
 const THUMB_UP: Turn = Turn {
     roll: FRAC_PI_2,
@@ -140,7 +142,7 @@ fn seen_best(shares: &PerDof<Option<f32>>) -> (Turn, PerFinger<bool>) {
     let touches = |finger: Finger| thumb < BENT && HALF.contains(&bend(finger));
     if others().any(touches) {
         let marked = PerFinger::from_fn(|finger| is_thumb(finger) || touches(finger));
-        return (THUMB_SIDE, marked);
+        return (RING_SIDE, marked);
     }
     let is_fist = others().all(|finger| bend(finger) < BENT);
     if is_fist && thumb < BENT && swing > 0.5 {
@@ -164,4 +166,76 @@ fn seen_best(shares: &PerDof<Option<f32>>) -> (Turn, PerFinger<bool>) {
     };
     let is_hook = !is_fist && turn == LITTLE_SIDE;
     (turn, marked.map(|is_marked| is_marked && !is_hook))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::poses::starter::starter;
+
+    use Finger::{Index, Little, Middle, Ring, Thumb};
+
+    #[test]
+    fn each_shipped_pose_is_seen_from_where_it_is_told_from_others() {
+        for (name, turn, marked) in [
+            ("Open", TURN, &[Little, Ring, Middle, Index, Thumb][..]),
+            ("Fist", FRONT, &[]),
+            ("Point", TURN, &[Index]),
+            ("V", TURN, &[Index, Middle]),
+            ("OK", RING_SIDE, &[Index, Thumb]),
+            ("Thumbs up", THUMB_UP, &[Thumb]),
+            ("Rock", TURN, &[Little, Index]),
+            ("Call", TURN, &[Little, Thumb]),
+            ("Four", TURN, &[Little, Ring, Middle, Index]),
+            ("Power grasp", THUMB_SIDE, &[]),
+            ("Tripod", RING_SIDE, &[Index, Middle, Thumb]),
+            ("Pinch", RING_SIDE, &[Index, Thumb]),
+            ("Lateral", THUMB_SIDE, &[Index, Thumb]),
+            ("Hook", LITTLE_SIDE, &[]),
+        ] {
+            let pose = starter()
+                .poses
+                .iter()
+                .find(|pose| pose.name == name)
+                .unwrap();
+            let shares = pose
+                .angles
+                .map(|angle| Some(f32::from(angle.get()) / 1000.0));
+            let (from, about) = seen_best(&shares);
+            assert_eq!(from, turn, "{name}");
+            for finger in Finger::ALL {
+                assert_eq!(about[finger], marked.contains(&finger), "{name} {finger:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_thumb_that_is_up_is_seen_up_and_fills_its_tile_on_both_hands() {
+        let mut shares = PerDof::splat(Some(0.0));
+        shares[Dof::ThumbBend] = Some(1.0);
+        shares[Dof::ThumbRotate] = Some(1.0);
+        for side in [Side::Right, Side::Left] {
+            let tile = Tile {
+                side,
+                shares: shares.map(|share| share.map(Float::ord)),
+                size: [60.0, 56.0].map(Float::ord),
+                theme: Theme::Dark,
+                feather: 1.0_f32.ord(),
+                is_sign: true,
+            };
+            let mesh = PoseTiles::default().compute(tile);
+            let seen = mesh.vertices.iter().filter(|vertex| vertex.color.a() > 128);
+            let blue = |color: egui::Color32| i16::from(color.b()) - i16::from(color.r()) > 60;
+            let (thumb, rest): (Vec<_>, Vec<_>) = seen.partition(|vertex| blue(vertex.color));
+            let top = |all: &[&egui::epaint::Vertex]| {
+                all.iter()
+                    .map(|vertex| vertex.pos.y)
+                    .fold(f32::MAX, f32::min)
+            };
+            assert!(top(&thumb) < 3.0 && top(&rest) > 15.0, "{side:?}");
+            let bounds = mesh.calc_bounds();
+            assert!(bounds.width() > 40.0 && bounds.height() > 48.0, "{bounds}");
+        }
+    }
 }

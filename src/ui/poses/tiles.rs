@@ -177,10 +177,12 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let runs = runs(state, entry);
     let verb = verb(state, entry);
     let refused = entry_refusal(pane, entry);
-    let mut tip = match entry {
-        EntryId::Pose(_) => look.tip(poses::RECALL).to_owned(),
-        _ => look.tip(verb).to_owned(),
+    let tip = match entry {
+        EntryId::Pose(_) => look.tip(poses::RECALL),
+        _ => look.tip(verb),
     };
+    // The name may be cut on its tile.
+    let mut tip = look.pair(name, tip);
     if let Some(key) = key {
         tip = format!("{tip}\nShift+{}", key.get());
     }
@@ -198,7 +200,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
         panel::sign_ui(ui, look, picture, &shares(&pose.angles));
     }
     let color = button.text_color(look);
-    Label::new(name, color).center().paint(ui, words);
+    Label::new(name, color).small().center().paint(ui, words);
     if !matches!(entry, EntryId::Pose(_)) {
         let corner = Rect::from_min_size(picture.left_top(), vec2(16.0, 16.0));
         let icon = if runs { theme::PAUSE } else { theme::PLAY };
