@@ -17,16 +17,33 @@ const SHARES: std::ops::RangeInclusive<f32> = 0.05..=0.95;
 pub enum WindowRoom {
     /// The column of joints; its border is at its right.
     Joints,
-    /// Fingertips over faults; its border is at its left.
-    Side,
-    /// The faults below the fingertips; their border is above.
-    Faults,
-    /// Poses and gestures; its border is above.
+    /// The drawn hand over its fingertips; its border is at its right.
+    Stage,
+    /// Poses and demos; its border is above.
     Strip,
 }
 
 impl WindowRoom {
-    pub const ALL: [Self; 4] = [Self::Joints, Self::Side, Self::Faults, Self::Strip];
+    pub const ALL: [Self; 3] = [Self::Joints, Self::Stage, Self::Strip];
+}
+
+/// How large the window is: each has a layout of its own, so that a small screen leaves no mark on a large one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Breakpoint {
+    Small,
+    Medium,
+    Large,
+}
+
+impl Breakpoint {
+    /// Of a window so wide, points.
+    pub fn of(width: f32) -> Self {
+        match width {
+            ..1280.0 => Self::Small,
+            ..1720.0 => Self::Medium,
+            _ => Self::Large,
+        }
+    }
 }
 
 /// How one room stands.
@@ -90,28 +107,24 @@ impl Default for WindowSize {
     }
 }
 
-/// How the window is divided. The default is as designed.
+/// How a window of one [`Breakpoint`] is divided. The default is as designed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Layout {
-    pub window: WindowSize,
+pub struct RoomLayouts {
     /// See [`WindowRoom::Joints`].
     pub joints: RoomLayout,
-    /// See [`WindowRoom::Side`].
-    pub side: RoomLayout,
-    /// See [`WindowRoom::Faults`].
-    pub faults: RoomLayout,
+    /// See [`WindowRoom::Stage`].
+    pub stage: RoomLayout,
     /// See [`WindowRoom::Strip`].
     pub strip: RoomLayout,
 }
 
-impl Layout {
+impl RoomLayouts {
     /// How a room stands.
     pub const fn room(&self, room: WindowRoom) -> RoomLayout {
         match room {
             WindowRoom::Joints => self.joints,
-            WindowRoom::Side => self.side,
-            WindowRoom::Faults => self.faults,
+            WindowRoom::Stage => self.stage,
             WindowRoom::Strip => self.strip,
         }
     }
@@ -121,8 +134,7 @@ impl Layout {
     pub const fn with(mut self, room: WindowRoom, standing: RoomLayout) -> Self {
         match room {
             WindowRoom::Joints => self.joints = standing,
-            WindowRoom::Side => self.side = standing,
-            WindowRoom::Faults => self.faults = standing,
+            WindowRoom::Stage => self.stage = standing,
             WindowRoom::Strip => self.strip = standing,
         }
         self
@@ -135,14 +147,39 @@ impl Layout {
         let shut = !standing.shut;
         self.with(room, RoomLayout { shut, ..standing })
     }
+}
 
-    /// All rooms as designed; the window keeps its size.
-    #[must_use]
-    pub fn reset(self) -> Self {
-        Self {
-            window: self.window,
-            ..Self::default()
+/// The window, and how it is divided at each [`Breakpoint`].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Layout {
+    /// As large as it is while it is not maximised.
+    pub window: WindowSize,
+    pub maximized: bool,
+    pub small: RoomLayouts,
+    pub medium: RoomLayouts,
+    pub large: RoomLayouts,
+}
+
+impl Layout {
+    /// How a window of this size is divided.
+    pub const fn at(&self, breakpoint: Breakpoint) -> RoomLayouts {
+        match breakpoint {
+            Breakpoint::Small => self.small,
+            Breakpoint::Medium => self.medium,
+            Breakpoint::Large => self.large,
         }
+    }
+
+    /// With another division of windows of this size.
+    #[must_use]
+    pub const fn with(mut self, breakpoint: Breakpoint, rooms: RoomLayouts) -> Self {
+        match breakpoint {
+            Breakpoint::Small => self.small = rooms,
+            Breakpoint::Medium => self.medium = rooms,
+            Breakpoint::Large => self.large = rooms,
+        }
+        self
     }
 }
 
@@ -154,56 +191,41 @@ mod tests {
     fn what_a_file_says_is_cut_to_what_makes_sense() {
         let read = |text: &str| toml::from_str::<Layout>(text).unwrap();
         assert_eq!(read(""), Layout::default());
-        let odd =
-            read("window = [10.0, inf]\n[joints]\nshare = 7.5\nshut = true\n[side]\nshare = nan\n");
+        let odd = read(
+            "window = [10.0, inf]\n[small.joints]\nshare = 7.5\nshut = true\n[small.stage]\nshare = nan\n",
+        );
         assert_eq!(odd.window, WindowSize([1024.0, 900.0]));
-        assert_eq!(odd.joints.share, Some(0.95));
-        assert!(odd.joints.shut && !odd.side.shut);
-        assert_eq!(odd.side.share, None);
+        assert_eq!(odd.small.joints.share, Some(0.95));
+        assert!(odd.small.joints.shut && !odd.small.stage.shut);
+        assert_eq!(odd.small.stage.share, None);
         let huge = read("window = [1e9, 1080.4]");
         assert_eq!(huge.window, WindowSize([7680.0, 1080.0]));
+        let old = read("window = [1440.0, 900.0]\n[side]\nshare = 0.3\n");
+        assert_eq!(
+            old,
+            Layout::default(),
+            "older borders were of all sizes at once"
+        );
     }
 
     #[test]
-    fn a_layout_comes_back_as_it_was_written() {
+    fn a_layout_comes_back_as_it_was_written_and_belongs_to_one_breakpoint() {
         let shut = RoomLayout {
             share: None,
             shut: true,
         };
-        let layout = Layout::default()
-            .with(WindowRoom::Side, RoomLayout::default().with_share(0.25))
+        let rooms = RoomLayouts::default()
+            .with(WindowRoom::Stage, RoomLayout::default().with_share(0.25))
             .with(WindowRoom::Strip, shut);
+        let layout = Layout {
+            maximized: true,
+            ..Layout::default().with(Breakpoint::of(1366.0), rooms)
+        };
         let text = toml::to_string(&layout).unwrap();
         assert_eq!(toml::from_str::<Layout>(&text).unwrap(), layout);
-    }
-
-    #[test]
-    fn reset_opens_every_room_and_keeps_the_window() {
-        let mut layout = Layout {
-            window: [1920.0, 1080.0].into(),
-            ..Layout::default()
-        };
-        for room in [
-            WindowRoom::Joints,
-            WindowRoom::Side,
-            WindowRoom::Faults,
-            WindowRoom::Strip,
-        ] {
-            let standing = RoomLayout {
-                shut: true,
-                ..RoomLayout::default()
-            };
-            layout = layout.with(room, standing.with_share(0.7));
-            assert_eq!(layout.room(room).share, Some(0.7), "{room:?}");
+        for other in [1024.0, 1920.0, 2560.0] {
+            let there = layout.at(Breakpoint::of(other));
+            assert_eq!(there, RoomLayouts::default(), "{other}");
         }
-        let reset = layout.reset();
-        assert_eq!(reset.window, layout.window);
-        assert_eq!(
-            reset,
-            Layout {
-                window: layout.window,
-                ..Layout::default()
-            }
-        );
     }
 }

@@ -1,22 +1,69 @@
-//! The views of the window.
+//! The places of the window, and the views in them.
 
-use crate::ui::text::{Text, inputs, main, sessions};
+use crate::ui::text::{Text, inputs, main, sessions, window};
+
+/// One of the five places between which the header switches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The hand, its joints and its plots.
+    Live,
+    /// Grasp trials: plan, series and results.
+    Tune,
+    /// What was recorded.
+    Recordings,
+    /// The hand as a device: its link, what it keeps, what goes over the wire.
+    Hand,
+    /// Who else may see or move it.
+    Share,
+}
+
+impl Place {
+    /// All, in the order of the header.
+    pub const ALL: [Self; 5] = [
+        Self::Live,
+        Self::Tune,
+        Self::Recordings,
+        Self::Hand,
+        Self::Share,
+    ];
+
+    pub(crate) const fn title(self) -> Text {
+        match self {
+            Self::Live => main::TAB_LIVE,
+            Self::Tune => main::TAB_TUNE,
+            Self::Recordings => sessions::TITLE,
+            Self::Hand => window::PLACE_HAND,
+            Self::Share => inputs::TITLE,
+        }
+    }
+
+    /// Its views; the first is the one it opens with.
+    pub const fn views(self) -> &'static [View] {
+        match self {
+            Self::Live => &[View::Live, View::Touch, View::Poses],
+            Self::Tune => &[View::Tune, View::Compare],
+            Self::Recordings => &[View::Sessions],
+            Self::Hand => &[View::Connection, View::Device, View::Traffic],
+            Self::Share => &[View::Inputs],
+        }
+    }
+}
 
 /// The parts of the window that can be looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum View {
-    /// Plots, fingertips, faults and gestures together.
+    /// Joints, the hand, and plots.
     #[default]
     Live,
-    /// The fingertips, large.
+    /// A fingertip in detail in place of the plots.
     Touch,
-    /// The plan of grasp trials, and the series that runs.
+    /// The plan of grasp trials beside what they came to.
     Tune,
-    /// What trials came to.
+    /// What they came to, alone.
     Compare,
-    /// Faults, statuses and messages.
+    /// Faults, statuses and messages, in a drawer over whatever is open.
     Faults,
-    /// The person's poses, sequences of them, and the gestures in the hand.
+    /// The person's poses, sequences of them, and the gestures in the hand, in place of the plots.
     Poses,
     /// What the hand keeps: live, staged, saved; its flash.
     Device,
@@ -31,7 +78,7 @@ pub enum View {
 }
 
 impl View {
-    /// All, in the order of the tabs.
+    /// All; the order in which they are listed and drawn.
     pub const ALL: [Self; 11] = [
         Self::Live,
         Self::Touch,
@@ -71,6 +118,12 @@ impl View {
         }
     }
 
+    /// Where it is; none for what lies over all places.
+    pub fn place(self) -> Option<Place> {
+        let mut all = Place::ALL.into_iter();
+        all.find(|place| place.views().contains(&self))
+    }
+
     /// The view with this name.
     pub fn by_name(name: &str) -> Option<Self> {
         // What this view was called before poses were added.
@@ -89,5 +142,14 @@ mod tests {
             assert_eq!(View::by_name(view.name()), Some(view));
         }
         assert_eq!(View::by_name("LIVE"), None);
+    }
+
+    #[test]
+    fn every_view_is_in_one_place_but_the_drawer() {
+        for view in View::ALL {
+            let places = Place::ALL.into_iter();
+            let count = places.filter(|place| place.views().contains(&view)).count();
+            assert_eq!(count, usize::from(view != View::Faults), "{view:?}");
+        }
     }
 }

@@ -7,7 +7,7 @@ use std::rc::Rc;
 /// Opens the window and runs until it is closed.
 pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
     let options = eframe::NativeOptions {
-        viewport: viewport(beginning.window_size()),
+        viewport: viewport(&beginning.layout()),
         ..eframe::NativeOptions::default()
     };
     let beginning = Rc::clone(beginning);

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::connect::SimDial;
 use crate::app::env::Env;
 use crate::app::env::day_folder::documents;
-use crate::app::layout::{Layout, WINDOW_LEAST, WindowSize};
+use crate::app::layout::{Layout, WINDOW_LEAST};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
 use crate::app::sessions::SessionAction;
@@ -29,12 +29,13 @@ pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 const FILL_EACH: Duration = Duration::from_millis(500);
 
 /// How the window is to stand.
-pub(crate) fn viewport(size: WindowSize) -> ViewportBuilder {
+pub(crate) fn viewport(layout: &Layout) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Handscope")
         .with_app_id("handscope")
         .with_icon(icon())
-        .with_inner_size(<[f32; 2]>::from(size))
+        .with_inner_size(<[f32; 2]>::from(layout.window))
+        .with_maximized(layout.maximized)
         .with_clamp_size_to_monitor_size(true)
         .with_min_inner_size(WINDOW_LEAST)
 }
@@ -63,11 +64,11 @@ impl Beginning {
         }
     }
 
-    /// The size that the window had last time.
-    pub(crate) fn window_size(&self) -> WindowSize {
+    /// How the window stood last time.
+    pub(crate) fn layout(&self) -> Layout {
         let waiting = self.waiting.borrow();
         let settings = waiting.as_ref().map(|(start, _)| &start.loaded.settings);
-        settings.map_or_else(WindowSize::default, |settings| settings.layout.window)
+        settings.map_or_else(Layout::default, |settings| settings.layout)
     }
 
     /// The program; `None` if it began before.
@@ -262,22 +263,32 @@ impl Program {
         }
     }
 
-    /// Keeps the size that a person gave the window; what the system made of it full screen is not kept.
+    /// Keeps the size that a person gave the window, and whether it is maximised; what the system made of it full screen or
+    /// minimised is not kept.
     fn keep_size(&mut self, ctx: &egui::Context, now: Moment) {
-        let shown = ctx.input(|input| {
+        let (shown, maximized) = ctx.input(|input| {
             let view = input.viewport();
-            let forced = [view.maximized, view.fullscreen, view.minimized];
-            let own = forced.into_iter().all(|forced| forced != Some(true));
-            view.inner_rect.filter(|_| own)
+            let forced = view.fullscreen == Some(true) || view.minimized == Some(true);
+            let maximized = view.maximized.filter(|_| !forced);
+            (view.inner_rect.filter(|_| !forced), maximized)
         });
         // Without the zoom: the window is made before there is any.
         let shown = shown.map(|shown| shown.size() * ctx.zoom_factor());
         let Some(shown) = shown else { return };
         let desktop_app = &mut self.desktop_app;
-        let layout = desktop_app.state().settings.layout;
-        let window = [shown.x, shown.y].into();
-        if layout.window != window {
-            let layout = Layout { window, ..layout };
+        let before = desktop_app.state().settings.layout;
+        let maximized = maximized.unwrap_or(before.maximized);
+        let window = if maximized {
+            before.window
+        } else {
+            [shown.x, shown.y].into()
+        };
+        let layout = Layout {
+            window,
+            maximized,
+            ..before
+        };
+        if layout != before {
             desktop_app.app().act(Action::Layout(layout), now);
         }
     }
@@ -466,7 +477,7 @@ mod tests {
 
     #[test]
     fn the_window_is_known_to_the_system_by_name_and_icon() {
-        let viewport = viewport(WindowSize::default());
+        let viewport = viewport(&Layout::default());
         assert_eq!(viewport.app_id.as_deref(), Some("handscope"));
         assert_eq!(viewport.icon, Some(icon()));
     }

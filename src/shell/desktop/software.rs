@@ -80,7 +80,7 @@ struct OpenWindow {
 impl Software {
     fn stand(&self, events: &ActiveEventLoop) -> Result<OpenWindow, DesktopError> {
         // A screen reader has to be told of the window before it shows.
-        let hidden = viewport(self.beginning.window_size()).with_visible(false);
+        let hidden = viewport(&self.beginning.layout()).with_visible(false);
         let window = create_window(&self.ctx, events, &hidden)
             .map_err(|error| DesktopError::of(&error.to_string()))?;
         let window = Rc::new(window);

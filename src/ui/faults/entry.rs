@@ -16,17 +16,12 @@ use std::time::Duration;
 const SHOWN: Duration = Duration::from_secs(10);
 /// So much after a fault is replayed, too.
 const AFTER: Duration = Duration::from_secs(2);
-/// Size of the number on a tab.
-const FAULT_BADGE: f32 = 16.0;
 
-/// How much is said of a fault.
+/// How a fault is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Depth {
-    /// In the overview: what and what to do.
-    Short,
-    /// Everything.
     Whole,
-    /// Everything, and it stands out: it was asked for.
+    /// It stands out: it was asked for.
     Chosen,
 }
 
@@ -76,10 +71,7 @@ pub(crate) fn entry_ui(
                 let advice = look.told(notices::TODO, said.advice);
                 kit::say_ui(ui, &advice, palette.text);
             }
-            match depth {
-                Depth::Short => None,
-                _ => foot_ui(ui, pane, entry),
-            }
+            foot_ui(ui, pane, entry)
         })
     });
     ui.add_space(theme::STEP);
@@ -245,26 +237,6 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
         parts.push(look.fill(notices::CAME, &[&entry.count]));
     }
     parts.join(" · ")
-}
-
-/// How many faults nobody has seen, as a small badge with its right top corner here.
-pub(crate) fn badge_ui(ui: &Ui, corner: egui::Pos2, pane: &Pane<'_>) {
-    let Some(color) = unseen_color(pane) else {
-        return;
-    };
-    let count = pane
-        .state
-        .hand()
-        .readings
-        .faults
-        .unseen()
-        .count()
-        .to_string();
-    let width = (kit::text_width(ui, &count, theme::small()) + theme::GAP).max(FAULT_BADGE);
-    let place = egui::Rect::from_min_size(corner - vec2(width, 0.0), vec2(width, FAULT_BADGE));
-    ui.painter().rect_filled(place, FAULT_BADGE / 2.0, color);
-    let count = Label::new(&count, pane.look.palette.window).small();
-    count.center().paint(ui, place);
 }
 
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.

@@ -6,19 +6,18 @@ pub(crate) mod recording_events;
 pub(crate) mod recordings;
 
 use crate::app::action::Action;
-use crate::app::notices::Notice;
 use crate::app::readings::Freshness;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
 use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
-use crate::ui::faults::message_log::{MessageLog, message_ui};
+use crate::ui::faults::message_log::MessageLog;
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;
-use egui::Ui;
+use egui::{Margin, Panel, Ui};
 
 /// What the view remembers.
 #[derive(Debug, Default)]
@@ -38,31 +37,6 @@ enum FaultSection {
     Recordings,
 }
 
-/// The card of the overview: what asks for attention, and nothing else.
-pub(crate) fn faults_card_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let title = look.say(main::TAB_FAULTS);
-    kit::full_card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, title, |ui| clear_ui(ui, pane));
-        scroll_ui(ui, |ui| {
-            let open = entry::steady(ui, pane, |entry| entry.is_active() || !entry.seen);
-            if open.is_empty() {
-                none_ui(ui, pane);
-            }
-            for entry in &open {
-                entry_ui(ui, pane, entry, Depth::Short);
-            }
-            ui.separator();
-            if pane.state.notices.is_empty() {
-                kit::say_ui(ui, look.say(panels::MESSAGES_NONE), look.palette.faint);
-            }
-            for notice in pane.state.notices.iter() {
-                notice_ui(ui, pane, notice);
-            }
-        });
-    });
-}
-
 impl FaultsView {
     /// Shows what this joint says, and its faults first; of no joint, all of them alike.
     pub(crate) const fn choose(&mut self, dof: Option<Dof>) {
@@ -70,31 +44,34 @@ impl FaultsView {
         self.recordings.close();
     }
 
-    /// Draws it.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws it over all of `ui`; true if it is to be shut.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
+        let look = pane.look;
         if let Some(recording) = self.recordings.opened(pane) {
-            kit::full_card_ui(ui, pane.look, |ui| {
+            kit::full_card_ui(ui, look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
             });
-            return;
+            return false;
         }
-        let look = pane.look;
-        ui.columns(2, |columns| {
-            let [left, right] = columns else { return };
-            left.push_id("faults", |ui| {
-                kit::full_card_ui(ui, look, |ui| self.faults_ui(ui, pane));
-            });
-            right.push_id("beside", |ui| {
-                kit::full_card_ui(ui, look, |ui| self.beside_ui(ui, pane));
-            });
+        let mut shut = false;
+        kit::full_card_ui(ui, look, |ui| {
+            let upper = (ui.available_height() * 0.55).round();
+            let above = kit::bare(Panel::top("faults"), upper, Margin::ZERO);
+            above.show(ui, |ui| shut = self.faults_ui(ui, pane));
+            ui.separator();
+            ui.push_id("beside", |ui| self.beside_ui(ui, pane));
         });
+        shut
     }
 
-    fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
+        let shut = kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
+            let shut = Button::said(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
+            let shut = shut.weight(Weight::Quiet).ui(ui, look).clicked();
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
+            shut
         });
         scroll_ui(ui, |ui| {
             if let Some(dof) = self.chosen
@@ -119,6 +96,7 @@ impl FaultsView {
             }
             meanings_ui(ui, pane);
         });
+        shut
     }
 
     /// The messages, or the recordings.
@@ -257,15 +235,5 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
         ui.spacing_mut().item_spacing.x = 0.0;
         kit::say_ui(ui, &title, palette.text);
         kit::say_ui(ui, &body, palette.muted);
-    });
-}
-
-/// A message, with a button that takes it away.
-fn notice_ui(ui: &mut Ui, pane: &mut Pane<'_>, notice: &Notice) {
-    message_ui(ui, pane, notice, |ui, pane, text| {
-        let name = format!("{}: {text}", pane.look.say(main::DISMISS));
-        let button = Button::said(pane.look, main::DISMISS);
-        let button = button.icon(theme::CLOSE).named(&name).weight(Weight::Quiet);
-        button.on_click(ui, pane, Action::Dismiss(notice.id));
     });
 }

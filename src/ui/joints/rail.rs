@@ -1,6 +1,5 @@
 //! The joints where they are not set: what each drive says and measures. Sets nothing.
 
-use crate::app::action::Action;
 use crate::app::layout::WindowRoom;
 use crate::hand::Dof;
 use crate::ui::faults::drive_lamp::DriveWords;
@@ -24,8 +23,8 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
             let button = Button::new(title, look.tip(window::OPEN)).named(&name);
             let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {
-                let layout = pane.state.settings.layout.toggled(WindowRoom::Joints);
-                pane.actions.push(Action::Layout(layout));
+                let layouts = pane.layouts(ui);
+                pane.lay_out(ui, layouts.toggled(WindowRoom::Joints));
             }
         } else {
             Label::new(title, look.palette.text)

@@ -2,13 +2,14 @@
 
 use crate::app::action::Action;
 use crate::app::effect::Effect;
+use crate::app::layout::{Breakpoint, RoomLayouts};
 use crate::app::readings::Freshness;
 use crate::app::state::State;
 use crate::hand::{Dof, Moment, PerDof, Timed};
 use crate::record::ArmRefusal;
 use crate::ui::style::Look;
 use crate::ui::text::{inputs, main};
-use crate::ui::view::View;
+use crate::ui::view::{Place, View};
 use egui::{Id, Key, Ui};
 
 /// One pass over one part of the window.
@@ -28,8 +29,8 @@ pub(crate) struct Pane<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ViewRequest {
     View(View),
-    /// What is and was wrong.
-    Faults,
+    /// A place, with the view that was open there last.
+    Place(Place),
     /// What a drive says, with its faults.
     Drive(Dof),
     /// A note of this moment.
@@ -44,6 +45,17 @@ impl Pane<'_> {
     /// Opens this after the frame.
     pub(crate) const fn open(&mut self, opens: ViewRequest) {
         *self.opens = Some(opens);
+    }
+
+    /// How a window as large as this one is divided.
+    pub(crate) fn layouts(&self, ui: &Ui) -> RoomLayouts {
+        self.state.settings.layout.at(breakpoint(ui))
+    }
+
+    /// Divides windows as large as this one so.
+    pub(crate) fn lay_out(&mut self, ui: &Ui, layouts: RoomLayouts) {
+        let layout = self.state.settings.layout.with(breakpoint(ui), layouts);
+        self.actions.push(Action::Layout(layout));
     }
 
     /// Why nothing that moves the hand can be asked for now.
@@ -84,6 +96,10 @@ impl Pane<'_> {
         let freshness = self.freshness(group.map(|group| group.asked));
         (group.map(|group| group.value[dof]), freshness)
     }
+}
+
+fn breakpoint(ui: &Ui) -> Breakpoint {
+    Breakpoint::of(ui.ctx().content_rect().width())
 }
 
 /// The one field that is being typed into, or whose text was refused.

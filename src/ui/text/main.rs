@@ -21,7 +21,6 @@ texts! {
 
     RATE_STATE: "State", "状态";
     ERRORS: "Errors", "错误", "Timeouts, wrong checksums, skipped noise, foreign replies and refusals since connecting.", "连接以来的超时、校验错误、跳过的噪声、无关应答与拒绝次数。";
-    RATES_TIP: "Reads of the motion state and of all fingertips a second, over the last second.", "最近一秒内每秒读取运动状态和全部指尖的次数。";
 
     ARM: "Arm", "使能", "Lets your angles, forces and speeds pass to the hand. Nothing moves by arming.", "允许角度、力阈值和速度发送到灵巧手。使能本身不会产生动作。";
     DISARM: "Armed", "已使能", "Armed: commands reach the hand. Press to disarm; the hand keeps what it was told.", "设置值正在生效。点击后不再发送，灵巧手保持上一次的设置。";
@@ -51,7 +50,7 @@ texts! {
     LOST_TRYING: "Trying, attempt", "正在重试，第";
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
     ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认", "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
-    DOUBT_TITLE: "FEEDBACK IN DOUBT", "反馈可疑", "Motion was asked for, and nothing that the hand tells changed: its values may be frozen, and no stop can be confirmed. Each joint is held where it must be by its speed and the time. Look at the hand, and cut the 24 V supply if it moves.", "已发出运动指令，但灵巧手的反馈毫无变化：数值可能已冻结，无法确认停止。各自由度按速度与时间推算的位置保持。请查看灵巧手，若仍在运动请切断 24 V 电源。";
+    DOUBT_TITLE: "FEEDBACK IN DOUBT", "反馈可疑", "Look at the hand, and cut the 24 V supply if it moves: nothing that it tells changed since motion was asked for, and no stop can be confirmed. Each joint is held where it must be by its speed and the time.", "请查看灵巧手，若仍在运动请切断 24 V 电源：已发出运动指令，但反馈毫无变化，无法确认停止。各自由度按速度与时间推算的位置保持。";
     OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
     OTHER_WROTE: "It wrote {}.", "它写入了 {}。";
     NOT_TAKEN_TITLE: "SETPOINT NOT TAKEN", "设置值未生效", "The hand holds another setpoint than it was given, and nobody else was seen to write: it ignores or limits it.", "灵巧手保持的设置值与发送的不同，且未发现其他写入：它忽略或限制了该值。";
@@ -71,10 +70,7 @@ texts! {
     TAB_TRAFFIC: "Traffic", "报文";
     TAB_DEVICE: "Device", "参数";
     TAB_CONNECTION: "Connection", "连接";
-    THEME_NAME: "Theme", "主题";
-    THEME_TIP: "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
-    LANGUAGE_NAME: "Language", "语言";
-    LANGUAGE_TIP: "Switches the window to Chinese.", "切换为英文界面。";
+    THEME: "Dark or light", "深色或浅色", "Switches between light on dark and dark on light.", "切换深色与浅色主题。";
     DISMISS: "Close", "关闭", "Takes this message away.", "移除这条消息。";
 
     JOINTS: "Joints", "自由度";

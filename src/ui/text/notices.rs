@@ -29,6 +29,7 @@ texts! {
     SEEN: "Seen", "已看", "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
     SEEN_ALL: "All seen", "全部已看", "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
     SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";
+    SHUT_FAULTS: "Close faults", "关闭故障";
     UNSEEN_BEFORE: "Faults:", "故障";
     UNSEEN: "unseen", "项未查看", "Faults that nobody has marked as seen, lasting or over. Opens them.", "尚未标为已看的故障，包括已结束的。点击查看。";
     UNSEEN_MARK: "unseen fault", "未查看的故障";

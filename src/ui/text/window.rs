@@ -3,7 +3,7 @@
 use crate::ui::style::phrase::texts;
 
 texts! {
-    MENU: "Window menu", "窗口菜单", "Rooms of the window: shut, open, put back.", "窗口各区域：收起、展开、恢复。";
+    MENU: "Window menu", "窗口菜单", "Rooms, colours, language, keys, exhibitions.", "区域、配色、语言、快捷键、展示模式。";
     RESET: "Reset layout", "恢复默认布局", "All rooms open, all borders where they were at first. Nothing moves on the hand.", "展开所有区域，边界恢复到初始位置。灵巧手不会动作。";
     AT_REST: "Nothing moves the hand.", "灵巧手静止，无动作指令。";
     NO_HAND: "No hand is connected.", "未连接灵巧手。";
@@ -24,7 +24,11 @@ texts! {
     LEAVE: "Close the window", "关闭窗口";
     UNDERSTOOD: "Understood", "知道了";
     OPEN: "Expand", "展开", "Shows this room again.", "重新显示此区域。";
-    SIDE: "Fingertips and faults", "指尖与故障";
+    TO_PLOTS: "Back to the plots", "返回曲线";
+    STAGE: "Hand", "灵巧手";
+    PLACE_HAND: "Hand", "灵巧手";
+    TO_CHINESE: "中文", "中文", "Switches the window to Chinese.", "切换为中文界面。";
+    TO_ENGLISH: "English", "English", "Switches the window to English.", "切换为英文界面。";
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
     SAVED: "Saved:", "已保存：";
     IGNORED: "{} could not be read: {} It was put aside, and the last good one or none is in use. {}", "{} 无法读取：{}该文件已另存，现使用上一份完好的文件或默认值。{}";
@@ -64,7 +68,6 @@ texts! {
     KEY_UNDO_TARE: "Take taring back", "撤销去皮";
     KEY_NOTE: "Write a note", "写备注";
     KEY_LANGUAGE: "English or Chinese", "中文或英文";
-    KEY_THEME: "Dark or light", "深色或浅色";
     KEY_LIST: "This list", "本列表";
     KEY_COMMANDS: "Find a command", "查找命令";
     COMMANDS: "Commands", "命令", "Type a part of a name: an act, a view, a pose", "输入名称的一部分：操作、页面、姿态";

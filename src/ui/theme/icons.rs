@@ -25,10 +25,6 @@ pub(crate) const TUNE: Icon = icons::ICON_TUNE.codepoint;
 pub(crate) const LINKED: Icon = icons::ICON_LINK.codepoint;
 /// Look at it.
 pub(crate) const WARNING: Icon = icons::ICON_WARNING.codepoint;
-/// Light on dark.
-pub(crate) const DARK: Icon = icons::ICON_DARK_MODE.codepoint;
-/// Dark on light.
-pub(crate) const LIGHT: Icon = icons::ICON_LIGHT_MODE.codepoint;
 /// Takes away.
 pub(crate) const CLOSE: Icon = icons::ICON_CLOSE.codepoint;
 /// Stands still.
@@ -46,7 +42,7 @@ pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 pub(crate) const BACKSPACE: Icon = icons::ICON_BACKSPACE.codepoint;
 
 #[cfg(test)]
-pub(crate) const ALL: [Icon; 19] = [
-    TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, DARK,
-    LIGHT, CLOSE, PAUSE, PLAY, STAR, NO_STAR, MORE, BACKSPACE,
+pub(crate) const ALL: [Icon; 17] = [
+    TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, CLOSE,
+    PAUSE, PLAY, STAR, NO_STAR, MORE, BACKSPACE,
 ];

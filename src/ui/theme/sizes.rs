@@ -22,7 +22,7 @@ pub(crate) const STEP: f32 = 4.0;
 /// Space inside a card.
 pub(crate) const PAD: f32 = 12.0;
 /// Height of the top bar.
-pub(crate) const TOP_BAR: f32 = 56.0;
+pub(crate) const TOP_BAR: f32 = 48.0;
 /// Height of a button or field.
 pub(crate) const CONTROL: f32 = 24.0;
 /// Height of a button that matters.

@@ -4,43 +4,54 @@ use crate::app::layout::WindowRoom;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::ui::connection::ConnectionForm;
-use crate::ui::faults::{self, FaultsView};
+use crate::ui::faults::FaultsView;
 use crate::ui::hands::beside::BesideView;
 use crate::ui::inputs::InputsView;
 use crate::ui::joints::JointsView;
 use crate::ui::joints::rail as joint_rail;
-use crate::ui::kit::{self, Pane};
+use crate::ui::kit::{self, Button, Pane, ViewRequest, Weight};
 use crate::ui::params::DeviceView;
 use crate::ui::plots::PlotView;
 use crate::ui::poses::PoseView;
 use crate::ui::poses::tiles as pose_tiles;
 use crate::ui::sessions::SessionsView;
+use crate::ui::text::window;
 use crate::ui::theme;
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::compare::CompareView;
 use crate::ui::trials::tune::TuneView;
-use crate::ui::view::View;
+use crate::ui::view::{Place, View};
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
-use egui::{Panel, Rect, Ui, UiBuilder};
+use egui::{Area, Id, Order, Panel, Rect, Ui, UiBuilder, pos2};
 use std::collections::BTreeMap;
 
 /// The least width of the joints: every number in its place.
 const JOINTS_LEAST: f32 = 384.0;
-/// The least width of the hand and its fingertips beside the plots.
-const SIDE_LEAST: f32 = 288.0;
-/// The least width of the plots.
+/// The least width of the hand and its fingertips.
+const STAGE_LEAST: f32 = 288.0;
+/// The least width of the plots, and of what stands in their place.
 const PLOTS_LEAST: f32 = 320.0;
+const DETAIL_LEAST: f32 = 480.0;
+const POSES_LEAST: f32 = 720.0;
 /// A replay shows poses, too, where the view is as high as this.
 const REPLAY_WITH_POSES: f32 = 480.0;
-/// Height of the strip of poses in a low window, and its least one.
+/// Height of the strip of poses: a row of tiles under its head.
+const STRIP: f32 = 136.0;
+/// In a low window, and its least one.
 const STRIP_LEAST: f32 = 88.0;
+/// Width of the drawer of faults.
+const DRAWER: f32 = 460.0;
 
 /// The views, and which one is open.
 #[derive(Debug, Default)]
 pub(super) struct Body {
     pub(super) view: View,
+    /// What was open last in the place of the hand as a device.
+    hand_view: Option<View>,
+    /// The drawer is open.
+    pub(super) faults_open: bool,
     /// The slot of the hand that was shown last, what its views remember, and what those of the others do.
     slot: SlotId,
     pub(super) own: HandViews,
@@ -100,9 +111,53 @@ impl Body {
         (self.shows_all, self.view) = (on, View::Live);
     }
 
+    /// Opens a view.
+    pub(super) fn show(&mut self, view: View) {
+        self.faults_open = view == View::Faults;
+        if !self.faults_open {
+            self.view = view;
+        }
+        if view.place() == Some(Place::Hand) {
+            self.hand_view = Some(view);
+        }
+    }
+
+    /// Opens a place with its first view, that of the hand as a device with its last one.
+    pub(super) fn show_place(&mut self, place: Place) {
+        let first = place.views().first().copied().unwrap_or_default();
+        let last = self.hand_view.filter(|_| place == Place::Hand);
+        self.show(last.unwrap_or(first));
+    }
+
+    /// Opens the drawer of faults with all of them alike, or shuts it.
+    pub(super) fn toggle_faults(&mut self) {
+        self.own.faults.choose(None);
+        self.faults_open = !self.faults_open;
+    }
+
+    /// Draws the drawer over the right end of a place, if it is open.
+    pub(super) fn drawer_ui(&mut self, ui: &Ui, pane: &mut Pane<'_>, below: Rect) {
+        if !self.faults_open {
+            return;
+        }
+        let mut place = below.shrink(theme::GAP);
+        place.min = pos2(
+            (place.right() - DRAWER).max(place.left()),
+            below.top() + theme::STEP,
+        );
+        let area = Area::new(Id::unique("drawer of faults")).fixed_pos(place.min);
+        area.order(Order::Middle).show(ui.ctx(), |ui| {
+            ui.set_min_size(place.size());
+            ui.set_max_size(place.size());
+            if self.own.faults.ui(ui, pane) {
+                self.faults_open = false;
+            }
+        });
+    }
+
     /// Draws the joints, and beside them the open view.
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        self.rooms.begin(pane.state.settings.layout);
+        self.rooms.begin(pane.layouts(ui));
         self.joints_ui(ui, pane);
         let rect = ui.available_rect_before_wrap();
         self.view_ui(ui, rect, pane);
@@ -110,21 +165,18 @@ impl Body {
 
     /// The joints at the left of `ui`: all of each where they are set, else a rail with what matters.
     fn joints_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let sets_joints = matches!(
-            self.view,
-            View::Live | View::Touch | View::Poses | View::Tune
-        );
-        if pane.state.settings.layout.joints.shut || !sets_joints {
+        let sets_joints = self.view.place() == Some(Place::Live);
+        if self.rooms.is_shut(WindowRoom::Joints) || !sets_joints {
             let rail = Panel::left("rail");
             let rail = kit::bare(rail, 144.0 + theme::GAP, theme::GAP_RIGHT);
             rail.show(ui, |ui| joint_rail::rail_ui(ui, pane, sets_joints));
             return;
         }
-        let designed = ui.ctx().content_rect().width() * 0.29;
+        let designed = ui.ctx().content_rect().width() * 0.26;
         let size = RoomSize {
-            designed: designed.clamp(JOINTS_LEAST, 560.0) + theme::GAP,
+            designed: designed.clamp(JOINTS_LEAST, 520.0) + theme::GAP,
             least: JOINTS_LEAST + theme::GAP,
-            rest: PLOTS_LEAST + theme::GAP + SIDE_LEAST,
+            rest: PLOTS_LEAST + theme::GAP + STAGE_LEAST,
         };
         let Self { rooms, own, .. } = self;
         rooms.room_ui(ui, pane, (WindowRoom::Joints, size), |ui, pane| {
@@ -136,22 +188,38 @@ impl Body {
         if self.view != View::Sessions {
             self.sessions.leave();
         }
+        if self.view.place() == Some(Place::Hand) {
+            self.hand_views_ui(ui, pane);
+        }
         match self.view {
             View::Live if self.shows_all && pane.state.hands.is_several() => {
                 self.all_ui(ui, pane);
             }
-            View::Live => self.live_ui(ui, rect, pane),
-            View::Touch => self.own.touch.large_ui(ui, pane),
+            View::Live | View::Touch | View::Poses => self.live_ui(ui, rect, pane),
             View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.compare.ui(ui, pane),
-            View::Faults => self.own.faults.ui(ui, pane),
-            View::Poses => self.poses.ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
             View::Connection => self.own.connection.ui(ui, pane),
             View::Inputs => self.own.inputs.ui(ui, pane),
             View::Traffic => self.own.traffic.ui(ui, pane),
             View::Sessions => self.sessions.ui(ui, pane),
+            // It lies over the others, and is never the one that is open.
+            View::Faults => {}
         }
+    }
+
+    /// The choice between the views of the hand as a device.
+    fn hand_views_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        ui.horizontal(|ui| {
+            for view in Place::Hand.views() {
+                let button = Button::said(pane.look, view.title());
+                let button = button.choice(*view == self.view).large();
+                if button.ui(ui, pane.look).clicked() {
+                    pane.open(ViewRequest::View(*view));
+                }
+            }
+        });
+        ui.add_space(theme::STEP);
     }
 
     /// All hands side by side, over the poses.
@@ -167,7 +235,8 @@ impl Body {
     }
 
     fn live_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        if self.own.plots.large {
+        let shows_plots = self.view == View::Live;
+        if self.own.plots.large && shows_plots {
             self.plots_ui(ui, rect, pane);
             return;
         }
@@ -181,28 +250,37 @@ impl Body {
         if pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES {
             rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
         }
-        let side = (rect.width() * 0.4).clamp(SIDE_LEAST, 560.0);
-        let side = RoomSize {
-            designed: side + theme::GAP,
-            least: SIDE_LEAST + theme::GAP,
-            rest: PLOTS_LEAST,
+        let width = ui.available_width();
+        let stage = RoomSize {
+            designed: (width * 0.45).clamp(STAGE_LEAST, 680.0) + theme::GAP,
+            least: STAGE_LEAST + theme::GAP,
+            rest: match self.view {
+                View::Touch => DETAIL_LEAST,
+                View::Poses => POSES_LEAST,
+                _ => PLOTS_LEAST,
+            },
         };
-        rooms.room_ui(ui, pane, (WindowRoom::Side, side), |ui, pane| {
-            let faults = RoomSize {
-                designed: 104.0 + theme::GAP,
-                least: 84.0 + theme::GAP,
-                rest: 200.0,
-            };
-            rooms.room_ui(
-                ui,
-                pane,
-                (WindowRoom::Faults, faults),
-                faults::faults_card_ui,
-            );
-            own.touch.small_ui(ui, pane);
-        });
+        if width >= stage.least + stage.rest {
+            rooms.room_ui(ui, pane, (WindowRoom::Stage, stage), |ui, pane| {
+                own.touch.small_ui(ui, pane);
+            });
+        }
         let rect = ui.available_rect_before_wrap();
-        self.plots_ui(ui, rect, pane);
+        if shows_plots {
+            self.plots_ui(ui, rect, pane);
+            return;
+        }
+        kit::right_ui(ui, |ui| {
+            ui.set_max_height(theme::CONTROL);
+            let back = Button::said(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
+            if back.ui(ui, pane.look).clicked() {
+                pane.open(ViewRequest::View(View::Live));
+            }
+        });
+        match self.view {
+            View::Touch => self.own.touch.large_ui(ui, pane),
+            _ => self.poses.ui(ui, pane),
+        }
     }
 
     fn plots_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -214,5 +292,5 @@ impl Body {
 
 /// Height of the strip of poses in a view as high as this.
 const fn strip_height(view: f32) -> f32 {
-    if view < 640.0 { STRIP_LEAST } else { 212.0 }
+    if view < 560.0 { STRIP_LEAST } else { STRIP }
 }

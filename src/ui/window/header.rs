@@ -1,38 +1,45 @@
-//! The bar that is always there: which hand, how the link is, arm, and STOP. Also the row of tabs.
+//! The bar that is always there: which hand, how its link is, the five places, faults, arm, and STOP.
 
 use crate::app::action::Action;
 use crate::app::sessions::SessionAction;
-use crate::app::settings::{Language, Theme};
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
-use crate::ui::text::{Text, inputs, main, notices, sessions, window, words};
+use crate::ui::text::{inputs, main, notices, sessions, words};
 use crate::ui::theme;
-use crate::ui::view::View;
+use crate::ui::view::{Place, View};
 use crate::ui::window::rooms;
-use egui::{Align, Color32, CornerRadius, Layout, Rect, Response, Ui, pos2, vec2};
+use egui::{Color32, CornerRadius, Rect, Response, Ui, pos2, vec2};
 
-/// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`. True if the connection was asked for.
-pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
+/// Width of STOP.
+const STOP: f32 = 132.0;
+/// From this room on, lamps have words beside them.
+const WORDS: f32 = 860.0;
+
+/// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`.
+pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: bool) {
+    let is_wide = ui.available_width() - STOP > WORDS;
     kit::right_ui(ui, |ui| {
         stop_ui(ui, pane);
         if !is_free {
             ui.disable();
         }
-        ui.add_space(theme::STEP);
         match &pane.state.timeline {
             Some(line) => back_ui(ui, pane, line.live_needs_eyes),
             None => arm_ui(ui, pane),
         }
-        unseen_ui(ui, pane);
+        rooms::menu_ui(ui, pane);
+        faults_ui(ui, pane, is_wide);
+        recording_ui(ui, pane, is_wide);
         kit::left_ui(ui, |ui| {
-            badge_ui(ui, pane);
-            link_ui(ui, pane);
+            hand_ui(ui, pane);
+            ui.spacing_mut().item_spacing.x = 0.0;
+            for place in Place::ALL {
+                place_ui(ui, pane, place, view.place() == Some(place));
+            }
             sharing_ui(ui, pane);
-            recording_ui(ui, pane);
-            figures_ui(ui, pane);
         });
     });
 }
@@ -40,7 +47,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, main::STOP).weight(Weight::Stop);
-    let (id, rect) = ui.allocate_space(vec2(148.0, ui.available_height()));
+    let (id, rect) = ui.allocate_space(vec2(STOP, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
     let strong = look.palette.on_strong;
     let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
@@ -78,7 +85,7 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .disabled(refusal.as_deref())
         .selected(armed)
         .weight(weight);
-    let (id, rect) = ui.allocate_space(vec2(96.0, theme::CONTROL_LARGE));
+    let (id, rect) = ui.allocate_space(vec2(88.0, theme::CONTROL_LARGE));
     if button.put(ui, look, rect, id).clicked() {
         let action = if armed { Action::Disarm } else { Action::Arm };
         pane.actions.push(action);
@@ -99,7 +106,7 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
 }
 
 /// Whether this hand is recorded, and the switch for it.
-fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     if pane.state.timeline.is_some() || pane.state.hand().connection.endpoint.is_none() {
         return;
     }
@@ -117,11 +124,10 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             (text, color, recording_words(look, status))
         }
     };
-    if ui.available_width() < RECORDING_LEAST {
-        return;
-    }
+    let name = look.say(text);
     let tip = format!("{}{tip}", look.tip(text));
-    let button = Button::new(look.say(text), &tip).weight(Weight::Quiet);
+    let words = if is_wide { name } else { "" };
+    let button = Button::new(words, &tip).named(name).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
         let on = pane.state.hand().recording.is_none();
         let action = if simulated {
@@ -150,35 +156,91 @@ fn recording_words(look: Look, status: &RecorderStatus) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
-/// Room that the lamp of the recording needs.
-const RECORDING_LEAST: f32 = 170.0;
-
 /// A button with a lamp before its words.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
-    let words = kit::text_width(ui, button.text, theme::body());
-    let size = vec2(words + 40.0, theme::CONTROL_LARGE);
+    let words = match button.text {
+        "" => 0.0,
+        text => kit::text_width(ui, text, theme::body()) + theme::GAP,
+    };
+    let size = vec2(words + 24.0, theme::CONTROL_LARGE);
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
-    let center = pos2(rect.left() + 16.0, rect.center().y);
+    let center = pos2(rect.left() + 12.0, rect.center().y);
     kit::lamp(ui, center, lamp);
-    let words = rect.with_min_x(rect.left() + 29.0);
+    let words = rect.with_min_x(rect.left() + 22.0);
     Label::new(button.text, look.palette.text).paint(ui, words);
     response
 }
 
-/// How many faults nobody has seen yet, from every view; a click opens them.
-fn unseen_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let Some(color) = fault_entry::unseen_color(pane) else {
-        return;
-    };
+/// The drawer of faults, and how many of them nobody has seen yet.
+fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let look = pane.look;
-    let count = pane.state.hand().readings.faults.unseen().count();
-    let (before, after) = (look.say(notices::UNSEEN_BEFORE), look.say(notices::UNSEEN));
-    let text = format!("{before} {count} {after}");
-    let button = Button::new(text.trim(), look.tip(notices::UNSEEN));
-    if lamp_button_ui(ui, look, button, color).clicked() {
-        pane.open(ViewRequest::Faults);
+    let pressed = match fault_entry::unseen_color(pane) {
+        None => {
+            let button = Button::said(look, main::TAB_FAULTS).weight(Weight::Quiet);
+            button.ui(ui, look)
+        }
+        Some(color) => {
+            let count = pane.state.hand().readings.faults.unseen().count();
+            let (before, after) = (look.say(notices::UNSEEN_BEFORE), look.say(notices::UNSEEN));
+            let name = format!("{before} {count} {after}");
+            let words = if is_wide {
+                name.clone()
+            } else {
+                count.to_string()
+            };
+            let button = Button::new(words.trim(), look.tip(notices::UNSEEN));
+            lamp_button_ui(ui, look, button.named(name.trim()), color)
+        }
+    };
+    if pressed.clicked() {
+        pane.open(ViewRequest::View(View::Faults));
     }
+}
+
+/// Which hand it is, how its link stands, and how well.
+fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    badge_ui(ui, pane);
+    let look = pane.look;
+    let (word, color) = link_words(pane);
+    let word = look.say(word);
+    let name = format!("{}: {word}", look.say(main::LINK_BUTTON));
+    let tip = link_tip(pane);
+    let button = Button::new(word, &tip).named(&name).weight(Weight::Quiet);
+    if lamp_button_ui(ui, look, button, color).clicked() {
+        pane.open(ViewRequest::View(View::Connection));
+    }
+    let errors = errors(pane);
+    if errors > 0 && pane.state.timeline.is_none() {
+        let words = format!("{} {errors}", look.say(main::ERRORS));
+        let label = Label::new(&words, look.palette.warn).small();
+        label.ui(ui).on_hover_text(look.tip(main::ERRORS));
+    }
+}
+
+/// What went wrong on the wire since connecting.
+fn errors(pane: &Pane<'_>) -> u64 {
+    let stats = &pane.state.hand().connection.stats;
+    stats.timeouts + stats.checksum_errors + stats.resyncs + stats.foreign_replies + stats.refusals
+}
+
+/// How often is read, and what went wrong, a line each.
+fn link_tip(pane: &Pane<'_>) -> String {
+    let look = pane.look;
+    let connection = &pane.state.hand().connection;
+    let live = connection.status.state.is_live();
+    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
+    let stats = &connection.stats;
+    format!(
+        "{}\n{} {}, {} {}, {} {}",
+        look.say(main::LINK_TIP),
+        look.say(main::RATE_STATE),
+        rate(stats.state_hz),
+        look.say(main::TAB_TOUCH),
+        rate(stats.tactile_hz),
+        look.say(main::ERRORS),
+        errors(pane),
+    )
 }
 
 /// The badge of the built-in hand, or where the real one is.
@@ -205,7 +267,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
     if let (Some(endpoint), false) = (&pane.state.hand().connection.endpoint, simulated) {
         let text = endpoint.to_string();
-        let most = ui.available_width() * 0.5;
+        let most = (ui.available_width() - PLACES).clamp(0.0, 220.0);
         let width = kit::text_width(ui, &text, theme::number()) + 1.0;
         ui.scope(|ui| {
             ui.set_max_width(width.min(most));
@@ -217,16 +279,25 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// Room that the places and the link need.
+const PLACES: f32 = 520.0;
+
+/// A place, marked while it is open.
+fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
     let look = pane.look;
-    let (word, color) = link_words(pane);
-    let word = look.say(word);
-    let name = format!("{}: {word}", look.say(main::LINK_BUTTON));
-    let button = Button::new(word, look.say(main::LINK_TIP))
-        .named(&name)
-        .weight(Weight::Quiet);
-    if lamp_button_ui(ui, look, button, color).clicked() {
-        pane.open(ViewRequest::View(View::Connection));
+    let button = Button::said(look, place.title()).weight(Weight::Quiet);
+    let response = button.selected(is_open).large().ui(ui, look);
+    let rect = response.rect;
+    if is_open {
+        let under = Rect::from_min_max(
+            rect.left_bottom() + vec2(theme::PAD, 0.0),
+            rect.right_bottom() + vec2(-theme::PAD, 2.0),
+        );
+        let round = CornerRadius::same(1);
+        ui.painter().rect_filled(under, round, look.palette.accent);
+    }
+    if response.clicked() {
+        pane.open(ViewRequest::Place(place));
     }
 }
 
@@ -248,112 +319,16 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     if words.is_empty() {
         return;
     }
-    let words = words.join(" · ");
-    let button = Button::new(&words, look.tip(inputs::SHARED)).weight(Weight::Quiet);
+    let name = words.join(" · ");
+    let tip = format!("{name}\n{}", look.tip(inputs::SHARED));
+    let width = kit::text_width(ui, &name, theme::body()) + 32.0;
+    let words = if width < ui.available_width() {
+        &name
+    } else {
+        ""
+    };
+    let button = Button::new(words, &tip).named(&name).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, look.palette.accent).clicked() {
         pane.open(ViewRequest::View(View::Inputs));
-    }
-}
-
-/// How often is read, and what went wrong: each a small caption over a number, as many as there is room for.
-fn figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let look = pane.look;
-    let palette = look.palette;
-    let stats = &pane.state.hand().connection.stats;
-    let live = pane.state.hand().connection.status.state.is_live();
-    let color = if live { palette.text } else { palette.faint };
-    let errors = stats.timeouts
-        + stats.checksum_errors
-        + stats.resyncs
-        + stats.foreign_replies
-        + stats.refusals;
-    let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
-    let error_color = if errors > 0 { palette.warn } else { color };
-    let (state, touch) = (rate(stats.state_hz), rate(stats.tactile_hz));
-    let figures: [(Text, String, Text, Color32); 3] = [
-        (main::RATE_STATE, state, main::RATES_TIP, color),
-        (main::TAB_TOUCH, touch, main::RATES_TIP, color),
-        (
-            main::ERRORS,
-            errors.to_string(),
-            main::ERRORS.tip(),
-            error_color,
-        ),
-    ];
-    for (caption, value, tip, color) in figures {
-        if ui.available_width() < FIGURE {
-            return;
-        }
-        let (size, down) = (vec2(FIGURE, 34.0), Layout::top_down(Align::Min));
-        ui.allocate_ui_with_layout(size, down, |ui| {
-            ui.set_width(FIGURE);
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let caption = look.say(caption);
-            Label::new(caption, palette.muted).small().ui(ui);
-            let number = Label::new(&value, color).number().named(caption);
-            number.ui(ui).on_hover_text(look.say(tip));
-        });
-    }
-}
-
-/// Room for a figure.
-const FIGURE: f32 = 64.0;
-
-/// Draws the row of tabs, and the switches for theme and language. True if the list of keys was asked for.
-pub(crate) fn tabs_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View) {
-    let look = pane.look;
-    kit::right_ui(ui, |ui| {
-        rooms::menu_ui(ui, pane);
-        let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
-        let text = match language {
-            Language::En => "中文",
-            Language::Zh => "English",
-        };
-        let button = Button::new(text, look.say(main::LANGUAGE_TIP))
-            .named(look.say(main::LANGUAGE_NAME))
-            .weight(Weight::Quiet);
-        button.on_click(ui, pane, Action::Language(language.other()));
-        let icon = match theme {
-            Theme::Dark => theme::DARK,
-            Theme::Light => theme::LIGHT,
-        };
-        let button = Button::new(look.say(main::THEME_NAME), look.say(main::THEME_TIP))
-            .icon(icon)
-            .weight(Weight::Quiet);
-        button.on_click(ui, pane, Action::Theme(theme.other()));
-        let list = Button::new("?", look.tip(window::KEYS))
-            .named(look.say(window::KEYS))
-            .weight(Weight::Quiet);
-        if list.ui(ui, look).clicked() {
-            pane.open(ViewRequest::Keys);
-        }
-        kit::left_ui(ui, |ui| {
-            ui.spacing_mut().item_spacing.x = theme::STEP;
-            for tab in View::ALL {
-                tab_ui(ui, pane, tab, tab == view);
-            }
-        });
-    });
-}
-
-fn tab_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: View, is_open: bool) {
-    let look = pane.look;
-    let button = Button::said(look, tab.title()).weight(Weight::Quiet);
-    let button = button.selected(is_open);
-    let response = button.ui(ui, look);
-    let place = response.rect;
-    if is_open {
-        let under = Rect::from_min_max(
-            place.left_bottom() + vec2(theme::PAD, 0.0),
-            place.right_bottom() + vec2(-theme::PAD, 2.0),
-        );
-        let round = CornerRadius::same(1);
-        ui.painter().rect_filled(under, round, look.palette.accent);
-    }
-    if tab == View::Faults {
-        fault_entry::badge_ui(ui, place.right_top() + vec2(2.0, -2.0), pane);
-    }
-    if response.clicked() {
-        pane.open(ViewRequest::View(tab));
     }
 }

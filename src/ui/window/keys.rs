@@ -6,7 +6,7 @@ use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::ViewRequest;
 use crate::ui::text::{Text, main, panels, window, words};
-use crate::ui::view::View;
+use crate::ui::view::{Place, View};
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
 /// What a key asks for.
@@ -82,7 +82,7 @@ const ALT: Modifiers = Modifiers::ALT;
 const HOLD_TO_RUN: Key = Key::H;
 
 /// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
-pub(crate) static ROWS: [KeyRow; 43] = [
+pub(crate) static ROWS: [KeyRow; 38] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
     row(SHIFT, Key::A, Wish::ArmOrNot),
@@ -93,57 +93,32 @@ pub(crate) static ROWS: [KeyRow; 43] = [
     row(
         COMMAND,
         Key::Num1,
-        Wish::Opens(ViewRequest::View(View::Live)),
+        Wish::Opens(ViewRequest::Place(Place::Live)),
     ),
     row(
         COMMAND,
         Key::Num2,
-        Wish::Opens(ViewRequest::View(View::Touch)),
+        Wish::Opens(ViewRequest::Place(Place::Tune)),
     ),
     row(
         COMMAND,
         Key::Num3,
-        Wish::Opens(ViewRequest::View(View::Tune)),
+        Wish::Opens(ViewRequest::Place(Place::Recordings)),
     ),
     row(
         COMMAND,
         Key::Num4,
-        Wish::Opens(ViewRequest::View(View::Compare)),
+        Wish::Opens(ViewRequest::Place(Place::Hand)),
     ),
     row(
         COMMAND,
         Key::Num5,
-        Wish::Opens(ViewRequest::View(View::Faults)),
+        Wish::Opens(ViewRequest::Place(Place::Share)),
     ),
     row(
         COMMAND,
         Key::Num6,
-        Wish::Opens(ViewRequest::View(View::Poses)),
-    ),
-    row(
-        COMMAND,
-        Key::Num7,
-        Wish::Opens(ViewRequest::View(View::Device)),
-    ),
-    row(
-        COMMAND,
-        Key::Num8,
-        Wish::Opens(ViewRequest::View(View::Connection)),
-    ),
-    row(
-        COMMAND,
-        Key::Num9,
-        Wish::Opens(ViewRequest::View(View::Traffic)),
-    ),
-    row(
-        COMMAND,
-        Key::R,
-        Wish::Opens(ViewRequest::View(View::Sessions)),
-    ),
-    row(
-        COMMAND,
-        Key::I,
-        Wish::Opens(ViewRequest::View(View::Inputs)),
+        Wish::Opens(ViewRequest::View(View::Faults)),
     ),
     row(ALT, Key::Num1, Wish::Hand(0)),
     row(ALT, Key::Num2, Wish::Hand(1)),
@@ -236,13 +211,13 @@ impl Wish {
             Self::UndoTare => window::KEY_UNDO_TARE,
             Self::Pause => panels::PAUSE_NAME,
             Self::Language => window::KEY_LANGUAGE,
-            Self::Theme => window::KEY_THEME,
+            Self::Theme => main::THEME,
             Self::Opens(ViewRequest::View(view)) => view.title(),
+            Self::Opens(ViewRequest::Place(place)) => place.title(),
             Self::Opens(ViewRequest::Note) => window::KEY_NOTE,
             Self::Opens(ViewRequest::Keys) => window::KEY_LIST,
             Self::Opens(ViewRequest::Palette) => window::KEY_COMMANDS,
             Self::Opens(ViewRequest::Drive(dof)) => words::dof(dof),
-            Self::Opens(ViewRequest::Faults) => View::Faults.title(),
         }
     }
 

@@ -2,19 +2,20 @@
 //!
 //! ```text
 //! +----------------------------------------------------------+
-//! | header: hand, link, rates                      arm, STOP |
-//! | several hands: a strip for each, with its STOP            |
+//! | hand, link   Live Tune Recordings Hand Share    arm, STOP |
 //! | status: warning, what moves the hand, message, note      |
-//! | tabs                              keys, theme, language, ≡ |
+//! | several hands: a strip for each, with its STOP            |
+//! +----------+----------------+------------------------------+
+//! | joints   | drawn hand     | plots, or a fingertip,       |
+//! |          | fingertips     | or a pose being edited       |
+//! |          +----------------+----------------------------- |
+//! |          | poses and demos                               |
 //! +----------+-----------------------------------------------+
-//! | joints   | view                                          |
-//! |          |   Live: plots         | hand and fingertips   |
-//! |          |                       +---------------------- |
-//! |          |                       | faults                |
-//! |          |   --------------------+---------------------- |
-//! |          |   poses and gestures                          |
-//! +----------+-----------------------------------------------+
+//! | time line of a replay                                    |
+//! +----------------------------------------------------------+
 //! ```
+//!
+//! Faults are a drawer at the right, over whatever place is open.
 mod body;
 mod cards;
 pub(crate) mod header;
@@ -87,7 +88,7 @@ impl Window {
 
     /// Opens a view.
     pub fn set_view(&mut self, view: View) {
-        self.body.view = view;
+        self.body.show(view);
     }
 
     /// Shows all hands side by side.
@@ -193,6 +194,7 @@ impl Window {
             || self.palette.is_open()
             || self.body.own.status.writes_note()
             || self.cards.informs()
+            || self.body.faults_open
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
         if !is_open || !state.hands.iter().all(|hand| rests(hand, state.now)) {
@@ -201,7 +203,11 @@ impl Window {
         // Popups, fields and cards do so themselves.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
-            self.palette.hide();
+            if self.palette.is_open() {
+                self.palette.hide();
+            } else {
+                self.body.faults_open = false;
+            }
             self.body.own.status.drop_note();
         }
         Escape::Closes
@@ -217,13 +223,14 @@ impl Window {
     }
 
     fn open(&mut self, opens: ViewRequest, now: Moment) {
-        if let ViewRequest::Faults | ViewRequest::Drive(_) = opens {
-            self.body.view = View::Faults;
-        }
         match opens {
-            ViewRequest::View(view) => self.body.view = view,
-            ViewRequest::Faults => self.body.own.faults.choose(None),
-            ViewRequest::Drive(dof) => self.body.own.faults.choose(Some(dof)),
+            ViewRequest::View(View::Faults) => self.body.toggle_faults(),
+            ViewRequest::View(view) => self.body.show(view),
+            ViewRequest::Place(place) => self.body.show_place(place),
+            ViewRequest::Drive(dof) => {
+                self.body.own.faults.choose(Some(dof));
+                self.body.show(View::Faults);
+            }
             ViewRequest::Note => self.body.own.status.open_note(now),
             ViewRequest::Keys => self.key_list.toggle(),
             ViewRequest::Palette => self.palette.toggle(),
@@ -261,15 +268,18 @@ impl Window {
             self.palette.hide();
             ui.disable();
         }
-        let tabs = Frame::new().inner_margin(Margin::symmetric(8, 2));
-        bar_ui(ui, ("tabs", 36.0), tabs, |ui| {
-            header::tabs_ui(ui, pane, self.body.view);
-        });
+        if let Some(line) = &pane.state.timeline {
+            let frame = Frame::new().fill(palette.card).inner_margin(MARGIN);
+            let bar = kit::bare(Panel::bottom("timeline"), timeline::HEIGHT, Margin::ZERO);
+            bar.frame(frame)
+                .show(ui, |ui| timeline::timeline_ui(ui, pane, line));
+        }
         let below = ui.available_rect_before_wrap();
-        let body = Frame::new().inner_margin(Margin { top: 2, ..MARGIN });
+        let body = Frame::new().inner_margin(Margin { top: 4, ..MARGIN });
         egui::CentralPanel::no_frame()
             .frame(body)
             .show(ui, |ui| self.body.ui(ui, pane));
+        self.body.drawer_ui(ui, pane, below);
         self.key_list.ui(ui, below, pane.look);
         let asked = self.cards.ui(ui, covered, card_of(pane.state, pane.look));
         pane.actions.extend(asked);
@@ -278,22 +288,23 @@ impl Window {
             .ui(ui, below, (pane.look, pane.unready()), library)
     }
 
-    /// The bars above the tabs. STOP can be pressed in them whatever card is open, the rest only if `is_free`.
+    /// The bars at the top. STOP can be pressed in them whatever card is open, the rest only if `is_free`.
     fn bars_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
         let palette = pane.look.palette;
         let header = Frame::new()
             .fill(palette.card)
             .stroke(Stroke::new(1.0, palette.edge))
-            .inner_margin(Margin::symmetric(12, 8));
+            .inner_margin(Margin::symmetric(12, 4));
         bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
-            header::header_ui(ui, pane, is_free);
+            header::header_ui(ui, pane, self.body.view, is_free);
         });
-        if let Some(line) = &pane.state.timeline {
-            let frame = Frame::new().fill(palette.card).inner_margin(MARGIN);
-            bar_ui(ui, ("timeline", timeline::HEIGHT), frame, |ui| {
-                timeline::timeline_ui(ui, pane, line);
-            });
-        }
+        let status = Frame::new().fill(palette.card);
+        bar_ui(ui, ("status", status::HEIGHT), status, |ui| {
+            if !is_free {
+                ui.disable();
+            }
+            self.body.own.status.ui(ui, pane);
+        });
         if pane.state.hands.is_several() {
             let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
             let room = ui.available_width() - STRIPS_MARGIN.sum().x;
@@ -305,17 +316,6 @@ impl Window {
                 }
             });
         }
-        let status = Frame::new().inner_margin(Margin {
-            bottom: 0,
-            ..MARGIN
-        });
-        let height = 40.0 + theme::GAP;
-        bar_ui(ui, ("status", height), status, |ui| {
-            if !is_free {
-                ui.disable();
-            }
-            self.body.own.status.ui(ui, pane);
-        });
     }
 
     /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.

@@ -7,7 +7,7 @@ use crate::poses::library::EntryId;
 use crate::ui::kit::{self, Button, Look, ViewRequest, Weight};
 use crate::ui::text::{Text, window};
 use crate::ui::theme;
-use crate::ui::view::View;
+use crate::ui::view::{Place, View};
 use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
 use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
@@ -196,7 +196,15 @@ fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec
             keys: wish.keys(),
         }
     };
-    let views = View::ALL.map(|view| Wish::Opens(ViewRequest::View(view)));
+    let places = Place::ALL.map(|place| Wish::Opens(ViewRequest::Place(place)));
+    let views = View::ALL.into_iter();
+    let views = views.filter(|view| {
+        view.place()
+            .is_none_or(|place| place.title() != view.title())
+    });
+    let views: Vec<Wish> = views
+        .map(|view| Wish::Opens(ViewRequest::View(view)))
+        .collect();
     // What is held, what stands for many, and what the keyboard goes to has a key only.
     let is_act = |wish: &Wish| {
         !matches!(
@@ -207,10 +215,11 @@ fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec
                 | Wish::Joint(_)
                 | Wish::Opens(ViewRequest::Palette)
         ) && !views.contains(wish)
+            && !places.contains(wish)
     };
     let mut acts: Vec<Wish> = ROWS.iter().map(|row| row.wish).filter(is_act).collect();
     acts.dedup();
-    let wishes = acts.into_iter().chain(views);
+    let wishes = acts.into_iter().chain(places).chain(views);
     let wishes = wishes.map(said);
     let entries = poses.ready(&settings.hidden_poses).into_iter();
     let entries = entries.filter_map(|entry| {

@@ -3,11 +3,12 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
-use crate::app::layout::{Layout, WindowRoom};
-use crate::ui::kit::{Button, Pane, Weight};
+use crate::app::layout::{RoomLayouts, WindowRoom};
+use crate::app::settings::Language;
+use crate::ui::kit::{Button, Pane, ViewRequest, Weight};
 use crate::ui::text::{Text, exhibit, main, window};
 use crate::ui::theme;
-use egui::{Frame, Margin, Panel, Popup, Ui};
+use egui::{Frame, Panel, Popup, Ui};
 
 /// How large a room is, points.
 #[derive(Debug, Clone, Copy)]
@@ -23,29 +24,33 @@ pub(crate) struct RoomSize {
 /// What the panels need between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Rooms {
-    layout: Layout,
+    layouts: RoomLayouts,
     /// Counts how often the layout was put back: panels with a new id begin as they were designed.
     resets: u32,
 }
 
 /// What a room is called.
-pub(crate) const fn title(room: WindowRoom) -> Text {
+const fn title(room: WindowRoom) -> Text {
     match room {
         WindowRoom::Joints => main::JOINTS,
-        WindowRoom::Side => window::SIDE,
-        WindowRoom::Faults => main::TAB_FAULTS,
+        WindowRoom::Stage => window::STAGE,
         WindowRoom::Strip => main::TAB_POSES,
     }
 }
 
 impl Rooms {
     /// Begins a frame in which the rooms stand so.
-    pub(crate) fn begin(&mut self, layout: Layout) {
+    pub(crate) fn begin(&mut self, layouts: RoomLayouts) {
         let is_put_back = WindowRoom::ALL.into_iter().any(|room| {
-            self.layout.room(room).share.is_some() && layout.room(room).share.is_none()
+            self.layouts.room(room).share.is_some() && layouts.room(room).share.is_none()
         });
         self.resets += u32::from(is_put_back);
-        self.layout = layout;
+        self.layouts = layouts;
+    }
+
+    /// True if only a room's name is shown.
+    pub(crate) const fn is_shut(&self, room: WindowRoom) -> bool {
+        self.layouts.room(room).shut
     }
 
     /// A room at its side of what is left of `ui`; nothing where it is shut.
@@ -56,17 +61,17 @@ impl Rooms {
         (room, size): (WindowRoom, RoomSize),
         add: impl FnOnce(&mut Ui, &mut Pane<'_>),
     ) {
-        let salt = (room, self.resets);
-        let (panel, gap) = match room {
-            WindowRoom::Joints => (Panel::left(salt), Margin { right: GAP, ..NONE }),
-            WindowRoom::Side => (Panel::right(salt), Margin { left: GAP, ..NONE }),
-            WindowRoom::Faults | WindowRoom::Strip => {
-                (Panel::bottom(salt), Margin { top: GAP, ..NONE })
-            }
-        };
-        let is_upright = matches!(room, WindowRoom::Joints | WindowRoom::Side);
+        let is_upright = room != WindowRoom::Strip;
         let extent = along(ui.available_size(), is_upright);
-        let standing = self.layout.room(room);
+        let standing = self.layouts.room(room);
+        // In another window, or with another share, a panel begins anew.
+        let share = standing.share.map(f32::to_bits);
+        let salt = (room, self.resets, share, extent.to_bits());
+        let (panel, gap) = if is_upright {
+            (Panel::left(salt), theme::GAP_RIGHT)
+        } else {
+            (Panel::bottom(salt), theme::GAP_TOP)
+        };
         let most = (extent - size.rest).max(size.least);
         let wanted = standing.share.map_or(size.designed, |share| share * extent);
         let begun = wanted.clamp(size.least, most).round();
@@ -81,8 +86,7 @@ impl Rooms {
                 add(ui, pane);
             });
         if open == standing.shut {
-            let layout = self.layout.toggled(room);
-            pane.actions.push(Action::Layout(layout));
+            pane.lay_out(ui, self.layouts.toggled(room));
         } else if let Some(shown) = shown {
             let now = along(shown.response.rect.size(), is_upright);
             let place = shown.response.rect.expand(2.0 * theme::GAP);
@@ -96,22 +100,17 @@ impl Rooms {
             });
             if let_go && (now - begun).abs() > 1.0 {
                 let standing = standing.with_share(now / extent);
-                let layout = self.layout.with(room, standing);
-                pane.actions.push(Action::Layout(layout));
+                pane.lay_out(ui, self.layouts.with(room, standing));
             }
         }
     }
 }
 
-const NONE: Margin = Margin::ZERO;
-/// Space between two rooms.
-const GAP: i8 = 8;
-
 fn along(size: egui::Vec2, is_upright: bool) -> f32 {
     if is_upright { size.x } else { size.y }
 }
 
-/// The window's menu: which rooms are open, and the layout put back.
+/// The window's menu: which rooms are open, colours, language, keys, exhibitions.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, window::MENU)
@@ -119,7 +118,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .weight(Weight::Quiet);
     let response = button.ui(ui, look);
     Popup::menu(&response).show(|ui| {
-        let before = pane.state.settings.layout;
+        let before = pane.layouts(ui);
         let mut after = before;
         for room in WindowRoom::ALL {
             let mut open = !before.room(room).shut;
@@ -127,23 +126,47 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 after = before.toggled(room);
             }
         }
+        let entry = |ui: &mut Ui, text: Text| {
+            let button = ui.button(look.say(text));
+            button.on_hover_text(look.tip(text)).clicked()
+        };
+        if entry(ui, window::RESET) {
+            after = RoomLayouts::default();
+        }
+        if after != before {
+            pane.lay_out(ui, after);
+        }
         ui.separator();
-        let reset = ui.button(look.say(window::RESET));
-        if reset.on_hover_text(look.tip(window::RESET)).clicked() {
-            after = before.reset();
+        let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
+        let other = match language {
+            Language::En => window::TO_CHINESE,
+            Language::Zh => window::TO_ENGLISH,
+        };
+        for (text, action) in [
+            (main::THEME, Action::Theme(theme.other())),
+            (other, Action::Language(language.other())),
+        ] {
+            if entry(ui, text) {
+                pane.actions.push(action);
+            }
+        }
+        ui.separator();
+        for (text, opens) in [
+            (window::COMMANDS, ViewRequest::Palette),
+            (window::KEYS, ViewRequest::Keys),
+        ] {
+            if entry(ui, text) {
+                pane.open(opens);
+            }
         }
         ui.separator();
         for (text, action) in [
             (exhibit::ENTER, ExhibitAction::Enter),
             (exhibit::ENTER_FILE, ExhibitAction::EnterFile),
         ] {
-            let button = ui.button(look.say(text));
-            if button.on_hover_text(look.tip(text)).clicked() {
+            if entry(ui, text) {
                 pane.actions.push(Action::Exhibit(action));
             }
-        }
-        if after != before {
-            pane.actions.push(Action::Layout(after));
         }
     });
 }

@@ -18,11 +18,12 @@ use crate::ui::plots::times::clock;
 use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::text::LayoutJob;
-use egui::{Color32, Frame, Key, Stroke, TextEdit, Ui, vec2};
+use egui::{Color32, Frame, Key, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
+/// Height of the line.
+pub(crate) const HEIGHT: f32 = 28.0;
 /// A hand that answers sooner is there before a word could be read.
 const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
 /// How long the newest message is shown.
@@ -327,15 +328,8 @@ impl StatusLine {
         let warnings = warnings(pane);
         let worst = warnings.first();
         let palette = pane.look.palette;
-        let (fill, edge) = match worst {
-            Some(worst) => (palette.wash(worst.color), worst.color),
-            None => (palette.card, palette.edge),
-        };
-        let frame = Frame::new()
-            .fill(fill)
-            .stroke(Stroke::new(1.0, edge))
-            .corner_radius(theme::ROUND)
-            .inner_margin(vec2(theme::PAD, 0.0));
+        let fill = worst.map_or(palette.card, |worst| palette.wash(worst.color));
+        let frame = Frame::new().fill(fill).inner_margin(vec2(theme::PAD, 2.0));
         frame.show(ui, |ui| {
             kit::right_ui(ui, |ui| {
                 ui.set_min_size(ui.available_size());
@@ -464,16 +458,13 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     });
 }
 
-/// Title and sentence over at most two lines; the whole in the tooltip.
+/// Title and sentence as far as there is room; the whole in the tooltip.
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
     let title = Label::new(look.say(warning.title), warning.color);
     title.font(theme::title()).ui(ui);
-    let (font, color) = (theme::body(), look.palette.text);
-    let mut job = LayoutJob::simple(warning.body.clone(), font, color, ui.available_width());
-    job.wrap.max_rows = 2;
-    let response = ui.add(egui::Label::new(job).wrap());
-    response.on_hover_text(&warning.body);
+    let words = Label::new(&warning.body, look.palette.text).ui(ui);
+    words.on_hover_text(&warning.body);
 }
 
 fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {

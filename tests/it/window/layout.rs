@@ -193,13 +193,13 @@ fn a_border_is_dragged_is_kept_and_comes_back() {
     drag_border(&mut bench, 1, 50.0);
     assert!((at(&bench, 1) - side - 50.0).abs() <= 2.0, "{side}");
     let kept = bench.state().settings.layout;
-    assert!(kept.joints.share.is_some() && kept.side.share.is_some());
+    assert!(kept.medium.joints.share.is_some() && kept.medium.stage.share.is_some());
     drag_border(&mut bench, 0, 900.0);
     check(&bench, LARGE, "STOP", "wide joints");
     // Beyond what the joints need they are a rail.
     drag_border(&mut bench, 0, -900.0);
     bench.run(400);
-    assert!(bench.state().settings.layout.joints.shut);
+    assert!(bench.state().settings.layout.medium.joints.shut);
     check(&bench, LARGE, "STOP", "narrow joints");
     menu(&mut bench, "Reset layout");
     assert_eq!(borders(&bench), designed);
@@ -213,7 +213,7 @@ fn a_border_is_dragged_is_kept_and_comes_back() {
 fn every_room_but_the_plots_can_be_shut_and_opened_again() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.run(400);
-    for room in ["Joints", "Faults", "Poses", "Fingertips and faults"] {
+    for room in ["Joints", "Poses", "Hand"] {
         bench.click("Window menu");
         bench.run(60);
         bench.click_box(room);
