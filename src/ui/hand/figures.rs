@@ -2,6 +2,7 @@
 
 use crate::app::readings::Freshness;
 use crate::hand::heat::WARM;
+use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Quantity};
 use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::hand::view::{HandPoints, HandView};
@@ -15,22 +16,27 @@ const LEAST: f32 = 200.0;
 /// Room of a figure: its column's width, and its three lines.
 const WIDTH: f32 = 76.0;
 const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
-/// How far apart the figures of a column are, as a part of the height.
-const APART: f32 = 0.17;
-/// Where the thumb's is.
-const THUMB: f32 = 0.42;
+/// How far apart the figures of the outer fingers are, as a part of the hand's height, and where the thumb's is: below it, as
+/// the index has its own above it.
+const APART: f32 = 0.13;
+const THUMB: f32 = 0.7;
 /// What is left free between the hand and its figures.
 const CLEAR: f32 = 2.0 * theme::GAP;
-/// How strong a line is, and the ring at its end.
+/// How strong a line is, and the ring at its end; and how much a figure hides of what it stands on.
 const LINE_PART: f32 = 0.7;
 const RING: f32 = 2.5;
+const GROUND_PART: f32 = 0.6;
 
-/// Where the hand itself is drawn: between the columns of its figures.
-pub(crate) fn picture_place(place: Rect) -> Rect {
+/// Where the hand itself is drawn: beside the figures of the outer fingers. Those of index and thumb stand above and below the
+/// thumb, where no pose gets to.
+pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
     if place.height() < LEAST {
         return place;
     }
-    place.shrink2(vec2(WIDTH + CLEAR, 0.0))
+    match side {
+        Side::Right => place.with_min_x(place.left() + WIDTH + CLEAR),
+        Side::Left => place.with_max_x(place.right() - WIDTH - CLEAR),
+    }
 }
 
 /// Draws the figures beside what `view` drew last in the middle of a place.
@@ -44,25 +50,28 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
     }
 }
 
-/// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves: the three outer
-/// fingers in one column from the middle one down, index and thumb in the other, so that no line crosses another.
+/// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves.
 fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
-    let apart = (place.height() * APART).max(HEIGHT);
+    let hand = points.bounds;
+    let apart = (hand.height() * APART).max(HEIGHT);
     let (is_outer, down) = match finger {
         Finger::Middle => (true, 0.0),
         Finger::Ring => (true, apart),
         Finger::Little => (true, 2.0 * apart),
         Finger::Index => (false, 0.0),
-        Finger::Thumb => (false, (place.height() * THUMB).max(2.0 * HEIGHT)),
+        Finger::Thumb => (false, hand.height() * THUMB),
     };
     let on_left = is_outer == points.is_forward;
+    let out = if is_outer { CLEAR + WIDTH } else { WIDTH / 2.0 };
     let x = if on_left {
-        (points.bounds.left() - CLEAR - WIDTH).max(place.left())
+        hand.left() - out
     } else {
-        (points.bounds.right() + CLEAR).min(place.right() - WIDTH)
+        hand.right() + out - WIDTH
     };
-    let corner = pos2(x, place.top() + down);
-    (Rect::from_min_size(corner, vec2(WIDTH, HEIGHT)), on_left)
+    let size = vec2(WIDTH, HEIGHT);
+    let room = Rect::from_min_max(place.min, place.max - size);
+    let corner = room.clamp(pos2(x, hand.top() + down));
+    (Rect::from_min_size(corner, size), on_left)
 }
 
 fn figure_ui(
@@ -80,7 +89,15 @@ fn figure_ui(
         let top = slot.top() + line * theme::TEXT_LINE;
         Rect::from_min_size(pos2(slot.left(), top), vec2(WIDTH, theme::TEXT_LINE))
     });
-    line_to(ui, (second, on_left, tip), color);
+    let ground = look.palette.card.gamma_multiply(GROUND_PART);
+    ui.painter()
+        .rect_filled(first.union(second), theme::ROUND_SMALL, ground);
+    let from = match (finger, on_left) {
+        (Finger::Thumb, _) => (first.center_top(), vec2(0.0, -theme::STEP)),
+        (_, true) => (second.right_center(), vec2(theme::STEP, 0.0)),
+        (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
+    };
+    line_to(ui, from, tip, color.gamma_multiply(LINE_PART));
     let aligned = |label: Label<'_>, ui: &mut Ui, rect: Rect| {
         let label = if on_left { label.right() } else { label };
         label.put(ui, rect)
@@ -153,17 +170,11 @@ fn lock_ui(ui: &mut Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &s
     lock.named(&named).put(ui, place);
 }
 
-/// A thin line from a figure to its fingertip.
-fn line_to(ui: &Ui, (line, on_left, tip): (Rect, bool, Pos2), color: Color32) {
-    let (end, way) = if on_left {
-        (line.right_center(), theme::GAP)
-    } else {
-        (line.left_center(), -theme::GAP)
-    };
-    let color = color.gamma_multiply(LINE_PART);
-    let (from, knee) = (end + vec2(way / 2.0, 0.0), end + vec2(1.5 * way, 0.0));
+/// A thin line from a figure, which it leaves this way, to its fingertip.
+fn line_to(ui: &Ui, (from, way): (Pos2, Vec2), tip: Pos2, color: Color32) {
+    let knee = from + 3.0 * way;
     let stop = tip + (knee - tip).normalized() * RING;
     let painter = ui.painter();
-    painter.line(vec![from, knee, stop], Stroke::new(1.0, color));
+    painter.line(vec![from + way, knee, stop], Stroke::new(1.0, color));
     painter.circle_stroke(tip, RING, Stroke::new(theme::FOCUS_LINE, color));
 }

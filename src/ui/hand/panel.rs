@@ -45,7 +45,7 @@ impl HandPanel {
         let movable =
             |dof: Dof| picture.is_known(dof.finger()) && aim::refusal(pane, dof).is_none();
         let stage = HandStage {
-            rect: figures::picture_place(place),
+            rect: figures::picture_place(place, picture.side),
             palette: look.palette,
             picture: &picture,
             movable: PerDof::from_fn(movable),

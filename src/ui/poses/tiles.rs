@@ -197,6 +197,8 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let inner = rect.shrink(theme::STEP);
     let (picture, words) = inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT);
     if let Some(pose) = pictured(&state.poses, entry) {
+        // Room for what stands in the corners.
+        let picture = picture.shrink2(vec2(theme::GAP, 0.0));
         panel::sign_ui(ui, look, picture, &shares(&pose.angles));
     }
     let color = button.text_color(look);

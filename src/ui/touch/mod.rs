@@ -1,4 +1,4 @@
-//! The five fingertips: small under the drawn hand in the overview, large in their own view with one of them in detail.
+//! The five fingertips: small under the drawn hand in the overview, large beside it with one of them in detail.
 pub(crate) mod heat;
 pub(crate) mod table;
 pub(crate) mod tip_channels;
@@ -9,12 +9,14 @@ use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::fingertip::{self, Sense, Tip};
 use crate::ui::hand::panel::{self, HandPanel};
-use crate::ui::kit::{self, Button, Label, Pane, format};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
 use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
 use crate::ui::touch::tip_detail::TipDetail;
+use crate::ui::view::View;
 use egui::{
-    Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,
+    Align, CursorIcon, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui,
+    WidgetInfo, vec2,
 };
 
 /// Name and force of a fingertip of the overview; the height of its picture, as a
@@ -32,6 +34,8 @@ pub(crate) struct TouchView {
     detail: TipDetail,
     /// All numbers instead of one fingertip.
     numbers: bool,
+    /// The pass in which they were drawn large last.
+    large_at: Option<u64>,
 }
 
 impl TouchView {
@@ -50,10 +54,8 @@ impl TouchView {
             let picture = (height * TIP_PART).max(TIP_LEAST).min(widest).round();
             let room = height - HAND_LEAST - theme::GAP;
             let below = [picture + FIGURES, FIGURES, 0.0];
-            let below = below
-                .into_iter()
-                .find(|below| *below <= room)
-                .unwrap_or(0.0);
+            let fits = below.into_iter().find(|below| *below <= room);
+            let below = fits.filter(|_| !self.is_large(ui)).unwrap_or(0.0);
             let height = height - below - theme::GAP;
             ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
             if below > 0.0 {
@@ -72,7 +74,7 @@ impl TouchView {
     fn column_ui(
         &mut self,
         ui: &mut Ui,
-        pane: &Pane<'_>,
+        pane: &mut Pane<'_>,
         (finger, tip): (Finger, Option<&Tip>),
         picture: Option<f32>,
     ) {
@@ -89,8 +91,9 @@ impl TouchView {
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
+                let response = response.on_hover_cursor(CursorIcon::PointingHand);
                 if response.on_hover_text(tip).clicked() {
-                    self.detail.finger = finger;
+                    self.open(pane, finger);
                 }
             }
             table::value_ui(ui, pane, finger, &table::NORMAL);
@@ -100,26 +103,19 @@ impl TouchView {
     /// The drawn hand alone.
     pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let clicked = self.hand.ui(ui, pane, &heat::tips(pane));
-        self.detail.finger = clicked.unwrap_or(self.detail.finger);
+        if let Some(finger) = clicked {
+            self.open(pane, finger);
+        }
     }
 
-    /// The view of its own: the hand and five large fingertips over the chosen one in detail, or all numbers.
+    /// In place of the plots: five large fingertips over the chosen one in detail, or all numbers.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
+        self.large_at = Some(ui.ctx().cumulative_pass_nr());
         self.detail.follow(pane);
         let height = (ui.available_height() * 0.48).round();
         let upper = Panel::top("touch, upper");
         kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
-            let width = (height * 0.96).min(ui.available_width() * 0.36).round();
-            let left = Panel::left("touch, hand");
-            kit::bare(left, width, theme::GAP_RIGHT).show(ui, |ui| {
-                kit::card_ui(ui, look, |ui| {
-                    kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
-                        panel::side_ui(ui, pane);
-                    });
-                    self.hand_ui(ui, pane);
-                });
-            });
             kit::card_ui(ui, look, |ui| {
                 kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                     heat::scale_ui(ui, pane);
@@ -140,6 +136,18 @@ impl TouchView {
             ui.set_min_height(ui.available_height());
             self.lower_ui(ui, pane);
         });
+    }
+
+    /// Whether the large fingertips are drawn beside the hand.
+    fn is_large(&self, ui: &Ui) -> bool {
+        let now = ui.ctx().cumulative_pass_nr();
+        self.large_at.is_some_and(|at| at + 1 >= now)
+    }
+
+    /// Opens a fingertip in detail.
+    const fn open(&mut self, pane: &mut Pane<'_>, finger: Finger) {
+        self.detail.finger = finger;
+        pane.open(ViewRequest::View(View::Touch));
     }
 
     fn lower_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {

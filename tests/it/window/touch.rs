@@ -6,6 +6,7 @@ use handscope::app::readings::tare::Source;
 use handscope::hand::Finger;
 use handscope::poses::Preset;
 use handscope::sim::{Scenario, SimConfig};
+use handscope::ui::View;
 
 fn gripping() -> Bench {
     let config = SimConfig {
@@ -14,7 +15,7 @@ fn gripping() -> Bench {
     };
     let mut bench = Bench::open(config, LARGE);
     bench.wait(3000);
-    bench.click_first_button("Touch");
+    bench.show(View::Touch);
     bench.run(60);
     bench
 }
@@ -23,7 +24,7 @@ fn gripping() -> Bench {
 fn free() -> Bench {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.wait(1000);
-    bench.click_first_button("Touch");
+    bench.show(View::Touch);
     bench.run(60);
     bench
 }
@@ -40,14 +41,14 @@ fn rest(bench: &Bench, finger: Finger) -> [u32; 8] {
 }
 
 #[test]
-fn the_hand_is_drawn_and_named_in_both_views() {
+fn the_hand_is_drawn_and_named_with_the_plots_and_with_the_fingertips() {
     let mut bench = gripping();
-    let large = bench.rect(Role::Image, "Picture of the hand");
-    bench.click_first_button("Live");
+    let beside = bench.rect(Role::Image, "Picture of the hand");
+    bench.show(View::Live);
     bench.run(60);
     let small = bench.rect(Role::Image, "Picture of the hand");
-    let heights = [large, small].map(|place| place.height());
-    assert!(heights.iter().all(|height| *height > 200.0), "{heights:?}");
+    let heights = [beside, small].map(|place| place.height());
+    assert!(heights.iter().all(|height| *height > 272.0), "{heights:?}");
 }
 
 #[test]
@@ -153,7 +154,7 @@ fn a_taring_is_kept_for_its_hand_and_offered_but_never_taken_under_load() {
     let endpoint = "tcp:192.168.11.210";
     let mut bench = Bench::kept(config(), endpoint, LARGE);
     bench.wait(2000);
-    bench.click_first_button("Touch");
+    bench.show(View::Touch);
     bench.run(60);
     assert!(!bench.shows("Take the kept taring"));
     bench.click("Tare all");
@@ -201,14 +202,13 @@ fn the_heat_scale_stays_whatever_is_gripped() {
 fn a_fingertip_of_the_overview_is_chosen_for_the_detail() {
     let mut bench = gripping();
     for finger in ["Little", "Ring", "Middle", "Index", "Thumb"] {
-        bench.click_first_button("Live");
+        bench.show(View::Live);
         bench.run(60);
         let force = bench.reading(&format!("{finger} normal force"));
         assert!(!force.contains('-'), "in a grip all are known: {force}");
         bench.click(&format!("Fingertip: {finger}"));
         bench.run(60);
-        bench.click_first_button("Touch");
-        bench.run(60);
+        assert_eq!(bench.view(), View::Touch);
         assert!(bench.shows(&format!("Tare {finger}")));
     }
 }
