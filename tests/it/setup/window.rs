@@ -532,6 +532,13 @@ impl Bench {
         self.wheel_at(self.rect(Role::Slider, name).center(), notches);
     }
 
+    /// Scrolls the shelf of poses to its end.
+    pub(crate) fn scroll_shelf(&mut self) {
+        let first = self.rect(Role::Button, "Go to Open");
+        self.wheel_at(first.center(), -100.0);
+        self.run(1000);
+    }
+
     /// Notches of the wheel with the pointer at a place.
     pub(crate) fn wheel_at(&mut self, at: egui::Pos2, notches: f32) {
         self.harness.hover_at(at);
