@@ -42,7 +42,8 @@ pub(crate) struct Camera {
     /// The hand as the eye sees it: x right, y up, z near.
     pub(crate) hand: Affine3,
     center: Pos2,
-    per_mm: f32,
+    /// Points of a millimetre in the middle of the hand.
+    pub(crate) per_mm: f32,
     /// What the places of the reach fill on the screen.
     pub(crate) bounds: Rect,
 }

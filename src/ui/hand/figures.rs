@@ -16,9 +16,11 @@ const LEAST: f32 = 200.0;
 /// Room of a figure: its column's width, and its three lines.
 const WIDTH: f32 = 76.0;
 const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
-/// How far apart the figures of the outer fingers are, as a part of the hand's height, and where the thumb's is: below it, as
-/// the index has its own above it.
-const APART: f32 = 0.13;
+/// How far apart the figures of the outer fingers are, and how far above the hand they begin: a line comes to its tip from above
+/// the others.
+const APART: f32 = HEIGHT + theme::GAP;
+const ABOVE: f32 = theme::CONTROL;
+/// Where the thumb's is, as a part of the hand's height: below it, as the index has its own above it.
 const THUMB: f32 = 0.7;
 /// What is left free between the hand and its figures.
 const CLEAR: f32 = 2.0 * theme::GAP;
@@ -33,9 +35,10 @@ pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
     if place.height() < LEAST {
         return place;
     }
+    let below = place.with_min_y(place.top() + ABOVE);
     match side {
-        Side::Right => place.with_min_x(place.left() + WIDTH + CLEAR),
-        Side::Left => place.with_max_x(place.right() - WIDTH - CLEAR),
+        Side::Right => below.with_min_x(place.left() + WIDTH + CLEAR),
+        Side::Left => below.with_max_x(place.right() - WIDTH - CLEAR),
     }
 }
 
@@ -53,13 +56,12 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
 /// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves.
 fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
     let hand = points.bounds;
-    let apart = (hand.height() * APART).max(HEIGHT);
     let (is_outer, down) = match finger {
         Finger::Middle => (true, 0.0),
-        Finger::Ring => (true, apart),
-        Finger::Little => (true, 2.0 * apart),
+        Finger::Ring => (true, APART),
+        Finger::Little => (true, 2.0 * APART),
         Finger::Index => (false, 0.0),
-        Finger::Thumb => (false, hand.height() * THUMB),
+        Finger::Thumb => (false, ABOVE + hand.height() * THUMB),
     };
     let on_left = is_outer == points.is_forward;
     let out = if is_outer { CLEAR + WIDTH } else { WIDTH / 2.0 };
@@ -70,7 +72,7 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
     };
     let size = vec2(WIDTH, HEIGHT);
     let room = Rect::from_min_max(place.min, place.max - size);
-    let corner = room.clamp(pos2(x, hand.top() + down));
+    let corner = room.clamp(pos2(x, hand.top() - ABOVE + down));
     (Rect::from_min_size(corner, size), on_left)
 }
 

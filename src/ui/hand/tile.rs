@@ -12,6 +12,7 @@ use crate::ui::theme::Palette;
 use egui::cache::{ComputerMut, FrameCache};
 use egui::emath::{Float, OrderedFloat};
 use egui::{Mesh, Pos2, Rect, Ui};
+use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -32,6 +33,9 @@ const THUMB_UP: Turn = Turn {
 const STRAIGHT: f32 = 0.8;
 const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;
 const BENT: f32 = 0.2;
+
+/// A tile is no less than this high on the hand: a fist is not drawn much larger than an open hand.
+const LEAST_MM: f32 = 145.0;
 
 const fn turn(yaw: f32, pitch: f32) -> Turn {
     Turn {
@@ -119,8 +123,14 @@ fn draw_sign(
         let corners = part.solid.corners.iter();
         corners.map(|corner| part.frame.transform_point3(corner.at))
     });
-    let seen = corners.map(|at| at.with_z(at.z.max(CUT_MM)));
-    let camera = Camera::new(turn.of(picture.side), setting.rect, seen);
+    let seen: Vec<Vec3> = corners.map(|at| at.with_z(at.z.max(CUT_MM))).collect();
+    let fit = |rect: Rect| Camera::new(turn.of(picture.side), rect, seen.iter().copied());
+    let mut camera = fit(setting.rect);
+    let most = setting.rect.height() / LEAST_MM;
+    if camera.per_mm > most {
+        let size = setting.rect.size() * (most / camera.per_mm);
+        camera = fit(Rect::from_center_size(setting.rect.center(), size));
+    }
     let light = Light::new(palette.signs, &camera, &pose);
     let model = Model {
         camera: &camera,
@@ -235,7 +245,7 @@ mod tests {
             };
             assert!(top(&thumb) < 3.0 && top(&rest) > 15.0, "{side:?}");
             let bounds = mesh.calc_bounds();
-            assert!(bounds.width() > 40.0 && bounds.height() > 48.0, "{bounds}");
+            assert!(bounds.height() > 48.0, "{bounds}");
         }
     }
 }

@@ -235,7 +235,7 @@ impl TouchView {
                 let label = Label::new(&words, look.value(freshness, color)).font(font);
                 label.named(&name).ui(ui).on_hover_text(meaning);
             }
-            let top = ui.available_height() - theme::TITLE_LINE;
+            let top = (ui.available_height() - theme::TITLE_LINE).max(0.0);
             let (_, place) = ui.allocate_space(vec2(ui.available_width(), top));
             fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
             Label::new(name, look.palette.dof[finger.bend()]).ui(ui);

@@ -90,7 +90,8 @@ fn without_arming_and_while_locked_a_drag_on_a_finger_sends_nothing_and_says_why
     let from = index(&mut bench);
     let to = from + vec2(0.0, stage(&bench).height() * 0.3);
     bench.click("Index lock");
-    bench.run(60);
+    // Right after a click no tooltip comes.
+    bench.run(300);
     let (before, writes) = (targets(&bench), bench.writes().len());
     bench.point(from);
     bench.run(1500);
