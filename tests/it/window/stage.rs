@@ -2,7 +2,7 @@
 
 use crate::setup::window::{ANGLE_SET, Bench, LARGE, Role};
 use egui::{CursorIcon, Pos2, Rect, pos2, vec2};
-use handscope::hand::{Dof, Force};
+use handscope::hand::Dof;
 use handscope::sim::{Scenario, SimConfig};
 
 const FINGERS: [&str; 5] = ["Little", "Ring", "Middle", "Index", "Thumb"];
@@ -174,10 +174,6 @@ fn every_finger_has_its_force_in_a_place_that_stays_while_the_hand_moves() {
     bench.click("Close");
     bench.wait(3000);
     assert_eq!(places(&bench), before);
-    assert!(
-        bench.state().hand().stops_at(Dof::Index) >= Some(Force::GENTLE),
-        "a threshold is known"
-    );
 }
 
 #[test]
@@ -196,10 +192,7 @@ fn a_fault_stands_at_its_finger_until_it_is_old() {
     bench.unplug();
     bench.wait(3000);
     assert_eq!(troubles(&bench), 0);
-    assert!(
-        bench.shows(&figure("Index")),
-        "its old force is still there"
-    );
+    assert_eq!(labels(&bench, &figure("Index")).len(), 1);
 }
 
 #[test]
