@@ -137,7 +137,7 @@ fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
     let over = known.zip(hand.stops_at(dof));
     let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
     (
-        format::with_unit(raw, 4, Quantity::Force.row().unit),
+        format::with_unit(raw, 0, Quantity::Force.row().unit),
         over,
         freshness,
     )

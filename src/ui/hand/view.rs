@@ -191,7 +191,7 @@ impl HandView {
         let (picture, setting) = self.drawn.as_ref()?;
         let (camera, pose) = (setting.camera(picture.side), picture.pose());
         // The knuckles do not move.
-        let knuckle = |segment| camera.place(pose.frame(segment).translation.into()).x;
+        let knuckle = |segment| camera.place(pose.frame(segment).translation).x;
         Some(HandPoints {
             tips: PerFinger::from_fn(|finger| camera.place(pose.tip(finger))),
             bounds: camera.bounds,
