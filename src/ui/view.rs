@@ -40,7 +40,7 @@ impl Place {
     /// Its views; the first is the one it opens with.
     pub const fn views(self) -> &'static [View] {
         match self {
-            Self::Live => &[View::Live, View::Touch, View::Poses],
+            Self::Live => &[View::Live, View::Touch, View::Poses, View::Faults],
             Self::Tune => &[View::Tune, View::Compare],
             Self::Recordings => &[View::Sessions],
             Self::Hand => &[View::Connection, View::Device, View::Traffic],
@@ -61,7 +61,7 @@ pub enum View {
     Tune,
     /// What they came to, alone.
     Compare,
-    /// Faults, statuses and messages, in a drawer over whatever is open.
+    /// Faults, statuses and messages, in place of the plots.
     Faults,
     /// The person's poses, sequences of them, and the gestures in the hand, in place of the plots.
     Poses,
@@ -118,10 +118,15 @@ impl View {
         }
     }
 
-    /// Where it is; none for what lies over all places.
-    pub fn place(self) -> Option<Place> {
-        let mut all = Place::ALL.into_iter();
-        all.find(|place| place.views().contains(&self))
+    /// Where it is.
+    pub const fn place(self) -> Place {
+        match self {
+            Self::Live | Self::Touch | Self::Poses | Self::Faults => Place::Live,
+            Self::Tune | Self::Compare => Place::Tune,
+            Self::Sessions => Place::Recordings,
+            Self::Connection | Self::Device | Self::Traffic => Place::Hand,
+            Self::Inputs => Place::Share,
+        }
     }
 
     /// The view with this name.
@@ -145,11 +150,12 @@ mod tests {
     }
 
     #[test]
-    fn every_view_is_in_one_place_but_the_drawer() {
+    fn every_view_is_in_its_place() {
         for view in View::ALL {
-            let places = Place::ALL.into_iter();
-            let count = places.filter(|place| place.views().contains(&view)).count();
-            assert_eq!(count, usize::from(view != View::Faults), "{view:?}");
+            for place in Place::ALL {
+                let is_there = place.views().contains(&view);
+                assert_eq!(is_there, view.place() == place, "{view:?} {place:?}");
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::ui::trials::tune::TuneView;
 use crate::ui::view::{Place, View};
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
-use egui::{Area, Id, Order, Panel, Rect, Ui, UiBuilder, pos2};
+use egui::{Align, Layout, Panel, Rect, Ui, UiBuilder, vec2};
 use std::collections::BTreeMap;
 
 /// The least width of the joints: every number in its place.
@@ -41,8 +41,6 @@ const REPLAY_WITH_POSES: f32 = 480.0;
 const STRIP: f32 = 136.0;
 /// In a low window, and its least one.
 const STRIP_LEAST: f32 = 88.0;
-/// Width of the drawer of faults.
-const DRAWER: f32 = 460.0;
 
 /// The views, and which one is open.
 #[derive(Debug, Default)]
@@ -50,8 +48,8 @@ pub(super) struct Body {
     pub(super) view: View,
     /// What was open last in the place of the hand as a device.
     hand_view: Option<View>,
-    /// The drawer is open.
-    pub(super) faults_open: bool,
+    /// What is opened again when the faults are shut.
+    before_faults: View,
     /// The slot of the hand that was shown last, what its views remember, and what those of the others do.
     slot: SlotId,
     pub(super) own: HandViews,
@@ -113,11 +111,11 @@ impl Body {
 
     /// Opens a view.
     pub(super) fn show(&mut self, view: View) {
-        self.faults_open = view == View::Faults;
-        if !self.faults_open {
-            self.view = view;
+        if view == View::Faults && self.view != view {
+            self.before_faults = self.view;
         }
-        if view.place() == Some(Place::Hand) {
+        self.view = view;
+        if view.place() == Place::Hand {
             self.hand_view = Some(view);
         }
     }
@@ -129,29 +127,14 @@ impl Body {
         self.show(last.unwrap_or(first));
     }
 
-    /// Opens the drawer of faults with all of them alike, or shuts it.
+    /// Opens the faults, all of them alike, or what was open before.
     pub(super) fn toggle_faults(&mut self) {
         self.own.faults.choose(None);
-        self.faults_open = !self.faults_open;
-    }
-
-    /// Draws the drawer over the right end of a place, if it is open.
-    pub(super) fn drawer_ui(&mut self, ui: &Ui, pane: &mut Pane<'_>, below: Rect) {
-        if !self.faults_open {
-            return;
-        }
-        let mut place = below.shrink(theme::GAP);
-        place.min = pos2(
-            (place.right() - DRAWER).max(place.left()),
-            below.top() + theme::STEP,
-        );
-        let area = Area::new(Id::unique("drawer of faults")).fixed_pos(place.min);
-        area.order(Order::Middle).show(ui.ctx(), |ui| {
-            ui.set_min_size(place.size());
-            ui.set_max_size(place.size());
-            if self.own.faults.ui(ui, pane) {
-                self.faults_open = false;
-            }
+        let back = self.view == View::Faults;
+        self.show(if back {
+            self.before_faults
+        } else {
+            View::Faults
         });
     }
 
@@ -165,7 +148,7 @@ impl Body {
 
     /// The joints at the left of `ui`: all of each where they are set, else a rail with what matters.
     fn joints_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let sets_joints = self.view.place() == Some(Place::Live);
+        let sets_joints = self.view.place() == Place::Live;
         if self.rooms.is_shut(WindowRoom::Joints) || !sets_joints {
             let rail = Panel::left("rail");
             let rail = kit::bare(rail, 144.0 + theme::GAP, theme::GAP_RIGHT);
@@ -188,14 +171,14 @@ impl Body {
         if self.view != View::Sessions {
             self.sessions.leave();
         }
-        if self.view.place() == Some(Place::Hand) {
+        if self.view.place() == Place::Hand {
             self.hand_views_ui(ui, pane);
         }
         match self.view {
             View::Live if self.shows_all && pane.state.hands.is_several() => {
                 self.all_ui(ui, pane);
             }
-            View::Live | View::Touch | View::Poses => self.live_ui(ui, rect, pane),
+            View::Live | View::Touch | View::Poses | View::Faults => self.live_ui(ui, rect, pane),
             View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.compare.ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
@@ -203,8 +186,6 @@ impl Body {
             View::Inputs => self.own.inputs.ui(ui, pane),
             View::Traffic => self.own.traffic.ui(ui, pane),
             View::Sessions => self.sessions.ui(ui, pane),
-            // It lies over the others, and is never the one that is open.
-            View::Faults => {}
         }
     }
 
@@ -255,7 +236,7 @@ impl Body {
             designed: (width * 0.45).clamp(STAGE_LEAST, 680.0) + theme::GAP,
             least: STAGE_LEAST + theme::GAP,
             rest: match self.view {
-                View::Touch => DETAIL_LEAST,
+                View::Touch | View::Faults => DETAIL_LEAST,
                 View::Poses => POSES_LEAST,
                 _ => PLOTS_LEAST,
             },
@@ -266,20 +247,18 @@ impl Body {
             });
         }
         let rect = ui.available_rect_before_wrap();
-        if shows_plots {
-            self.plots_ui(ui, rect, pane);
-            return;
-        }
-        kit::right_ui(ui, |ui| {
-            ui.set_max_height(theme::CONTROL);
-            let back = Button::said(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
-            if back.ui(ui, pane.look).clicked() {
-                pane.open(ViewRequest::View(View::Live));
-            }
-        });
         match self.view {
-            View::Touch => self.own.touch.large_ui(ui, pane),
-            _ => self.poses.ui(ui, pane),
+            View::Touch => {
+                to_plots_ui(ui, pane);
+                self.own.touch.large_ui(ui, pane);
+            }
+            View::Poses => {
+                to_plots_ui(ui, pane);
+                self.poses.ui(ui, pane);
+            }
+            View::Faults if self.own.faults.ui(ui, pane) => self.view = self.before_faults,
+            View::Faults => {}
+            _ => self.plots_ui(ui, rect, pane),
         }
     }
 
@@ -288,6 +267,18 @@ impl Body {
             self.own.plots.ui(ui, pane)
         });
     }
+}
+
+/// The way back to the plots, over what stands in their place.
+fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let size = vec2(ui.available_width(), theme::CONTROL);
+    let row = Layout::right_to_left(Align::Center);
+    ui.allocate_ui_with_layout(size, row, |ui| {
+        let back = Button::said(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
+        if back.ui(ui, pane.look).clicked() {
+            pane.open(ViewRequest::View(View::Live));
+        }
+    });
 }
 
 /// Height of the strip of poses in a view as high as this.

@@ -37,7 +37,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
             hand_ui(ui, pane);
             ui.spacing_mut().item_spacing.x = 0.0;
             for place in Place::ALL {
-                place_ui(ui, pane, place, view.place() == Some(place));
+                place_ui(ui, pane, place, view.place() == place);
             }
             sharing_ui(ui, pane);
         });

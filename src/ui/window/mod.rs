@@ -6,16 +6,14 @@
 //! | status: warning, what moves the hand, message, note      |
 //! | several hands: a strip for each, with its STOP            |
 //! +----------+----------------+------------------------------+
-//! | joints   | drawn hand     | plots, or a fingertip,       |
-//! |          | fingertips     | or a pose being edited       |
+//! | joints   | drawn hand     | plots, or in their place a   |
+//! |          | fingertips     | fingertip, poses, faults     |
 //! |          +----------------+----------------------------- |
 //! |          | poses and demos                               |
 //! +----------+-----------------------------------------------+
 //! | time line of a replay                                    |
 //! +----------------------------------------------------------+
 //! ```
-//!
-//! Faults are a drawer at the right, over whatever place is open.
 mod body;
 mod cards;
 pub(crate) mod header;
@@ -194,7 +192,6 @@ impl Window {
             || self.palette.is_open()
             || self.body.own.status.writes_note()
             || self.cards.informs()
-            || self.body.faults_open
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
         if !is_open || !state.hands.iter().all(|hand| rests(hand, state.now)) {
@@ -203,11 +200,7 @@ impl Window {
         // Popups, fields and cards do so themselves.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
-            if self.palette.is_open() {
-                self.palette.hide();
-            } else {
-                self.body.faults_open = false;
-            }
+            self.palette.hide();
             self.body.own.status.drop_note();
         }
         Escape::Closes
@@ -279,7 +272,6 @@ impl Window {
         egui::CentralPanel::no_frame()
             .frame(body)
             .show(ui, |ui| self.body.ui(ui, pane));
-        self.body.drawer_ui(ui, pane, below);
         self.key_list.ui(ui, below, pane.look);
         let asked = self.cards.ui(ui, covered, card_of(pane.state, pane.look));
         pane.actions.extend(asked);

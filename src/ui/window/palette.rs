@@ -198,10 +198,7 @@ fn found(look: Look, typed: &str, poses: &PoseState, settings: &Settings) -> Vec
     };
     let places = Place::ALL.map(|place| Wish::Opens(ViewRequest::Place(place)));
     let views = View::ALL.into_iter();
-    let views = views.filter(|view| {
-        view.place()
-            .is_none_or(|place| place.title() != view.title())
-    });
+    let views = views.filter(|view| view.place().title() != view.title());
     let views: Vec<Wish> = views
         .map(|view| Wish::Opens(ViewRequest::View(view)))
         .collect();

@@ -172,16 +172,15 @@ fn session(more: &[&str]) {
         assert!(now.contains(&place), "{place} is not in {now:#?}");
     }
 
-    session.click("Language");
+    session.display.key("ctrl+l");
     session.twin.act(Action::Language(Language::Zh));
     session.looks("Chinese", View::Live, Language::Zh);
-    session.click("语言");
+    session.display.key("ctrl+l");
     session.twin.act(Action::Language(Language::En));
     for (name, view) in [
-        ("Touch", View::Touch),
         ("Faults", View::Faults),
-        ("Poses", View::Poses),
-        ("Connection", View::Connection),
+        ("Tune", View::Tune),
+        ("Hand", View::Connection),
         ("Traffic", View::Traffic),
         ("Live", View::Live),
     ] {
@@ -240,12 +239,16 @@ fn a_recording_is_scrubbed_with_the_mouse() {
         session.looks("scrubbed", View::Live, Language::En);
     }
     let stands = session.hand.read("ANGLE_SET");
-    session.click("Touch");
-    session.twin.view = View::Touch;
-    session.looks("another view of that moment", View::Touch, Language::En);
+    session.click("Hand");
+    session.twin.view = View::Connection;
+    session.looks(
+        "another view of that moment",
+        View::Connection,
+        Language::En,
+    );
     session.click("Back to live");
     session.twin.act(Action::Session(SessionAction::Close));
-    session.looks("live again", View::Touch, Language::En);
+    session.looks("live again", View::Connection, Language::En);
     assert_eq!(session.hand.read("ANGLE_SET"), stands, "nothing moved");
     session.display.close("Handscope");
     session.window.ends_well();

@@ -201,6 +201,7 @@ fn check_gentle(state: &State, speed: i32) {
 /// Stages the best as defaults, applies and saves it in one step.
 fn keep(person: &mut Person) {
     person.press("Stage as defaults");
+    person.open("Hand", View::Connection);
     person.open("Device", View::Device);
     person.until("the rows", |state| state.hand().params.read_at.is_some());
     person.press("Save to flash");

@@ -128,15 +128,14 @@ fn every_control_has_its_name() {
     for name in [
         "Disarm the hand",
         "Open all",
-        "Clear errors",
+        "Faults",
         "Pause the plots",
         "Thresholds",
         "Plot window",
         "Gesture 1 open",
         "Gesture 14 cup",
         "Save pose",
-        "Theme",
-        "Language",
+        "Window menu",
         "Link state: Armed",
     ] {
         harness.get_by_label(name);
@@ -301,7 +300,7 @@ fn what_is_not_known_is_a_dash() {
 
 #[test]
 fn old_values_show_their_age_and_a_lost_link_is_said_in_words() {
-    let harness = open(states::lost());
+    let mut harness = open(states::lost());
     harness.get_by_label("Age 2.4 s");
     harness.get_by_label("LINK LOST");
     harness.get_by_label("Next try in 0.6 s");
@@ -313,6 +312,8 @@ fn old_values_show_their_age_and_a_lost_link_is_said_in_words() {
             .accesskit_node()
             .is_disabled()
     );
+    harness.get_by_label("Faults").click();
+    harness.run_steps(3);
     assert!(
         harness
             .get_by_label("Clear errors")
@@ -344,11 +345,14 @@ fn faults_are_listed_with_advice_and_over_temperature_is_said_to_stay() {
     harness
         .get_by_label("What to do: Let it cool: this fault cannot be cleared and ends by itself.");
     let mut harness = open(states::faulted());
+    harness.get_by_label("Show faults").click();
+    harness.run_steps(3);
     harness.get_by_label("Clear errors").click();
     assert_eq!(actions(&mut harness), [Action::ClearErrors]);
-    harness.get_by_label("Show faults").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().window.view(), View::Faults);
+    harness.get_by_label("Close faults").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Clear errors").is_none());
+    assert_eq!(harness.state().window.view(), View::Live);
 }
 
 #[test]
@@ -639,18 +643,48 @@ fn the_link_lamp_opens_the_connection_and_tabs_open_their_views() {
     harness.get_by_label("Link state: Monitoring").click();
     harness.run_steps(2);
     assert_eq!(harness.state().window.view(), View::Connection);
-    harness.get_by_role_and_label(Role::Button, "Touch").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().window.view(), View::Touch);
+    for (place, view) in [
+        ("Tune", View::Tune),
+        ("Sessions", View::Sessions),
+        ("Share", View::Inputs),
+        ("Hand", View::Connection),
+        ("Live", View::Live),
+    ] {
+        let place = harness.get_by_role_and_label(Role::Button, place);
+        place.click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().window.view(), view);
+    }
+}
+
+#[test]
+fn the_place_of_the_device_opens_with_the_view_that_was_open_there_last() {
+    let mut harness = open(states::live());
+    for (button, view) in [
+        ("Hand", View::Connection),
+        ("Device", View::Device),
+        ("Live", View::Live),
+        ("Hand", View::Device),
+    ] {
+        let button = harness.get_by_role_and_label(Role::Button, button);
+        button.click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().window.view(), view);
+    }
 }
 
 #[test]
 fn theme_language_window_and_pause_are_asked_for() {
     let mut harness = open(states::live());
-    harness.get_by_label("Theme").click();
-    assert_eq!(actions(&mut harness), [Action::Theme(Theme::Light)]);
-    harness.get_by_label("Language").click();
-    assert_eq!(actions(&mut harness), [Action::Language(Language::Zh)]);
+    for (entry, action) in [
+        ("Dark or light", Action::Theme(Theme::Light)),
+        ("中文", Action::Language(Language::Zh)),
+    ] {
+        harness.get_by_label("Window menu").click();
+        harness.run_steps(3);
+        harness.get_by_label(entry).click();
+        assert_eq!(actions(&mut harness), [action]);
+    }
     harness.get_by_label("Pause the plots").click();
     assert_eq!(actions(&mut harness), []);
     let node = harness.get_by_label("Pause the plots");

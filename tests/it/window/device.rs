@@ -34,7 +34,7 @@ fn defaults(bench: &mut Bench, value: i16) {
 }
 
 fn open(bench: &mut Bench) {
-    bench.click_first_button("Device");
+    bench.show(View::Device);
     bench.until(2000, |bench| {
         let book = &bench.state().hand().params;
         book.read_at.is_some() && !book.is_busy()
@@ -92,7 +92,7 @@ fn without_a_hand_every_value_is_a_dash_and_the_reason_is_said() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.unplug();
     bench.wait(1000);
-    bench.click_first_button("Device");
+    bench.show(View::Device);
     bench.run(100);
     assert_eq!(bench.reading("Index speed live"), "-");
     assert_eq!(bench.texts_with("No hand answers. What was read").len(), 1);

@@ -1,10 +1,12 @@
 //! Claims about the view that explains the hand: what was missed is shown until seen, words are a click away, the log.
 
 use crate::setup::window::{Bench, LARGE, Role};
+use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::sim::SimConfig;
+use handscope::ui::View;
 
 /// A stall of the index finger that came and went.
 fn missed() -> Bench {
@@ -23,14 +25,14 @@ fn missed() -> Bench {
 #[test]
 fn a_fault_that_went_unseen_is_told_of_everywhere_until_a_person_says_that_they_saw_it() {
     let mut bench = missed();
-    for view in ["Live", "Poses", "Faults", "Live"] {
-        bench.click_first_button(view);
+    for view in [View::Live, View::Poses, View::Faults, View::Tune] {
+        bench.show(view);
         bench.run(60);
         assert!(
             bench.shows("Faults: 1 unseen"),
-            "{view}: opening a view is not seeing"
+            "{view:?}: opening a view is not seeing"
         );
-        assert!(bench.shows("Index unseen fault"), "{view}");
+        assert!(bench.shows("Index unseen fault"), "{view:?}");
     }
     bench.click("Faults: 1 unseen");
     bench.run(60);
@@ -56,7 +58,7 @@ fn all_faults_are_seen_at_once_and_unseen_when_they_come_again() {
     let mut bench = missed();
     bench.hand(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
     bench.wait(200);
-    bench.click_button("Faults");
+    bench.show(View::Faults);
     bench.run(60);
     assert!(bench.shows("Faults: 2 unseen"));
     bench.click("All seen");
@@ -71,7 +73,7 @@ fn all_faults_are_seen_at_once_and_unseen_when_they_come_again() {
 #[test]
 fn the_list_stands_still_while_the_pointer_is_on_it() {
     let mut bench = missed();
-    bench.click_first_button("Faults");
+    bench.show(View::Faults);
     bench.run(60);
     bench.point_at("What the words mean");
     // The messages at the right have the same words.
@@ -159,7 +161,7 @@ fn the_log_keeps_what_was_dismissed_and_is_filtered_and_copied() {
         bench.shows("No messages"),
         "a fault has its own place in the overview"
     );
-    bench.click_button("Faults");
+    bench.show(View::Faults);
     bench.run(60);
     let copy = |bench: &mut Bench| bench.click_to_copy("Copy: Messages").unwrap();
     let all = copy(&mut bench);
@@ -197,7 +199,7 @@ fn recorded() -> Bench {
     bench.wait(1500);
     bench.hand(|hand, _| hand.inject_fault(Dof::Index, Fault::Stall));
     bench.wait(2000);
-    bench.click_button("Faults");
+    bench.show(View::Faults);
     bench.run(60);
     bench.click("Clear errors");
     bench.wait(500);
@@ -286,7 +288,7 @@ fn no_two_controls_overlap_in_an_opened_recording() {
         bench.wait(400);
         bench.hand(|hand, _| hand.inject_fault(Dof::ThumbRotate, Fault::OverTemperature));
         bench.wait(17_000);
-        bench.click_first_button("Faults");
+        bench.show(View::Faults);
         bench.run(60);
         bench.click("Recordings (1)");
         bench.run(60);
@@ -294,7 +296,7 @@ fn no_two_controls_overlap_in_an_opened_recording() {
         bench.click("Open: Thumb rotate: Over-temperature");
         bench.run(60);
         crate::window::layout::check(&bench, size, "STOP", &format!("{size} recording"));
-        bench.click_first_button("Language");
+        bench.key_with(Modifiers::COMMAND, Key::L);
         bench.run(60);
         crate::window::layout::check(&bench, size, "停止", &format!("{size} in Chinese"));
     }

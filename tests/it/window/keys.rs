@@ -329,7 +329,7 @@ fn tab_walks_from_the_top_bar_over_the_joints_to_the_view() {
     let order = [
         "STOP",
         "Disarm the hand",
-        "Touch",
+        "Live",
         "Little angle target",
         "Little force threshold",
         "Little speed",

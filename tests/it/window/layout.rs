@@ -1,29 +1,24 @@
 //! Claims about places: STOP is always whole and free, and nothing that can be pressed lies on another thing.
 
 use crate::setup::window::{Bench, LARGE, Role};
-use egui::{Pos2, Rect, Vec2, vec2};
+use egui::{Key, Modifiers, Pos2, Rect, Vec2, vec2};
 use handscope::sim::SimConfig;
+use handscope::ui::View;
 
 const SIZES: [Vec2; 3] = [vec2(1024.0, 640.0), LARGE, vec2(2560.0, 1440.0)];
-/// Tabs, STOP, theme and language, as each language calls them.
+/// Places, faults and STOP, as each language calls them.
 const ENGLISH: Names = Names {
-    tabs: ["Live", "Touch", "Faults", "Poses", "Connection"],
+    tabs: ["Live", "Tune", "Recordings", "Share", "Hand", "Faults"],
     stop: "STOP",
-    theme: "Theme",
-    language: "Language",
 };
 const CHINESE: Names = Names {
-    tabs: ["总览", "触觉", "故障", "姿态", "连接"],
+    tabs: ["总览", "整定", "录制", "共享", "灵巧手", "故障"],
     stop: "停止",
-    theme: "主题",
-    language: "语言",
 };
 
 struct Names {
-    tabs: [&'static str; 5],
+    tabs: [&'static str; 6],
     stop: &'static str,
-    theme: &'static str,
-    language: &'static str,
 }
 
 pub(crate) fn check(bench: &Bench, size: Vec2, stop: &str, when: &str) {
@@ -63,7 +58,7 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         assert!(bench.state().hand().connection.is_armed());
         bench.drag("Index angle target", 1.0, 0.6);
         check(&bench, size, "STOP", &format!("{size} armed"));
-        bench.click_first_button("Poses");
+        bench.show(View::Poses);
         bench.run(60);
         bench.click("In the hand");
         bench.run(60);
@@ -71,10 +66,10 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         bench.run(60);
         assert!(bench.all(Role::TextInput).len() > 40);
         check(&bench, size, "STOP", &format!("{size} naming"));
-        bench.click_first_button("Live");
+        bench.show(View::Live);
         bench.run(60);
         check(&bench, size, "STOP", &format!("{size} naming in the strip"));
-        bench.click_first_button("Connection");
+        bench.show(View::Connection);
         bench.run(60);
         for kind in ["RS485", "Modbus TCP", "Simulated"] {
             bench.click(&format!("Kind of link: {kind}"));
@@ -94,7 +89,7 @@ fn no_two_controls_overlap_among_poses_and_steps() {
     for size in SIZES {
         let mut bench = Bench::open(SimConfig::default(), size);
         bench.wait(400);
-        bench.click_first_button("Poses");
+        bench.show(View::Poses);
         bench.run(60);
         bench.click("Save the pose the hand has now");
         bench.run(60);
@@ -124,10 +119,10 @@ fn check_all_views(mut bench: Bench, size: Vec2) {
                 bench.run(60);
                 check(&bench, size, names.stop, &format!("{size} {tab} {theme}"));
             }
-            bench.click_first_button(names.theme);
+            bench.key_with(Modifiers::COMMAND, Key::D);
             bench.run(40);
         }
-        bench.click_first_button(names.language);
+        bench.key_with(Modifiers::COMMAND, Key::L);
         bench.run(60);
     }
 }

@@ -18,7 +18,7 @@ fn pose(bench: &mut Bench, angle: i16) {
 }
 
 fn open(bench: &mut Bench) {
-    bench.click_first_button("Poses");
+    bench.show(View::Poses);
     bench.run(60);
 }
 

@@ -24,7 +24,7 @@ fn at_connection(config: SimConfig) -> Bench {
     let mut bench = Bench::open(config, LARGE);
     bench.list_ports(vec![usb_port(PORT)]);
     bench.wait(200);
-    bench.click_first_button("Connection");
+    bench.show(View::Connection);
     bench.run(60);
     bench
 }
@@ -181,7 +181,7 @@ fn in_a_small_window_form_and_scan_scroll_together() {
     let mut bench = Bench::open(SimConfig::default(), size);
     bench.list_ports(vec![usb_port(PORT)]);
     bench.wait(200);
-    bench.click_first_button("Connection");
+    bench.show(View::Connection);
     bench.run(60);
     bench.click_button("Scan all ports");
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());

@@ -3,6 +3,7 @@
 use crate::setup::program::{Program, env};
 use crate::setup::time::Time;
 use crate::setup::window::{Bench, LARGE, Role};
+use egui::{Key, Modifiers};
 use handscope::app::settings::Settings;
 use handscope::hand::Dof;
 use handscope::link::PollPriority;
@@ -50,18 +51,22 @@ fn the_first_start_is_live_within_a_second_badged_disarmed_and_writes_nothing() 
 #[test]
 fn looking_around_writes_nothing() {
     let mut bench = Bench::live();
-    for tab in ["Touch", "Faults", "Poses", "Connection", "Live"] {
-        bench.click_button(tab);
+    for view in View::ALL {
+        bench.show(view);
         bench.run(100);
     }
-    for name in ["Theme", "Theme", "Pause the plots", "Thresholds"] {
+    bench.show(View::Live);
+    for key in [Key::D, Key::D] {
+        bench.key_with(Modifiers::COMMAND, key);
+    }
+    for name in ["Pause the plots", "Thresholds"] {
         bench.click(name);
         bench.run(100);
     }
-    bench.click("Language");
-    bench.run(100);
-    bench.click("语言");
-    bench.run(100);
+    for _language in 0..2 {
+        bench.key_with(Modifiers::COMMAND, Key::L);
+        bench.run(100);
+    }
     assert!(bench.shows("Link state: Monitoring"));
     assert_eq!(bench.writes(), []);
 }
@@ -69,7 +74,7 @@ fn looking_around_writes_nothing() {
 #[test]
 fn connecting_and_disconnecting_write_nothing() {
     let mut bench = Bench::live();
-    bench.click_button("Connection");
+    bench.show(View::Connection);
     bench.run(100);
     bench.click_button("Disconnect");
     bench.wait(200);
@@ -85,7 +90,7 @@ fn connecting_and_disconnecting_write_nothing() {
 #[test]
 fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() {
     let mut bench = Bench::live();
-    bench.click_button("Connection");
+    bench.show(View::Connection);
     for (kind, has_words) in [("RS485", false), ("Modbus RTU", true), ("Modbus TCP", true)] {
         bench.click_button(&format!("Kind of link: {kind}"));
         bench.run(60);

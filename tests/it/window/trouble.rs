@@ -1,13 +1,13 @@
 //! Claims about what goes wrong: a pulled cable, drives with faults, values that no hand should send.
 
 use crate::setup::window::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
+use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::record::LinkState;
 use handscope::sim::{Scenario, SimConfig};
-
-const VIEWS: [&str; 6] = ["Live", "Touch", "Faults", "Poses", "Connection", "Traffic"];
+use handscope::ui::View;
 
 #[test]
 fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
@@ -59,7 +59,7 @@ fn messages_of_several_lines_stand_below_each_other() {
     bench.unplug();
     bench.until(300, |bench| bench.shows("LINK LOST"));
     bench.wait(1500);
-    bench.click_first_button("Faults");
+    bench.show(View::Faults);
     bench.run(60);
     let labels = bench.all(Role::Label);
     let is_lost = |(text, _): &&(String, _)| text.starts_with("Link lost. ");
@@ -193,7 +193,7 @@ fn over_temperature_is_said_to_stay_and_stays() {
         hand.warm(Dof::Middle, 92.0);
     });
     bench.wait(200);
-    bench.click_button("Faults");
+    bench.show(View::Faults);
     bench.run(100);
     let cannot = "What to do: Let it cool: this fault cannot be cleared and ends by itself.";
     assert!(bench.shows("Middle: Over-temperature") && bench.shows(cannot));
@@ -225,17 +225,17 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     let mut bench = Bench::open(config, LARGE);
     bench.wait(1000);
     for _theme in 0..2 {
-        for view in VIEWS {
-            bench.click_button(view);
+        for view in View::ALL {
+            bench.show(view);
             // The values go once around the six joints.
             for _ in 0..6 {
                 bench.wait(1000);
-                assert!(bench.is_disabled(Role::Button, "Arm the hand"), "{view}");
+                assert!(bench.is_disabled(Role::Button, "Arm the hand"), "{view:?}");
             }
         }
-        bench.click("Theme");
+        bench.key_with(Modifiers::COMMAND, Key::D);
     }
-    bench.click_button("Touch");
+    bench.show(View::Touch);
     bench.run(100);
     assert_eq!(bench.reading("Little normal force"), "NaN N");
     bench.click_button("All numbers");
@@ -245,7 +245,7 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     assert_eq!(bench.reading("Ring tangential force"), "not a number");
     assert!(bench.has_reading("Ring tangential force", "-inf N"));
     assert_eq!(bench.reading("Ring check"), "diff");
-    bench.click_button("Faults");
+    bench.show(View::Faults);
     bench.run(100);
     for code in ["4", "255", "8", "254", "7", "3"] {
         let in_words = format!("({code})");
@@ -256,7 +256,7 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
         let words = format!("Unknown fault, bit {bit}");
         assert!(!bench.texts_with(&words).is_empty(), "{words}");
     }
-    bench.click("Language");
+    bench.key_with(Modifiers::COMMAND, Key::L);
     for view in ["总览", "触觉", "故障", "姿态", "连接"] {
         bench.click_button(view);
         bench.wait(200);
@@ -304,7 +304,7 @@ fn saving() -> Bench {
     for address in [1032, 1044] {
         bench.hand(|hand, now| hand.write(address, &gentle, now).unwrap());
     }
-    bench.click_first_button("Device");
+    bench.show(View::Device);
     bench.until(2000, |bench| bench.state().hand().params.read_at.is_some());
     bench.run(200);
     bench.click("Save to flash");
