@@ -11,6 +11,7 @@ use handscope::hand::Dof;
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::{ArmRefusal, SaveDoubt, Saved};
 use handscope::sim::SimConfig;
+use handscope::ui::View;
 use std::time::Duration;
 
 /// DEFAULT_SPEED_SET and DEFAULT_FORCE_SET (manual 2.6.8, 2.6.9).
