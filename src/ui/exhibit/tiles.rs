@@ -123,7 +123,7 @@ impl PieceTile<'_> {
         // What a pose leaves alone is drawn open.
         let share = |to: Option<Angle>| f32::from(to.unwrap_or(Angle::MAX).get()) / 1000.0;
         let shares = self.piece.shown().map(|to| Some(share(to)));
-        panel::pose_ui(ui, page.look, place, &shares);
+        panel::sign_ui(ui, page.look, place, &shares);
         if self.refusal.is_some() {
             let veil = page.look.palette.card.gamma_multiply(VEIL);
             ui.painter().rect_filled(place, 0.0, veil);

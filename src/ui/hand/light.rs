@@ -1,17 +1,40 @@
-//! Light on the hand: one key light, a soft fill, the sky, and what they lose in folds and shadows.
+//! What is drawn, solids with their coats, and the light on them: one key light, a soft fill, the sky, and what they lose in
+//! folds and shadows.
 
-use crate::hand::kinematics::SegmentFrames;
+use crate::hand::kinematics::{Segment, SegmentFrames};
 use crate::ui::hand::bars::{Bars, Near};
 use crate::ui::hand::camera::{Camera, EYE_MM};
-use crate::ui::hand::part::{Coat, Part};
 use crate::ui::hand::shape::rings::step;
-use crate::ui::hand::solid::Skin;
+use crate::ui::hand::solid::{Skin, Solid};
 use crate::ui::theme::{self, Material, Studio};
 use egui::Color32;
 use glam::{Affine3, Vec3};
 
 /// How the key light falls off to the right and downwards, per millimetre.
 const FALL_PER_MM: f32 = 0.0016;
+
+/// One solid to be drawn.
+#[derive(Debug)]
+pub(crate) struct Part<'a> {
+    pub(crate) solid: &'a Solid,
+    /// Whose it is: for the pointer and the shadows. None for what is no part of the hand.
+    pub(crate) segment: Option<Segment>,
+    pub(crate) frame: Affine3,
+    pub(crate) coat: Coat,
+}
+
+/// How a part is coated.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Coat {
+    /// How much it covers where one looks straight onto it; 0 stands for all.
+    pub(crate) glass: f32,
+    /// Light of this colour in it, and how much.
+    pub(crate) glow: Option<(Color32, f32)>,
+    /// Heat of its pad, and how much of the pad's own colour that covers.
+    pub(crate) heat: Option<(Color32, f32)>,
+    /// The colour of what is plain.
+    pub(crate) color: Option<Color32>,
+}
 
 /// The light of one picture.
 #[derive(Debug)]

@@ -4,14 +4,15 @@
 //! one plain mesh of them as a [`camera`] sees them, so that OpenGL, the software window and pictures without a display show the same. [`scene`] says
 //! what is to be seen, [`view`] from where, [`tile`] keeps small pictures; [`panel`] alone knows the program's state.
 
+pub(crate) mod aim;
 mod bars;
 mod camera;
+mod figures;
+mod finger_drag;
 pub(crate) mod fingertip;
 mod light;
 pub(crate) mod panel;
-mod part;
 pub(crate) mod pointed;
-mod reach;
 mod render;
 mod scene;
 mod shape;

@@ -3,27 +3,30 @@
 use crate::app::action::Action;
 use crate::app::hands::Hand;
 use crate::app::readings::Freshness;
+use crate::hand::heat::{HOT, WARM};
 use crate::hand::kinematics::Side;
-use crate::hand::{Finger, Moment, PerDof, PerFinger};
+use crate::hand::{Angle, Dof, Finger, Moment, PerDof, PerFinger, Status};
 use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::hand::fingertip::{Sense as Meant, Tip};
 use crate::ui::hand::pointed::{self, PointedPlace};
-use crate::ui::hand::scene::{HandPicture, TipLoad};
+use crate::ui::hand::scene::{HandPicture, Hurt, TipLoad};
 use crate::ui::hand::shape::Held;
 use crate::ui::hand::tile;
-use crate::ui::hand::view::HandView;
+use crate::ui::hand::view::{HandStage, HandView};
+use crate::ui::hand::{aim, figures};
 use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
-use crate::ui::text::{panels, words};
+use crate::ui::text::{main, panels, window, words};
 use crate::ui::theme;
-use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 /// The drawn hand, turned as a person wants it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandPanel(HandView);
 
 impl HandPanel {
-    /// Draws the hand over what is left of `ui` and returns the finger that was chosen.
+    /// Draws the hand over what is left of `ui`, with the figures of its fingers beside it. A finger that is dragged is sent
+    /// there. Returns the finger that was chosen.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -39,19 +42,39 @@ impl HandPanel {
             lit: pointed::pointed(ui, PointedPlace::Row),
             ..picture(pane.state.hand(), tips, pane.state.now)
         };
-        let (response, joint) = self.0.ui(ui, response, look.palette, &picture);
+        let movable =
+            |dof: Dof| picture.is_known(dof.finger()) && aim::refusal(pane, dof).is_none();
+        let stage = HandStage {
+            rect: figures::picture_place(place, picture.side),
+            palette: look.palette,
+            picture: &picture,
+            movable: PerDof::from_fn(movable),
+        };
+        let used = self.0.ui(ui, &response, &stage);
+        figures::figures_ui(ui, pane, &self.0, place);
         unknown_note(ui, look, place, &picture);
-        side_ui(ui, place, pane);
-        if let Some(dof) = joint {
+        if let Some(dof) = used.joint {
             pointed::point(ui, PointedPlace::Hand, dof);
         }
-        let finger = joint.map(crate::hand::Dof::finger);
-        let clicked = finger.filter(|_| response.clicked());
-        response.on_hover_text(finger.map_or_else(
+        if let Some((dof, share)) = used.moved {
+            send(ui, pane, dof, share);
+            return None;
+        }
+        let clicked = response.clicked();
+        response.on_hover_text(used.joint.map_or_else(
             || look.tip(panels::HAND_PICTURE).to_owned(),
-            |finger| said(pane, finger),
+            |dof| said(pane, dof),
         ));
-        clicked
+        used.joint.map(Dof::finger).filter(|_| clicked)
+    }
+}
+
+/// Sends a joint where its finger was dragged to, unless it is sent there already.
+fn send(ui: &Ui, pane: &mut Pane<'_>, dof: Dof, share: f32) {
+    #[expect(clippy::cast_possible_truncation, reason = "a share of at most 1")]
+    let angle = Angle::nearest((share * f32::from(Angle::MAX.get())).round() as i16);
+    if pane.state.hand().controls.joints[dof].target != Some(angle) {
+        aim::send(pane, dof, angle, aim::is_linked(ui));
     }
 }
 
@@ -68,9 +91,14 @@ impl StillHand {
     }
 }
 
-/// Draws a pose alone: for tiles and dry runs. `shares` of the way to open; a finger with an unknown joint is a shell.
+/// Draws a pose that changes: for dry runs and editors. `shares` of the way to open; a finger with an unknown joint is a shell.
 pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
     tile::pose_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
+}
+
+/// Draws a pose that is to be told from others: from where its fingers are seen best, those that matter in colour.
+pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    tile::sign_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
 }
 
 /// A hand as it is known now, with what its fingertips feel.
@@ -91,8 +119,30 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
         is_stale: state.freshness(angle.map(|angle| angle.asked), now) == Freshness::Stale,
         tips: tips.map(|tip| tip.as_ref().map(load).unwrap_or_default()),
         held: state.connection.endpoint.as_ref().and_then(held),
+        hurts: hurts(state, now),
         ..HandPicture::of(state.side, &actual)
     }
+}
+
+/// What hurts the drives; nothing of old values.
+fn hurts(state: &Hand, now: Moment) -> PerDof<Hurt> {
+    let sample = &state.readings.sample;
+    let is_live = |asked: Moment| state.freshness(Some(asked), now) == Freshness::Live;
+    let faults = sample.faults.filter(|group| is_live(group.asked));
+    let status = sample.status.filter(|group| is_live(group.asked));
+    let heat = sample.temperature.filter(|group| is_live(group.asked));
+    PerDof::from_fn(|dof| {
+        let has_fault = faults.is_some_and(|group| group.value[dof].iter().next().is_some());
+        let protects = status.is_some_and(|group| Status::is_protective(group.value[dof]));
+        let degrees = heat.and_then(|group| group.value[dof].documented());
+        let warm = degrees.and_then(|degrees| degrees.checked_sub(WARM));
+        // One step from cool: from the first warm degree on it is seen.
+        let heat = warm.map_or(0.0, |over| f32::from(over + 1) / f32::from(HOT - WARM + 1));
+        Hurt {
+            is_bad: has_fault || protects,
+            heat: heat.min(1.0),
+        }
+    })
 }
 
 /// What a fingertip feels; nothing of old values.
@@ -132,30 +182,37 @@ fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
     }
 }
 
-/// In a corner of the picture: which hand is drawn, and the way to the other one.
-fn side_ui(ui: &mut Ui, picture: Rect, pane: &mut Pane<'_>) {
+/// Which hand is drawn, as a button that draws the other one.
+pub(crate) fn side_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let words = look.say(match look.side {
         Side::Right => panels::RIGHT_HAND,
         Side::Left => panels::LEFT_HAND,
     });
-    let width = kit::text_width(ui, words, theme::body()) + 2.0 * theme::GAP;
-    let corner = picture.right_bottom() - vec2(width, theme::CONTROL);
-    let place = Rect::from_min_size(corner, vec2(width, theme::CONTROL));
     let button = Button::new(words, look.say(panels::SIDE_TIP)).weight(Weight::Quiet);
-    let id = ui.next_auto_id().with("side");
-    if button.put(ui, look, place, id).clicked() {
+    if button.ui(ui, look).clicked() {
         pane.actions.push(Action::Side(look.side.other()));
     }
 }
 
-/// A finger with its force, as a sentence reads it.
-fn said(pane: &Pane<'_>, finger: Finger) -> String {
+/// What a joint is and does when it is dragged, or why it cannot be, with what its fingertip feels.
+fn said(pane: &Pane<'_>, dof: Dof) -> String {
+    let look = pane.look;
+    let name = look.say(words::dof(dof));
+    let drag = match aim::refusal(pane, dof) {
+        None => look.say(panels::DRAG_FINGER),
+        Some(_) if pane.unready() == Some(look.say(main::NOT_ARMED)) => look.say(window::ARM_FIRST),
+        Some(reason) => reason,
+    };
+    format!("{}\n{}", look.pair(name, drag), felt(pane, dof.finger()))
+}
+
+/// What a fingertip feels.
+pub(crate) fn felt(pane: &Pane<'_>, finger: Finger) -> String {
     let look = pane.look;
     let block = pane.state.hand().readings.sample.tactile[finger].map(|block| block.value);
     format!(
-        "{}: {} {} N, {} {} N",
-        look.say(words::finger(finger)),
+        "{} {} N, {} {} N",
         look.say(panels::TIP_NORMAL),
         format::newtons(block.map(|block| block.normal_n)),
         look.say(panels::TIP_SHEAR),

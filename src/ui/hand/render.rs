@@ -2,8 +2,7 @@
 
 use crate::hand::kinematics::Segment;
 use crate::ui::hand::camera::{Camera, EYE_MM};
-use crate::ui::hand::light::Light;
-use crate::ui::hand::part::Part;
+use crate::ui::hand::light::{Light, Part};
 use crate::ui::hand::solid::Face;
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2};
@@ -146,24 +145,29 @@ impl Sketch {
             .sum()
     }
 
-    /// The segment of the hand that is seen at a place of the mesh drawn last.
-    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<Segment> {
+    /// The segment of the hand that is seen at a place of the mesh drawn last, and how near it is there.
+    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<(Segment, f32)> {
         let corner = |at: u32| {
             mesh.vertices
                 .get(at as usize)
                 .map_or(Pos2::ZERO, |vertex| vertex.pos)
         };
-        let holds = |seen: &&Seen| {
+        let depth = |at: u32| self.depths.get(at as usize).copied().unwrap_or(0.0);
+        let found = |seen: &Seen| {
             let [a, b, c] = seen.corners.map(corner);
             let side = |from: Pos2, to: Pos2| (to - from).rot90().dot(place - from);
-            let sides = [side(a, b), side(b, c), side(c, a)];
-            sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0)
+            // Each as large as the part of the corner opposite.
+            let sides = [side(b, c), side(c, a), side(a, b)];
+            let is_in =
+                sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
+            let whole: f32 = sides.iter().sum();
+            let depths = seen.corners.map(depth).into_iter().zip(sides);
+            let depth = depths.map(|(depth, part)| depth * part).sum::<f32>() / whole;
+            (is_in && whole != 0.0).then_some((seen.segment?, depth))
         };
         let nearest_first = self.order.iter().rev();
         let seen = nearest_first.filter_map(|number| self.seen.get((number & 0xFFFF) as usize));
-        seen.filter(|seen| seen.segment.is_some())
-            .find(holds)?
-            .segment
+        seen.filter(|seen| seen.segment.is_some()).find_map(found)
     }
 }
 

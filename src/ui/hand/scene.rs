@@ -2,7 +2,7 @@
 
 use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
-use crate::ui::hand::part::{Coat, Part};
+use crate::ui::hand::light::{Coat, Part};
 use crate::ui::hand::shape::{self, Held};
 use crate::ui::theme::Palette;
 use arrayvec::ArrayVec;
@@ -19,6 +19,12 @@ const ARROW_MIN_N: f32 = 0.1;
 const SHELL_PART: f32 = 0.1;
 const HELD_PART: f32 = 0.2;
 
+/// How much light covers what is pointed at, has a fault, is a little warm (twice that if hot), or matters.
+const LIT_PART: f32 = 0.5;
+const BAD_PART: f32 = 0.65;
+const WARM_PART: f32 = 0.3;
+const MARKED_PART: f32 = 0.85;
+
 /// What one fingertip feels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct TipLoad {
@@ -26,6 +32,15 @@ pub(crate) struct TipLoad {
     pub(crate) heat: Option<f32>,
     /// Newtons out of the pad, towards the tip, and to the right of who looks onto the pad with the tip up.
     pub(crate) force: Option<[f32; 3]>,
+}
+
+/// What hurts a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Hurt {
+    /// It has a fault, or protects itself.
+    pub(crate) is_bad: bool,
+    /// From not warm (0) to hot (1).
+    pub(crate) heat: f32,
 }
 
 /// What is to be seen. Angles are shares of the way from bent (0) to open (1).
@@ -43,6 +58,10 @@ pub(crate) struct HandPicture {
     pub(crate) tips: PerFinger<TipLoad>,
     /// What the simulated hand has before it.
     pub(crate) held: Option<Held>,
+    /// What hurts the drives.
+    pub(crate) hurts: PerDof<Hurt>,
+    /// The fingers that the pose is about.
+    pub(crate) marked: PerFinger<bool>,
     /// The joint that is pointed at somewhere else.
     pub(crate) lit: Option<Dof>,
 }
@@ -57,11 +76,19 @@ impl HandPicture {
             is_stale: false,
             tips: PerFinger::splat(TipLoad::default()),
             held: None,
+            hurts: PerDof::splat(Hurt::default()),
+            marked: PerFinger::splat(false),
             lit: None,
         }
     }
 
-    fn is_known(&self, finger: Finger) -> bool {
+    /// Where the segments are; what is unknown is open.
+    pub(crate) fn pose(&self) -> SegmentFrames {
+        SegmentFrames::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)))
+    }
+
+    /// Whether all angles of a finger are known.
+    pub(crate) fn is_known(&self, finger: Finger) -> bool {
         let mut own = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
         own.all(|dof| self.actual[dof].is_some())
     }
@@ -83,8 +110,7 @@ impl HandPicture {
         palette: &Palette,
         is_small: bool,
     ) -> (SegmentFrames, ArrayVec<Part<'static>, 32>) {
-        let pose =
-            SegmentFrames::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)));
+        let pose = self.pose();
         let mut parts = ArrayVec::new();
         let part = |segment| {
             Some(Part {
@@ -141,9 +167,29 @@ impl HandPicture {
         Coat {
             // What is not touched keeps the colour of the sensor.
             heat: heat.map(|heat| (palette.heat(heat), (heat * 4.0).clamp(0.0, 1.0))),
-            glow: lit.map(|dof| (palette.dof[dof], 0.5)),
+            glow: self.glow(segment, lit, palette),
             ..Coat::default()
         }
+    }
+
+    /// What a segment shines with: what hurts first.
+    fn glow(
+        &self,
+        segment: Segment,
+        lit: Option<Dof>,
+        palette: &Palette,
+    ) -> Option<(Color32, f32)> {
+        let dof = segment.dof()?;
+        let hurt = self.hurts[dof];
+        if hurt.is_bad {
+            return Some((palette.bad, BAD_PART));
+        }
+        let marked = self.marked[dof.finger()].then_some((palette.accent, MARKED_PART));
+        let color = palette.warn.lerp_to_gamma(palette.bad, hurt.heat);
+        let warm = (hurt.heat > 0.0).then_some((color, WARM_PART + WARM_PART * hurt.heat));
+        lit.map(|dof| (palette.dof[dof], LIT_PART))
+            .or(warm)
+            .or(marked)
     }
 
     /// The force of a fingertip: out of the pad, leaning as the tangential force does.

@@ -5,12 +5,12 @@ use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
 use crate::sim::object::Object;
-use crate::ui::hand::camera::{Camera, Turn};
-use crate::ui::hand::reach::REACH;
+use crate::ui::hand::camera::Turn;
+use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::render::Sketch;
-use crate::ui::hand::scene::HandPicture;
+use crate::ui::hand::scene::{HandPicture, Hurt};
 use crate::ui::hand::shape::{self, Held};
-use crate::ui::hand::view::{DrawSettings, HandView, TURN, draw};
+use crate::ui::hand::view::{DrawSettings, HandStage, HandUse, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{
     Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
@@ -26,11 +26,6 @@ fn setting(side: Side, size: f32) -> DrawSettings {
         theme: Theme::Dark,
         feather: 1.0,
     }
-}
-
-fn camera(setting: &DrawSettings, side: Side) -> Camera {
-    let reach = REACH.iter().map(|at| side.frame().transform_point3(*at));
-    Camera::new(setting.turn, setting.rect, reach)
 }
 
 /// Fingers, bend and rotation of the thumb.
@@ -52,10 +47,12 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
         Turn {
             yaw: 3.0,
             pitch: 1.2,
+            roll: 0.0,
         },
         Turn {
             yaw: -1.6,
             pitch: -1.2,
+            roll: 1.6,
         },
     ];
     for (side, turn) in SIDES
@@ -106,7 +103,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
 #[test]
 fn fingers_close_towards_who_looks() {
     for side in SIDES {
-        let camera = camera(&setting(side, 300.0), side);
+        let camera = setting(side, 300.0).camera(side);
         for finger in Finger::ALL {
             let near = |share: f32| {
                 let picture = posed(side, [share, share, 1.0]);
@@ -137,7 +134,7 @@ fn a_left_hand_is_the_mirror_image_on_the_screen() {
 fn the_joint_under_the_pointer_is_the_one_drawn_there() {
     for side in SIDES {
         let setting = setting(side, 400.0);
-        let camera = camera(&setting, side);
+        let camera = setting.camera(side);
         // Open, the pads are seen; closed, the backs of the fingers.
         for (shares, out) in [([1.0; 3], 1.0), ([0.0, 1.0, 1.0], -16.0)] {
             let picture = posed(side, shares);
@@ -151,14 +148,15 @@ fn the_joint_under_the_pointer_is_the_one_drawn_there() {
                 let place = camera.project(camera.hand.transform_point3(seen));
                 let found = sketch.segment_at(&mesh, place);
                 assert_eq!(
-                    found.and_then(Segment::dof),
+                    found.and_then(|(segment, _)| segment.dof()),
                     Some(finger.bend()),
                     "{shares:?} {finger:?}"
                 );
             }
             assert_eq!(sketch.segment_at(&mesh, setting.rect.right_top()), None);
             let palm = camera.project(camera.hand.transform_point3(Vec3::new(0.0, 14.0, 80.0)));
-            assert_eq!(sketch.segment_at(&mesh, palm), Some(Segment::Palm));
+            let found = sketch.segment_at(&mesh, palm).map(|(segment, _)| segment);
+            assert_eq!(found, Some(Segment::Palm));
         }
     }
 }
@@ -222,58 +220,213 @@ fn the_simulated_hand_meets_what_is_drawn_before_it() {
     }
 }
 
-#[test]
-fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
-    let (context, mut view) = (Context::default(), HandView::default());
-    let mut time = 0.0;
-    let mut pass = |view: &mut HandView, events: Vec<Event>| {
-        time += 0.05;
+/// A view of an open hand in a window of 300 by 300 points, driven by events.
+struct DrivenView {
+    context: Context,
+    view: HandView,
+    time: f64,
+    movable: bool,
+}
+
+impl DrivenView {
+    fn new(movable: bool) -> Self {
+        Self {
+            context: Context::default(),
+            view: HandView::default(),
+            time: 0.0,
+            movable,
+        }
+    }
+
+    fn pass(&mut self, events: Vec<Event>) -> HandUse {
+        self.time += 0.05;
         let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(300.0, 300.0)));
         let input = RawInput {
             screen_rect,
-            time: Some(time),
+            time: Some(self.time),
             events,
             ..RawInput::default()
         };
-        let mut found = None;
-        let mut output = context.run_ui(input, |ui| {
+        let (view, movable) = (&mut self.view, self.movable);
+        let mut used = HandUse::default();
+        let mut output = self.context.run_ui(input, |ui| {
             let rect = ui.max_rect();
             let response = ui.interact(rect, Id::unique("hand"), Sense::click_and_drag());
             let picture = posed(Side::Right, [1.0; 3]);
-            let (_, joint) = view.ui(ui, response, Palette::of(Theme::Dark), &picture);
-            found = joint;
+            let stage = HandStage {
+                rect,
+                palette: Palette::of(Theme::Dark),
+                picture: &picture,
+                movable: PerDof::splat(movable),
+            };
+            used = view.ui(ui, &response, &stage);
         });
         output.textures_delta.clear();
-        found
-    };
-    let to = |x: f32, y: f32| Event::PointerMoved(pos2(x, y));
-    let press = |pressed: bool, x: f32| Event::PointerButton {
-        pos: pos2(x, 150.0),
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
-    pass(&mut view, vec![to(150.0, 150.0)]);
-    pass(&mut view, vec![press(true, 150.0)]);
-    pass(&mut view, vec![to(190.0, 150.0)]);
-    pass(&mut view, vec![to(210.0, 150.0)]);
-    pass(&mut view, vec![press(false, 210.0)]);
-    let turned = view.turn.unwrap();
+        used
+    }
+
+    fn to(&mut self, at: Pos2) -> HandUse {
+        self.pass(vec![Event::PointerMoved(at)])
+    }
+
+    fn button(&mut self, pressed: bool, at: Pos2) -> HandUse {
+        self.pass(vec![Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        }])
+    }
+
+    /// Where the tip of the index is seen.
+    fn index(&self) -> Pos2 {
+        self.view.points().unwrap().tips[Finger::Index] + vec2(0.0, 3.0)
+    }
+}
+
+#[test]
+fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
+    let mut driven = DrivenView::new(false);
+    let at = |x: f32| pos2(x, 150.0);
+    driven.to(at(150.0));
+    driven.button(true, at(150.0));
+    driven.to(at(190.0));
+    driven.to(at(210.0));
+    driven.button(false, at(210.0));
+    let turned = driven.view.turn.unwrap();
     assert!((turned.yaw - TURN.yaw).abs() > 0.2 && (turned.pitch - TURN.pitch).abs() < 1e-3);
     for _ in 0..2 {
-        pass(&mut view, vec![press(true, 210.0)]);
-        pass(&mut view, vec![press(false, 210.0)]);
+        driven.button(true, at(210.0));
+        driven.button(false, at(210.0));
     }
-    assert_eq!(view.turn, None);
+    assert_eq!(driven.view.turn, None);
     // A finger is found where it is drawn, and lights up there.
-    let lit: Vec<_> = (10..140u8)
-        .filter_map(|y| pass(&mut view, vec![to(125.0, f32::from(y))]))
-        .collect();
-    assert!(
-        lit.contains(&Dof::Middle) || lit.contains(&Dof::Ring),
-        "{lit:?}"
-    );
-    assert_eq!(pass(&mut view, vec![to(5.0, 5.0)]), None);
-    let (last, _) = view.drawn.unwrap();
-    assert_eq!(last.lit, None);
+    let index = driven.index();
+    assert_eq!(driven.to(index).joint, Some(Dof::Index));
+    assert_eq!(driven.view.drawn.unwrap().0.lit, Some(Dof::Index));
+    assert_eq!(driven.to(pos2(5.0, 5.0)).joint, None);
+    driven.to(pos2(5.0, 5.0));
+    assert_eq!(driven.view.drawn.unwrap().0.lit, None);
+}
+
+#[test]
+fn a_finger_is_dragged_only_while_it_may_be_moved_and_then_turns_nothing() {
+    let mut driven = DrivenView::new(true);
+    driven.to(pos2(5.0, 5.0));
+    let from = driven.index();
+    driven.to(from);
+    driven.button(true, from);
+    let mut last = 1.0;
+    for step in 1..=8u8 {
+        let used = driven.to(from + vec2(0.0, f32::from(step) * 8.0));
+        let Some((dof, share)) = used.moved else {
+            panic!("{step}: {used:?}")
+        };
+        assert_eq!(dof, Dof::Index);
+        assert!(
+            (0.0..=last).contains(&share),
+            "{step}: {share} after {last}"
+        );
+        last = share;
+    }
+    assert!(last < 0.7, "{last}");
+    // Disarmed meanwhile: nothing follows the pointer any more, also if it is armed again before it is let go.
+    for movable in [false, true] {
+        driven.movable = movable;
+        let used = driven.to(from + vec2(f32::from(u8::from(movable)) * 30.0 + 9.0, 30.0));
+        assert_eq!(used.moved, None, "{movable}");
+    }
+    assert_eq!(driven.view.turn, None);
+    driven.button(false, from);
+    // What may not be moved turns the picture.
+    driven.movable = false;
+    driven.to(from);
+    driven.button(true, from);
+    assert_eq!(driven.to(from + vec2(40.0, 0.0)).moved, None);
+    assert!(driven.view.turn.is_some());
+}
+
+#[test]
+fn a_dragged_place_follows_the_pointer_without_jumps_from_wherever_it_is_seen() {
+    let front = TURN;
+    let turned = Turn {
+        yaw: -0.7,
+        pitch: 0.3,
+        roll: 0.0,
+    };
+    for (side, turn) in SIDES
+        .into_iter()
+        .flat_map(|side| [front, turned].map(|turn| (side, turn)))
+    {
+        let setting = DrawSettings {
+            turn: turn.of(side),
+            ..setting(side, 500.0)
+        };
+        let camera = setting.camera(side);
+        for finger in Finger::ALL {
+            let dof = finger.bend();
+            let seen = |share: f32| {
+                let mut picture = posed(side, [1.0; 3]);
+                picture.actual[dof] = Some(share);
+                let at = camera.hand.transform_point3(picture.pose().tip(finger));
+                (picture, camera.project(at), at.z)
+            };
+            let (picture, from, depth) = seen(1.0);
+            let hold = || {
+                let seen = (Segment::tip(finger), depth);
+                FingerDrag::new((&camera, &picture), seen, from).unwrap()
+            };
+            // Along its own way it is where the pointer is.
+            let mut drag = hold();
+            for step in 1..=20u8 {
+                let share = 1.0 - f32::from(step) / 20.0;
+                let found = drag.follow((&camera, &picture), seen(share).1);
+                assert!(
+                    (found - share).abs() < 0.05,
+                    "{side:?} {finger:?} {share}: {found}"
+                );
+            }
+            // Straight to where it ends it goes that way only, in steps, and gets there.
+            let (mut drag, mut last) = (hold(), 1.0);
+            for step in 1..=100u8 {
+                let to = from.lerp(seen(0.0).1, f32::from(step) / 100.0);
+                let share = drag.follow((&camera, &picture), to);
+                assert!(
+                    share <= last + 1e-3,
+                    "{side:?} {finger:?}: {share} after {last}"
+                );
+                assert!(
+                    last - share < 0.06,
+                    "{side:?} {finger:?}: {share} after {last}"
+                );
+                last = share;
+            }
+            assert!(last < 0.08, "{side:?} {finger:?}: {last}");
+            // Beyond its end it stays there.
+            let beyond = (seen(0.0).1 - from) * 9.0;
+            let share = drag.follow((&camera, &picture), from + beyond);
+            assert!((0.0..0.01).contains(&share), "{side:?} {finger:?}: {share}");
+        }
+    }
+}
+
+#[test]
+fn a_fault_is_seen_before_warmth_and_neither_on_another_joint() {
+    let palette = Palette::of(Theme::Dark);
+    let mut picture = posed(Side::Right, [1.0; 3]);
+    picture.hurts[Dof::Ring].heat = 0.5;
+    picture.hurts[Dof::ThumbRotate] = Hurt {
+        is_bad: true,
+        heat: 1.0,
+    };
+    let (_, parts) = picture.parts(palette, false);
+    let glow = |segment| {
+        let mut own = parts.iter().filter(|part| part.segment == Some(segment));
+        own.next().unwrap().coat.glow.map(|(color, _)| color)
+    };
+    assert_eq!(glow(Segment::Thumb1), Some(palette.bad));
+    assert_eq!(glow(Segment::Thumb4), None);
+    assert_eq!(glow(Segment::Index2), None);
+    let warm = glow(Segment::Ring2).unwrap();
+    assert!(warm != palette.bad && warm != palette.warn, "{warm:?}");
 }

@@ -1,15 +1,17 @@
-//! From where the hand is looked at: turned by dragging, drawn again only when something of it changed.
+//! From where the hand is looked at, and what a drag on it does: it turns the picture, or takes a finger along. Drawn again only
+//! when something of it changed.
 
 use crate::app::settings::Theme;
-use crate::hand::Dof;
 use crate::hand::kinematics::{Segment, Side};
-use crate::ui::hand::camera::{Camera, Turn};
+use crate::hand::{Dof, PerDof, PerFinger};
+use crate::ui::hand::camera::{Camera, REACH, Turn};
+use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::light::Light;
-use crate::ui::hand::reach::REACH;
 use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::theme::Palette;
-use egui::{Mesh, Rect, Response, Shape, Ui};
+use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// From where the hand is looked at if nobody turned it: from the side of the little finger and a little below, so that
@@ -17,6 +19,7 @@ use std::sync::Arc;
 pub(crate) const TURN: Turn = Turn {
     yaw: 0.45,
     pitch: -0.18,
+    roll: 0.0,
 };
 /// Radians of turning for a point of dragging, and how far it can be tipped.
 const TURN_RAD: f32 = 0.01;
@@ -26,17 +29,31 @@ const STALE_PART: f32 = 0.55;
 /// Height of a picture below which fewer triangles do.
 const SMALL_POINTS: f32 = 110.0;
 /// Where such a picture ends below.
-const CUT_MM: f32 = 42.0;
-/// The part of its height over which it fades there.
-const FADE_PART: f32 = 0.16;
+pub(crate) const CUT_MM: f32 = 42.0;
+/// Over how much of the palm it fades there.
+const FADE_MM: f32 = 34.0;
+
 /// From where a hand is looked at, and what was drawn last.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandView {
     /// Nobody turned it where there is none.
     pub(crate) turn: Option<Turn>,
     pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
+    drag: HandDrag,
     sketch: Sketch,
     mesh: Arc<Mesh>,
+}
+
+/// What the drag of now does.
+#[derive(Debug, Clone, Copy, Default)]
+enum HandDrag {
+    /// Turns the picture.
+    #[default]
+    Turns,
+    /// Takes a finger along.
+    Moves(FingerDrag),
+    /// Nothing: its finger could not be moved any more.
+    Over,
 }
 
 /// Where and how a picture is drawn.
@@ -49,38 +66,106 @@ pub(crate) struct DrawSettings {
     pub(crate) feather: f32,
 }
 
+/// What is drawn where, and which joints a drag may move.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HandStage<'a> {
+    pub(crate) rect: Rect,
+    pub(crate) palette: &'a Palette,
+    pub(crate) picture: &'a HandPicture,
+    pub(crate) movable: PerDof<bool>,
+}
+
+/// What a person does with the picture.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct HandUse {
+    /// The joint under the pointer, or the one that is dragged.
+    pub(crate) joint: Option<Dof>,
+    /// Where a joint is dragged to, as a share of the way to open.
+    pub(crate) moved: Option<(Dof, f32)>,
+}
+
+/// Where the picture has what its figures belong to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HandPoints {
+    pub(crate) tips: PerFinger<Pos2>,
+    /// What the hand fills in all poses.
+    pub(crate) bounds: Rect,
+    /// The thumb is at the right.
+    pub(crate) is_forward: bool,
+}
+
 impl HandView {
-    /// Draws the hand. A drag turns it, a double click turns it back.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &Ui,
-        response: Response,
-        palette: &Palette,
-        picture: &HandPicture,
-    ) -> (Response, Option<Dof>) {
-        let rect = response.rect;
+    /// Draws the hand. A drag moves a joint that is movable, else it turns the picture; a double click turns it back.
+    pub(crate) fn ui(&mut self, ui: &Ui, response: &Response, stage: &HandStage<'_>) -> HandUse {
+        if response.drag_started() {
+            let origin = ui.input(|input| input.pointer.press_origin());
+            let grip = origin.and_then(|at| self.grip(at));
+            let grip = grip.filter(|grip| stage.movable[grip.dof]);
+            self.drag = grip.map_or(HandDrag::Turns, HandDrag::Moves);
+        }
+        let mut used = HandUse::default();
         if response.dragged() {
-            let by = response.drag_delta() * TURN_RAD;
-            let Turn { yaw, pitch } = self.turn(picture.side);
-            let pitch = (pitch + by.y).clamp(-PITCH_MAX_RAD, PITCH_MAX_RAD);
-            self.turn = Some(Turn {
-                yaw: yaw - by.x,
-                pitch,
-            });
+            used = self.dragged(response, stage);
+        } else if let Some(at) = response.hover_pos() {
+            let segment = self.sketch.segment_at(&self.mesh, at);
+            used.joint = segment.and_then(|(segment, _)| segment.dof());
         }
         if response.double_clicked() {
             self.turn = None;
         }
-        let joint = response.hover_pos().filter(|_| !response.dragged());
-        let joint = joint
-            .and_then(|at| self.sketch.segment_at(&self.mesh, at))
-            .and_then(Segment::dof);
-        let picture = HandPicture {
-            lit: joint.or(picture.lit),
-            ..*picture
+        let icon = match used {
+            HandUse { moved: Some(_), .. } => Some(CursorIcon::Grabbing),
+            HandUse { joint, .. } => {
+                let movable = joint.is_some_and(|dof| stage.movable[dof]);
+                movable.then_some(CursorIcon::Grab)
+            }
         };
-        self.paint(ui, rect, palette, &picture);
-        (response, joint)
+        if let Some(icon) = icon {
+            ui.ctx().set_cursor_icon(icon);
+        }
+        let mut picture = HandPicture {
+            lit: used.joint.or(stage.picture.lit),
+            ..*stage.picture
+        };
+        if let Some((dof, share)) = used.moved {
+            picture.target[dof] = Some(share);
+        }
+        self.paint(ui, stage.rect, stage.palette, &picture);
+        used
+    }
+
+    /// Takes hold of what was drawn at a place.
+    fn grip(&self, at: Pos2) -> Option<FingerDrag> {
+        let (picture, setting) = self.drawn.as_ref()?;
+        let seen = self.sketch.segment_at(&self.mesh, at)?;
+        FingerDrag::new((&setting.camera(picture.side), picture), seen, at)
+    }
+
+    fn dragged(&mut self, response: &Response, stage: &HandStage<'_>) -> HandUse {
+        let (at, drawn) = (response.interact_pointer_pos(), self.drawn);
+        match &mut self.drag {
+            HandDrag::Turns => {
+                let by = response.drag_delta() * TURN_RAD;
+                let turn = self.turn(stage.picture.side);
+                let pitch = (turn.pitch + by.y).clamp(-PITCH_MAX_RAD, PITCH_MAX_RAD);
+                self.turn = Some(Turn {
+                    yaw: turn.yaw - by.x,
+                    pitch,
+                    ..turn
+                });
+            }
+            HandDrag::Moves(grip) if stage.movable[grip.dof] => {
+                let camera = drawn.map(|(picture, setting)| setting.camera(picture.side));
+                let moved = camera.zip(at).map(|(camera, at)| {
+                    let share = grip.follow((&camera, stage.picture), at);
+                    (grip.dof, share)
+                });
+                let joint = Some(grip.dof);
+                return HandUse { joint, moved };
+            }
+            drag => *drag = HandDrag::Over,
+        }
+        HandUse::default()
     }
 
     /// Draws the hand as it was turned last.
@@ -101,18 +186,42 @@ impl HandView {
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
     }
 
+    /// Where the picture has what its figures belong to.
+    pub(crate) fn points(&self) -> Option<HandPoints> {
+        let (picture, setting) = self.drawn.as_ref()?;
+        let (camera, pose) = (setting.camera(picture.side), picture.pose());
+        // The knuckles do not move.
+        let knuckle = |segment| camera.place(pose.frame(segment).translation).x;
+        Some(HandPoints {
+            tips: PerFinger::from_fn(|finger| camera.place(pose.tip(finger))),
+            bounds: camera.bounds,
+            is_forward: knuckle(Segment::Little1) < knuckle(Segment::Index1),
+        })
+    }
+
     pub(crate) fn turn(&self, side: Side) -> Turn {
-        let default = match side {
-            Side::Right => TURN,
-            Side::Left => Turn {
-                yaw: -TURN.yaw,
-                ..TURN
-            },
-        };
-        self.turn.unwrap_or(default)
+        self.turn.unwrap_or_else(|| TURN.of(side))
     }
 }
 
+impl DrawSettings {
+    /// From where this hand is seen: it never jumps while the hand moves.
+    pub(crate) fn camera(&self, side: Side) -> Camera {
+        // A small picture leaves the wrist out, for the sake of the fingers.
+        let least = if self.is_small() { CUT_MM } else { f32::MIN };
+        let mirror = side.frame();
+        let reach = REACH
+            .iter()
+            .map(|at| mirror.transform_point3(at.with_z(at.z.max(least))));
+        Camera::new(self.turn, self.rect, reach)
+    }
+
+    fn is_small(&self) -> bool {
+        self.rect.height() < SMALL_POINTS
+    }
+}
+
+/// Draws a picture into a mesh.
 pub(crate) fn draw(
     sketch: &mut Sketch,
     picture: &HandPicture,
@@ -120,14 +229,7 @@ pub(crate) fn draw(
     mesh: &mut Mesh,
 ) {
     let palette = Palette::of(setting.theme);
-    let is_small = setting.rect.height() < SMALL_POINTS;
-    // A small picture leaves the wrist out, for the sake of the fingers.
-    let least = if is_small { CUT_MM } else { f32::MIN };
-    let mirror = picture.side.frame();
-    let reach = REACH
-        .iter()
-        .map(|at| mirror.transform_point3(at.with_z(at.z.max(least))));
-    let camera = Camera::new(setting.turn, setting.rect, reach);
+    let (camera, is_small) = (setting.camera(picture.side), setting.is_small());
     let (pose, parts) = picture.parts(palette, is_small);
     let mut light = Light::new(palette.studio, &camera, &pose);
     light.veil = picture.is_stale.then_some((palette.card, STALE_PART));
@@ -139,10 +241,16 @@ pub(crate) fn draw(
     };
     sketch.draw(model, mesh);
     if is_small {
-        let (bottom, fade) = (setting.rect.bottom(), setting.rect.height() * FADE_PART);
-        for vertex in &mut mesh.vertices {
-            let left = ((bottom - vertex.pos.y) / fade).clamp(0.0, 1.0);
-            vertex.color = vertex.color.gamma_multiply(left);
-        }
+        fade_out(&camera, mesh);
+    }
+}
+
+/// Lets a picture end softly at its wrist.
+pub(crate) fn fade_out(camera: &Camera, mesh: &mut Mesh) {
+    let [cut, full] = [CUT_MM, CUT_MM + FADE_MM].map(|z| camera.place(Vec3::Z * z));
+    let way = full - cut;
+    for vertex in &mut mesh.vertices {
+        let left = (vertex.pos - cut).dot(way) / way.length_sq().max(f32::MIN_POSITIVE);
+        vertex.color = vertex.color.gamma_multiply(left.clamp(0.0, 1.0));
     }
 }

@@ -11,6 +11,7 @@ use crate::app::readings::Freshness;
 use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
 use crate::poses::Preset;
+use crate::ui::hand::aim;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
@@ -56,6 +57,9 @@ impl JointsView {
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
             let linked = self.linked;
+            if linked {
+                aim::link(ui);
+            }
             let style = RowStyle { line, each, linked };
             ScrollArea::vertical()
                 .max_height(room)

@@ -3,16 +3,12 @@
 use crate::app::readings::Freshness;
 use crate::app::settings::AngleUnit;
 use crate::hand::Quantity;
+use crate::hand::heat::{HOT, WARM};
 use crate::ui::joints::row::{JointRow, READING};
 use crate::ui::kit::{Label, Pane, format};
 use crate::ui::text::main;
 use crate::ui::theme;
 use egui::{Rect, Ui};
-
-/// From here a drive is warm; the figure is ours, the manual has none.
-const WARM: u8 = 60;
-/// From here a drive is hot; see [`WARM`].
-const HOT: u8 = 70;
 
 impl JointRow {
     /// The angle as the hand says it and in degrees, or in percent.

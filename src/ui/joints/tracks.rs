@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed, impact};
+use crate::ui::hand::aim;
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
 use crate::ui::kit::{self, Label, Look, NumberField, Pane};
@@ -10,9 +11,6 @@ use crate::ui::style::format::UNKNOWN;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Rect, Ui};
-
-/// Fingers that move together when they are linked. The thumb is apart: its way is another.
-const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 
 /// A caption, a track and a number field in a row.
 struct TrackRow<'a> {
@@ -84,14 +82,13 @@ impl JointRow {
         let joint = pane.state.hand().controls.joints[self.dof];
         let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
-        let locked = joint.locked.then(|| look.say(main::LOCKED));
         let setting = TrackRow {
             caption: main::ANGLE,
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
             track: SlideTrack {
                 tip: look.tip(main::ANGLE),
-                disabled: pane.unready().or(locked),
+                disabled: aim::refusal(pane, self.dof),
                 target: joint.target.map(Angle::get),
                 actual: angle.and_then(|angle| angle.hold()).map(Angle::get),
                 draws: Actual::Marker,
@@ -107,23 +104,7 @@ impl JointRow {
             after: READING + theme::GAP,
         };
         if let Some(value) = setting.ui(ui, pane) {
-            self.target(pane, Angle::nearest(value), linked);
-        }
-    }
-
-    /// Linked fingers go as far as this one does, each from where it stands.
-    fn target(&self, pane: &mut Pane<'_>, angle: Angle, linked: bool) {
-        let joints = pane.state.hand().controls.joints;
-        pane.actions.push(Action::Target(self.dof, angle));
-        let by = joints[self.dof].target.map(|old| angle.get() - old.get());
-        let Some(by) = by.filter(|_| linked && LINKED.contains(&self.dof)) else {
-            return;
-        };
-        for dof in LINKED.into_iter().filter(|dof| *dof != self.dof) {
-            if let Some(target) = joints[dof].target.filter(|_| !joints[dof].locked) {
-                let angle = Angle::nearest(target.get().saturating_add(by));
-                pane.actions.push(Action::Target(dof, angle));
-            }
+            aim::send(pane, self.dof, Angle::nearest(value), linked);
         }
     }
 }

@@ -77,7 +77,7 @@ pub(crate) fn step_ui(
     if let Some(pose) = pane.state.poses.library.pose(step.pose) {
         kit::left_ui(ui, |ui| {
             let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
-            panel::pose_ui(ui, look, picture, &shares(&pose.angles));
+            panel::sign_ui(ui, look, picture, &shares(&pose.angles));
             handle_ui(ui, look, at, &pose.name);
         });
     }

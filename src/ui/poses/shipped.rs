@@ -47,7 +47,7 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     ui.spacing_mut().item_spacing.y = theme::STEP;
     let (_, picture) = ui.allocate_space(vec2(place.width(), 88.0));
     if let Some(pose) = pictured(&state.poses, entry) {
-        panel::pose_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
+        panel::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     }
     let color = if hidden || overridden {
         look.palette.muted

@@ -12,11 +12,14 @@ use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{
+    Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, UiBuilder,
+    vec2,
+};
 
-/// An entry in the overview, and in a low strip: a finger's breadth.
-const TILE: egui::Vec2 = vec2(90.0, 74.0);
-const LOW_TILE: egui::Vec2 = vec2(148.0, 38.0);
+/// An entry on the shelf, and its least height where that is low.
+const TILE: egui::Vec2 = vec2(84.0, 84.0);
+const TILE_LEAST: f32 = 56.0;
 /// Width of the drawer of gestures.
 const DRAWER: f32 = 460.0;
 /// Height of a tile's name.
@@ -65,7 +68,7 @@ pub(crate) fn tile_ui(
     let id = Id::unique(("pose", pose.id));
     let response = button.ground(&mut ui, look, top, id);
     let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
-    panel::pose_ui(
+    panel::sign_ui(
         &ui,
         look,
         picture.shrink(theme::STEP),
@@ -87,7 +90,7 @@ pub(crate) fn tile_ui(
     response.clicked()
 }
 
-/// The overview's strip: the person's poses first, then named gestures, then the other numbers.
+/// The overview's strip: the person's poses first, then what is shipped.
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
@@ -100,16 +103,28 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             gestures_ui(ui, pane);
             for_all_ui(ui, pane);
         });
-        let size = if ui.available_height() < TILE.y {
-            LOW_TILE
-        } else {
-            TILE
-        };
-        let area = ScrollArea::vertical().auto_shrink(false);
-        area.id_salt("strip").show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
-            ui.spacing_mut().interact_size.y = theme::CONTROL_LARGE;
-            ui.horizontal_wrapped(|ui| strip_tiles_ui(ui, pane, size));
+        shelf_ui(ui, pane);
+    });
+}
+
+/// Tiles in as many rows as there is room for; what does not fit at the side is scrolled to, with the wheel, too.
+fn shelf_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (state, gap) = (pane.state, theme::STEP);
+    let entries = state.poses.ready(&state.settings.hidden_poses);
+    let count = f32::from(u16::try_from(entries.len()).unwrap_or(u16::MAX));
+    let room = ui.available_size();
+    let fit = ((room + vec2(gap, gap)) / (TILE + vec2(gap, gap))).floor();
+    let columns = (count / fit.y.max(1.0)).ceil().max(fit.x.min(count));
+    let size = vec2(TILE.x, room.y.clamp(TILE_LEAST, TILE.y));
+    ui.style_mut().always_scroll_the_only_direction = true;
+    let area = ScrollArea::horizontal().auto_shrink(false);
+    area.id_salt("strip").show(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(gap, gap);
+        ui.set_width(columns * (TILE.x + gap));
+        ui.horizontal_wrapped(|ui| {
+            for entry in entries {
+                entry_tile_ui(ui, pane, entry, size);
+            }
         });
     });
 }
@@ -125,24 +140,20 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-fn strip_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, size: egui::Vec2) {
-    let state = pane.state;
-    for entry in state.poses.ready(&state.settings.hidden_poses) {
-        entry_tile_ui(ui, pane, entry, size);
-    }
-}
-
-/// The gestures in the hand, in a drawer behind a button: those that a person named first.
+/// The gestures in the hand that have a name, in a drawer behind a button. The others are in the view of poses.
 fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
+    let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
+    let named: Vec<Gesture> = Gesture::all().filter(is_named).collect();
+    if named.is_empty() {
+        return;
+    }
     let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
     let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     drawer.width(DRAWER).show(|ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
-            let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
-            let (named, others): (Vec<Gesture>, Vec<Gesture>) = Gesture::all().partition(is_named);
-            for gesture in named.into_iter().chain(others) {
+            for gesture in named {
                 gesture_ui(ui, pane, gesture);
             }
         });
@@ -166,15 +177,17 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let runs = runs(state, entry);
     let verb = verb(state, entry);
     let refused = entry_refusal(pane, entry);
-    let mut tip = match entry {
-        EntryId::Pose(_) => look.tip(poses::RECALL).to_owned(),
-        _ => look.tip(verb).to_owned(),
+    let tip = match entry {
+        EntryId::Pose(_) => look.tip(poses::RECALL),
+        _ => look.tip(verb),
     };
+    // The name may be cut on its tile.
+    let mut tip = look.pair(name, tip);
     if let Some(key) = key {
         tip = format!("{tip}\nShift+{}", key.get());
     }
     let label = look.told(verb, name);
-    let weight = if runs { Weight::Armed } else { Weight::Normal };
+    let weight = if runs { Weight::Chosen } else { Weight::Normal };
     let button = Button::new(name, &tip)
         .named(&label)
         .weight(weight)
@@ -182,34 +195,32 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
     let inner = rect.shrink(theme::STEP);
-    let is_low = size.y < TILE.y;
-    let (picture, words) = if is_low {
-        inner.split_left_right_at_x(inner.left() + inner.height())
-    } else {
-        inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT)
-    };
+    let (picture, words) = inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT);
     if let Some(pose) = pictured(&state.poses, entry) {
-        panel::pose_ui(ui, look, picture, &shares(&pose.angles));
+        // Room for what stands in the corners.
+        let picture = picture.shrink2(vec2(theme::GAP, 0.0));
+        panel::sign_ui(ui, look, picture, &shares(&pose.angles));
     }
     let color = button.text_color(look);
-    let text = Label::new(name, color);
-    if is_low {
-        text.paint(ui, words.shrink2(vec2(theme::STEP, 0.0)))
-    } else {
-        text.center().paint(ui, words)
-    };
+    Label::new(name, color).small().center().paint(ui, words);
     if !matches!(entry, EntryId::Pose(_)) {
         let corner = Rect::from_min_size(picture.left_top(), vec2(16.0, 16.0));
         let icon = if runs { theme::PAUSE } else { theme::PLAY };
         kit::sign(ui, corner, icon, color);
     }
-    if let Some(key) = key.filter(|_| !is_low) {
+    if let Some(key) = key {
         let corner = Rect::from_min_size(picture.right_top() - vec2(14.0, 0.0), vec2(14.0, 16.0));
         let key = key.get().to_string();
         Label::new(&key, look.palette.muted)
             .small()
             .right()
             .paint(ui, corner);
+    }
+    if runs {
+        let ring = Stroke::new(3.0, look.palette.accent);
+        let round = theme::ROUND_SMALL;
+        ui.painter()
+            .rect_stroke(rect, round, ring, StrokeKind::Inside);
     }
     if response.clicked() {
         pane.actions.push(press(state, entry));

@@ -32,7 +32,7 @@ texts! {
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
-    TOUCH_SCALE: "Heat", "热度";
+    TOUCH_SCALE: "0 to {}k counts", "0 至 {}k 计数";
     TOUCH_NO_ZERO: "No zero", "无零点", "No zero yet: let go of the fingertips.", "尚无零点：请松开指尖。";
     TOUCH_NORMAL: "Normal", "法向";
     TOUCH_SHEAR: "Tangential", "切向";
@@ -52,8 +52,11 @@ texts! {
     TOUCH_DELTA_T: "Shear delta", "切向变化";
 
     HAND: "Hand", "灵巧手";
-    HAND_PICTURE: "Picture of the hand", "手部姿态图", "The joints as the hand reports them: drag to turn, double-click to turn back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动旋转，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
+    HAND_PICTURE: "Picture of the hand", "手部姿态图", "The joints as the hand reports them: drag a finger to move it, drag elsewhere to turn the picture, double-click to turn it back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动手指可移动它，在其他位置拖动可旋转视图，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
 
+    DRAG_FINGER: "drag to move it", "拖动即可移动";
+    FINGER_FORCE: "force at the drawn finger", "图旁受力";
+    FINGER_TROUBLE: "trouble at the drawn finger", "图旁状况";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
     TARE_ALL: "Tare all", "全部去皮", "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
     TARE_ONE: "Tare", "去皮", "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";

@@ -51,7 +51,7 @@ const KEY: Vec3 = Vec3::new(-0.466, 0.670, 0.577);
 const FILL: Vec3 = Vec3::new(0.884, 0.0, 0.468);
 
 /// On a dark card.
-pub(crate) static DARK_STUDIO: Studio = Studio {
+const DARK: Studio = Studio {
     key: KEY,
     key_power: 0.82,
     fill: FILL,
@@ -67,7 +67,7 @@ pub(crate) static DARK_STUDIO: Studio = Studio {
 };
 
 /// On a light card.
-pub(crate) static LIGHT_STUDIO: Studio = Studio {
+const LIGHT: Studio = Studio {
     key: KEY,
     key_power: 0.82,
     fill: FILL,
@@ -80,6 +80,23 @@ pub(crate) static LIGHT_STUDIO: Studio = Studio {
     hinge: material([0x46, 0x4C, 0x55], 0.12, 20, 0.5),
     rubber: material([0x38, 0x3C, 0x43], 0.08, 9, 0.5),
     pad: material([0x66, 0x6D, 0x78], 0.05, 10, 0.2),
+};
+
+pub(crate) static DARK_STUDIO: Studio = DARK;
+pub(crate) static LIGHT_STUDIO: Studio = LIGHT;
+
+/// For small pictures: fingers as light as the palm, which are read at the size of a button.
+pub(crate) static DARK_SIGNS: Studio = Studio {
+    rubber: DARK.metal,
+    hinge: material([0x8C, 0x94, 0x9F], 0.14, 20, 0.3),
+    pad: DARK.metal,
+    ..DARK
+};
+pub(crate) static LIGHT_SIGNS: Studio = Studio {
+    rubber: LIGHT.metal,
+    hinge: material([0x86, 0x8E, 0x99], 0.12, 20, 0.3),
+    pad: LIGHT.metal,
+    ..LIGHT
 };
 
 /// A colour as linear light: the screen's curve is taken as a square.

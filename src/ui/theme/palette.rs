@@ -2,7 +2,7 @@
 
 use crate::app::settings::Theme;
 use crate::hand::PerDof;
-use crate::ui::theme::hand::{DARK_STUDIO, LIGHT_STUDIO, Studio};
+use crate::ui::theme::hand::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
 use egui::Color32;
 
 /// All colours of one theme, by what they are for.
@@ -57,6 +57,8 @@ pub(crate) struct Palette {
     pub(crate) handle_dot: Color32,
     /// Lamps and materials of the drawn hand.
     pub(crate) studio: &'static Studio,
+    /// The same for small pictures of poses.
+    pub(crate) signs: &'static Studio,
     /// The six joints; told apart by all common kinds of colour blindness.
     pub(crate) dof: PerDof<Color32>,
     /// The theme it belongs to.
@@ -90,6 +92,7 @@ static DARK: Palette = Palette {
     handle: Color32::from_rgb(0xE8, 0xEC, 0xF2),
     handle_dot: Color32::from_rgb(0x16, 0x1A, 0x20),
     studio: &DARK_STUDIO,
+    signs: &DARK_SIGNS,
     dof: PerDof::new([
         Color32::from_rgb(0x5A, 0xB4, 0xE8),
         Color32::from_rgb(0xE8, 0xA0, 0x20),
@@ -128,6 +131,7 @@ static LIGHT: Palette = Palette {
     handle: Color32::from_rgb(0xFF, 0xFF, 0xFF),
     handle_dot: Color32::from_rgb(0x4E, 0x5A, 0x69),
     studio: &LIGHT_STUDIO,
+    signs: &LIGHT_SIGNS,
     dof: PerDof::new([
         Color32::from_rgb(0x00, 0x67, 0xA1),
         Color32::from_rgb(0x8A, 0x56, 0x00),

@@ -3,7 +3,7 @@
 use crate::app::readings::Freshness;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::ui::hand::fingertip::{Sense, Tip};
-use crate::ui::kit::{Label, Pane, format};
+use crate::ui::kit::{Label, Pane};
 use crate::ui::text::panels;
 use egui::{CornerRadius, Rect, Ui, vec2};
 
@@ -25,12 +25,13 @@ pub(crate) fn tips(pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
     })
 }
 
-/// The scale with its end, from right to left; or that a fingertip has no zero.
+/// The scale with what it runs over, from right to left; or that a fingertip has no zero.
 pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let end = format::counts(Some(FULL_COUNTS));
-    let end = Label::new(&end, look.palette.muted).small();
-    end.named(look.say(panels::TOUCH_SCALE_END)).ui(ui);
+    let range = look.fill(panels::TOUCH_SCALE, &[&(FULL_COUNTS / 1000)]);
+    let range = Label::new(&range, look.palette.muted).small();
+    let range = range.named(look.say(panels::TOUCH_SCALE_END)).ui(ui);
+    range.on_hover_text(look.tip(panels::TOUCH));
     let (_, bar) = ui.allocate_space(egui::vec2(64.0, 8.0));
     let width = bar.width() / f32::from(STEPS);
     for step in 0..STEPS {
@@ -39,21 +40,20 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let color = look.palette.heat(f32::from(step) / f32::from(STEPS - 1));
         ui.painter().rect_filled(piece, CornerRadius::ZERO, color);
     }
-    let hand = pane.state.hand();
+    no_zero_ui(ui, pane);
+}
+
+/// That a fingertip has no zero yet, where that is so.
+pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, hand) = (pane.look, pane.state.hand());
     let touched = Finger::ALL.into_iter().any(|finger| {
         hand.readings.sample.tactile[finger].is_some() && hand.readings.tare.zero(finger).is_none()
     });
-    let (words, tip, color) = if touched {
-        (
-            panels::TOUCH_NO_ZERO,
-            panels::TOUCH_NO_ZERO,
-            look.palette.warn,
-        )
-    } else {
-        (panels::TOUCH_SCALE, panels::TOUCH, look.palette.muted)
-    };
-    let label = Label::new(look.say(words), color).small().ui(ui);
-    label.on_hover_text(look.tip(tip));
+    if touched {
+        let label = Label::new(look.say(panels::TOUCH_NO_ZERO), look.palette.warn);
+        let label = label.small().ui(ui);
+        label.on_hover_text(look.tip(panels::TOUCH_NO_ZERO));
+    }
 }
 
 fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {

@@ -1,4 +1,4 @@
-//! The five fingertips: small under the drawn hand in the overview, large in their own view with one of them in detail.
+//! The five fingertips: small under the drawn hand in the overview, large beside it with one of them in detail.
 pub(crate) mod heat;
 pub(crate) mod table;
 pub(crate) mod tip_channels;
@@ -8,17 +8,24 @@ use crate::app::action::Action;
 use crate::app::readings::friction::GripState;
 use crate::hand::Finger;
 use crate::ui::hand::fingertip::{self, Sense, Tip};
-use crate::ui::hand::panel::HandPanel;
-use crate::ui::kit::{self, Button, Label, Pane, format};
+use crate::ui::hand::panel::{self, HandPanel};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
 use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
 use crate::ui::touch::tip_detail::TipDetail;
+use crate::ui::view::View;
 use egui::{
-    Align, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui, WidgetInfo, vec2,
+    Align, CursorIcon, Id, Layout, Margin, Panel, Rect, Role, ScrollArea, Sense as Senses, Ui,
+    WidgetInfo, vec2,
 };
 
-/// Lines of figures under a fingertip of the overview.
-const FIGURES: f32 = 3.0 * theme::LIST_LINE;
+/// Name and force of a fingertip of the overview; the height of its picture, as a
+/// part of the card, and at least.
+const FIGURES: f32 = 2.0 * theme::LIST_LINE;
+const TIP_PART: f32 = 0.13;
+const TIP_LEAST: f32 = 44.0;
+/// The hand has at least this height, whatever else there is no room for.
+const HAND_LEAST: f32 = 272.0;
 
 /// What the person chose for the fingertips.
 #[derive(Debug, Default)]
@@ -27,6 +34,8 @@ pub(crate) struct TouchView {
     detail: TipDetail,
     /// All numbers instead of one fingertip.
     numbers: bool,
+    /// The pass in which they were drawn large last.
+    large_at: Option<u64>,
 }
 
 impl TouchView {
@@ -36,18 +45,18 @@ impl TouchView {
         let tips = heat::tips(pane);
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
-            kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
-                heat::scale_ui(ui, pane);
+            kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
+                panel::side_ui(ui, pane);
+                heat::no_zero_ui(ui, pane);
             });
-            let width = ui.available_width();
-            let picture = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH * 0.8;
-            let room = ui.available_height() - 150.0 - theme::GAP;
+            let (width, height) = (ui.available_width(), ui.available_height());
+            let widest = (width / 5.0 - theme::GAP) * fingertip::HEIGHT_TO_WIDTH;
+            let picture = (height * TIP_PART).max(TIP_LEAST).min(widest).round();
+            let room = height - HAND_LEAST - theme::GAP;
             let below = [picture + FIGURES, FIGURES, 0.0];
-            let below = below
-                .into_iter()
-                .find(|below| *below <= room)
-                .unwrap_or(0.0);
-            let height = ui.available_height() - below - theme::GAP;
+            let fits = below.into_iter().find(|below| *below <= room);
+            let below = fits.filter(|_| !self.is_large(ui)).unwrap_or(0.0);
+            let height = height - below - theme::GAP;
             ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
             if below > 0.0 {
                 ui.spacing_mut().item_spacing.x = 0.0;
@@ -61,11 +70,11 @@ impl TouchView {
         });
     }
 
-    /// One fingertip of the overview: its name, its picture if it has a height, and its forces.
+    /// One fingertip of the overview: its name, its picture if it has a height, and its normal force.
     fn column_ui(
         &mut self,
         ui: &mut Ui,
-        pane: &Pane<'_>,
+        pane: &mut Pane<'_>,
         (finger, tip): (Finger, Option<&Tip>),
         picture: Option<f32>,
     ) {
@@ -81,37 +90,32 @@ impl TouchView {
                 fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-                if response.on_hover_text(look.tip(panels::TOUCH)).clicked() {
-                    self.detail.finger = finger;
+                let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
+                let response = response.on_hover_cursor(CursorIcon::PointingHand);
+                if response.on_hover_text(tip).clicked() {
+                    self.open(pane, finger);
                 }
             }
-            for line in table::LINES.iter().take(2) {
-                table::value_ui(ui, pane, finger, line);
-            }
+            table::value_ui(ui, pane, finger, &table::NORMAL);
         });
     }
 
     /// The drawn hand alone.
     pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let clicked = self.hand.ui(ui, pane, &heat::tips(pane));
-        self.detail.finger = clicked.unwrap_or(self.detail.finger);
+        if let Some(finger) = clicked {
+            self.open(pane, finger);
+        }
     }
 
-    /// The view of its own: the hand and five large fingertips over the chosen one in detail, or all numbers.
+    /// In place of the plots: five large fingertips over the chosen one in detail, or all numbers.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
+        self.large_at = Some(ui.ctx().cumulative_pass_nr());
         self.detail.follow(pane);
         let height = (ui.available_height() * 0.48).round();
         let upper = Panel::top("touch, upper");
         kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
-            let width = (height * 0.96).min(ui.available_width() * 0.36).round();
-            let left = Panel::left("touch, hand");
-            kit::bare(left, width, theme::GAP_RIGHT).show(ui, |ui| {
-                kit::card_ui(ui, look, |ui| {
-                    kit::head_ui(ui, look, look.say(panels::HAND), |_| {});
-                    self.hand_ui(ui, pane);
-                });
-            });
             kit::card_ui(ui, look, |ui| {
                 kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
                     heat::scale_ui(ui, pane);
@@ -132,6 +136,18 @@ impl TouchView {
             ui.set_min_height(ui.available_height());
             self.lower_ui(ui, pane);
         });
+    }
+
+    /// Whether the large fingertips are drawn beside the hand.
+    fn is_large(&self, ui: &Ui) -> bool {
+        let now = ui.ctx().cumulative_pass_nr();
+        self.large_at.is_some_and(|at| at + 1 >= now)
+    }
+
+    /// Opens a fingertip in detail.
+    const fn open(&mut self, pane: &mut Pane<'_>, finger: Finger) {
+        self.detail.finger = finger;
+        pane.open(ViewRequest::View(View::Touch));
     }
 
     fn lower_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {

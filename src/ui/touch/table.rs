@@ -12,13 +12,16 @@ pub(crate) struct TouchRow {
     value: fn(&TactileBlock, Look) -> String,
 }
 
-/// The rows; the first two are the forces.
-pub(crate) const LINES: [TouchRow; 7] = [
-    TouchRow {
-        caption: panels::TOUCH_NORMAL,
-        name: panels::TOUCH_NORMAL_NAME,
-        value: |block, _| format!("{} N", format::newtons(Some(block.normal_n))),
-    },
+/// The normal force, which stands alone, too.
+pub(crate) const NORMAL: TouchRow = TouchRow {
+    caption: panels::TOUCH_NORMAL,
+    name: panels::TOUCH_NORMAL_NAME,
+    value: |block, _| format!("{} N", format::newtons(Some(block.normal_n))),
+};
+
+/// All rows.
+const LINES: [TouchRow; 7] = [
+    NORMAL,
     TouchRow {
         caption: panels::TOUCH_SHEAR,
         name: panels::TOUCH_SHEAR_NAME,

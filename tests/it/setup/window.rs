@@ -529,7 +529,18 @@ impl Bench {
 
     /// One notch of the wheel over a track.
     pub(crate) fn wheel(&mut self, name: &str, notches: f32) {
-        let at = self.rect(Role::Slider, name).center();
+        self.wheel_at(self.rect(Role::Slider, name).center(), notches);
+    }
+
+    /// Scrolls the shelf of poses to its end.
+    pub(crate) fn scroll_shelf(&mut self) {
+        let first = self.rect(Role::Button, "Go to Open");
+        self.wheel_at(first.center(), -100.0);
+        self.run(1000);
+    }
+
+    /// Notches of the wheel with the pointer at a place.
+    pub(crate) fn wheel_at(&mut self, at: egui::Pos2, notches: f32) {
         self.harness.hover_at(at);
         self.harness.step();
         self.harness.event(egui::Event::MouseWheel {

@@ -95,7 +95,7 @@ fn escape_stops_while_typing_and_space_types() {
     assert_eq!(actions(&mut harness), [Action::Stop]);
 }
 
-/// Opens the drawer of gestures on Live.
+/// Opens the drawer of named gestures on Live.
 fn open_gestures(harness: &mut Harness<'_, Shown>) {
     harness.get_by_label("Gestures").click();
     harness.run_steps(4);
@@ -150,8 +150,9 @@ fn angles_can_be_moved_only_while_armed_and_not_locked() {
         states::faulted(),
         states::lost(),
     ] {
-        let mut harness = open(state);
-        open_gestures(&mut harness);
+        let mut harness = open_at(state, View::Poses, LARGE);
+        harness.get_by_label("In the hand").click();
+        harness.run_steps(4);
         for name in [
             "Index angle target",
             "Index angle number",
@@ -283,7 +284,7 @@ fn what_is_not_known_is_a_dash() {
         ("Index current and temperature", "- mA   - °C"),
         ("Index status", "-"),
         ("Index normal force", "-"),
-        ("Thumb tangential force", "-"),
+        ("Thumb force at the drawn finger", "- g"),
     ] {
         let node = harness
             .query_all_by_role(Role::Label)
@@ -377,9 +378,10 @@ fn arming_and_disarming_is_one_press() {
 fn gestures_start_by_number_and_take_names() {
     let mut harness = open(states::armed());
     open_gestures(&mut harness);
-    harness.get_by_label("Gesture 7").click();
+    harness.get_by_label("Gesture 3 fist").click();
+    let three = Gesture::nearest(3);
+    assert_eq!(actions(&mut harness), [Action::Gesture(three)]);
     let seven = Gesture::nearest(7);
-    assert_eq!(actions(&mut harness), [Action::Gesture(seven)]);
     let mut harness = open_at(states::armed(), View::Poses, LARGE);
     harness.get_by_label("In the hand").click();
     harness.run_steps(2);

@@ -16,6 +16,7 @@ mod plots;
 mod poses;
 mod scan;
 mod sessions;
+mod stage;
 mod start;
 mod touch;
 mod traffic;

@@ -4,6 +4,7 @@ use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, GESTURE, Role, SPEED_SET
 use egui::Key;
 use handscope::hand::Dof;
 use handscope::record::LinkState;
+use handscope::ui::View;
 
 /// "No action" (manual 2.6.11).
 const LEAVE: i16 = -1;
@@ -225,7 +226,8 @@ fn a_locked_joint_is_left_alone_by_drags_and_by_open_all() {
 #[test]
 fn a_gesture_needs_arming_and_then_writes_its_number() {
     let mut bench = Bench::live();
-    bench.click("Gestures");
+    bench.show(View::Poses);
+    bench.click("In the hand");
     bench.run(60);
     assert!(bench.is_disabled(Role::Button, "Gesture 12"));
     bench.click("Gesture 12");
@@ -234,8 +236,6 @@ fn a_gesture_needs_arming_and_then_writes_its_number() {
     bench.click("Arm the hand");
     bench.wait(200);
     let armed = bench.writes().len();
-    bench.click("Gestures");
-    bench.run(60);
     bench.click("Gesture 12");
     bench.wait(3500);
     let writes = bench.writes().split_off(armed);

@@ -422,6 +422,7 @@ fn shipped_poses_are_on_live_with_a_key_each_and_a_press_without_arming_says_wha
 #[test]
 fn a_demo_starts_from_live_and_is_ended_in_every_view() {
     let mut bench = Bench::armed();
+    bench.scroll_shelf();
     bench.click("Start Wave");
     bench.run(500);
     for view in [View::Faults, View::Touch, View::Live] {

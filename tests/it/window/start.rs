@@ -121,7 +121,12 @@ fn without_arming_no_control_of_the_joints_writes() {
         bench.drag(&format!("{joint} force threshold"), 0.2, 0.6);
         bench.drag(&format!("{joint} speed"), 0.2, 0.6);
     }
-    for name in ["Open all", "Index lock", "Gestures", "Gesture 1"] {
+    for name in ["Open all", "Index lock"] {
+        bench.click(name);
+        bench.run(60);
+    }
+    bench.show(View::Poses);
+    for name in ["In the hand", "Gesture 1"] {
         bench.click(name);
         bench.run(60);
     }

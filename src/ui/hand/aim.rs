@@ -1,0 +1,46 @@
+//! Where a person sends a joint, with its track or on the drawn hand: one rule for both.
+
+use crate::app::action::Action;
+use crate::hand::{Angle, Dof};
+use crate::ui::kit::Pane;
+use crate::ui::text::main;
+use egui::{Id, Ui};
+
+/// Fingers that move together when they are linked. The thumb is apart: its way is another.
+const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
+
+/// Why this joint cannot be sent anywhere now.
+pub(crate) fn refusal(pane: &Pane<'_>, dof: Dof) -> Option<&'static str> {
+    let locked = pane.state.hand().controls.joints[dof].locked;
+    let locked = locked.then(|| pane.look.say(main::LOCKED));
+    pane.unready().or(locked)
+}
+
+/// Sends a joint there. Linked fingers go as far as this one does, each from where it stands.
+pub(crate) fn send(pane: &mut Pane<'_>, dof: Dof, angle: Angle, linked: bool) {
+    let joints = pane.state.hand().controls.joints;
+    pane.actions.push(Action::Target(dof, angle));
+    let by = joints[dof].target.map(|old| angle.get() - old.get());
+    let Some(by) = by.filter(|_| linked && LINKED.contains(&dof)) else {
+        return;
+    };
+    for other in LINKED.into_iter().filter(|other| *other != dof) {
+        if let Some(target) = joints[other].target.filter(|_| !joints[other].locked) {
+            let angle = Angle::nearest(target.get().saturating_add(by));
+            pane.actions.push(Action::Target(other, angle));
+        }
+    }
+}
+
+/// Says that the switch which links the fingers is drawn in this frame, and on.
+pub(crate) fn link(ui: &Ui) {
+    let now = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|data| data.insert_temp(Id::unique("fingers linked"), now));
+}
+
+/// Whether a person sees that the fingers are linked.
+pub(crate) fn is_linked(ui: &Ui) -> bool {
+    let now = ui.ctx().cumulative_pass_nr();
+    let last = ui.data(|data| data.get_temp::<u64>(Id::unique("fingers linked")));
+    last.is_some_and(|at| at + 1 >= now)
+}

@@ -1,0 +1,182 @@
+//! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to its tip.
+
+use crate::app::readings::Freshness;
+use crate::hand::heat::WARM;
+use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Finger, Quantity};
+use crate::ui::faults::drive_lamp::DriveWords;
+use crate::ui::hand::view::{HandPoints, HandView};
+use crate::ui::kit::{Label, Pane, format, text_width};
+use crate::ui::text::{main, panels, words};
+use crate::ui::theme;
+use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
+
+/// Pictures that are lower than this have no figures.
+const LEAST: f32 = 200.0;
+/// Room of a figure: its column's width, and its three lines.
+const WIDTH: f32 = 76.0;
+const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
+/// How far apart the figures of the outer fingers are, and how far above the hand they begin: a line comes to its tip from above
+/// the others.
+const APART: f32 = HEIGHT + theme::GAP;
+const ABOVE: f32 = theme::CONTROL;
+/// Where the thumb's is, as a part of the hand's height: below it, as the index has its own above it.
+const THUMB: f32 = 0.7;
+/// What is left free between the hand and its figures.
+const CLEAR: f32 = 2.0 * theme::GAP;
+/// How strong a line is, and the ring at its end; and how much a figure hides of what it stands on.
+const LINE_PART: f32 = 0.7;
+const RING: f32 = 2.5;
+const GROUND_PART: f32 = 0.6;
+
+/// Where the hand itself is drawn: beside the figures of the outer fingers. Those of index and thumb stand above and below the
+/// thumb, where no pose gets to.
+pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
+    if place.height() < LEAST {
+        return place;
+    }
+    let below = place.with_min_y(place.top() + ABOVE);
+    match side {
+        Side::Right => below.with_min_x(place.left() + WIDTH + CLEAR),
+        Side::Left => below.with_max_x(place.right() - WIDTH - CLEAR),
+    }
+}
+
+/// Draws the figures beside what `view` drew last in the middle of a place.
+pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: Rect) {
+    let Some(points) = view.points().filter(|_| place.height() >= LEAST) else {
+        return;
+    };
+    for finger in Finger::ALL {
+        let (slot, on_left) = slot(place, &points, finger);
+        figure_ui(ui, pane, finger, (slot, on_left, points.tips[finger]));
+    }
+}
+
+/// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves.
+fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
+    let hand = points.bounds;
+    let (is_outer, down) = match finger {
+        Finger::Middle => (true, 0.0),
+        Finger::Ring => (true, APART),
+        Finger::Little => (true, 2.0 * APART),
+        Finger::Index => (false, 0.0),
+        Finger::Thumb => (false, ABOVE + hand.height() * THUMB),
+    };
+    let on_left = is_outer == points.is_forward;
+    let out = if is_outer { CLEAR + WIDTH } else { WIDTH / 2.0 };
+    let x = if on_left {
+        hand.left() - out
+    } else {
+        hand.right() + out - WIDTH
+    };
+    let size = vec2(WIDTH, HEIGHT);
+    let room = Rect::from_min_max(place.min, place.max - size);
+    let corner = room.clamp(pos2(x, hand.top() - ABOVE + down));
+    (Rect::from_min_size(corner, size), on_left)
+}
+
+fn figure_ui(
+    ui: &mut Ui,
+    pane: &Pane<'_>,
+    finger: Finger,
+    (slot, on_left, tip): (Rect, bool, Pos2),
+) {
+    let look = pane.look;
+    let (name, color) = (
+        look.say(words::finger(finger)),
+        look.palette.dof[finger.bend()],
+    );
+    let [first, second, third] = [0.0, 1.0, 2.0].map(|line| {
+        let top = slot.top() + line * theme::TEXT_LINE;
+        Rect::from_min_size(pos2(slot.left(), top), vec2(WIDTH, theme::TEXT_LINE))
+    });
+    let ground = look.palette.card.gamma_multiply(GROUND_PART);
+    ui.painter()
+        .rect_filled(first.union(second), theme::ROUND_SMALL, ground);
+    let from = match (finger, on_left) {
+        (Finger::Thumb, _) => (first.center_top(), vec2(0.0, -theme::STEP)),
+        (_, true) => (second.right_center(), vec2(theme::STEP, 0.0)),
+        (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
+    };
+    line_to(ui, from, tip, color.gamma_multiply(LINE_PART));
+    let aligned = |label: Label<'_>, ui: &mut Ui, rect: Rect| {
+        let label = if on_left { label.right() } else { label };
+        label.put(ui, rect)
+    };
+    aligned(Label::new(name, color).small(), ui, first);
+    let mut joints = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
+    if joints
+        .clone()
+        .any(|dof| pane.state.hand().controls.joints[dof].locked)
+    {
+        lock_ui(ui, pane, (first, on_left), name);
+    }
+    let (force, over, freshness) = force(pane, finger);
+    let live = if over {
+        look.palette.warn
+    } else {
+        look.palette.text
+    };
+    let label = Label::new(&force, look.value(freshness, live)).number();
+    let label = label.font(FontId::monospace(if over { 15.0 } else { 14.0 }));
+    let named = format!("{name} {}", look.say(panels::FINGER_FORCE));
+    aligned(label.named(&named), ui, second);
+    if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
+        let named = format!("{name} {}", look.say(panels::FINGER_TROUBLE));
+        aligned(Label::new(&words, color).small().named(&named), ui, third);
+    }
+}
+
+/// The force of the drive that bends a finger, whether it is at its threshold, and how fresh it is.
+fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
+    let (dof, hand) = (finger.bend(), pane.state.hand());
+    let (force, freshness) = pane.newest(dof, hand.readings.sample.force);
+    let raw = force.map(|force| i64::from(force.raw()));
+    let known = force.and_then(|force| force.documented());
+    let over = known.zip(hand.stops_at(dof));
+    let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
+    (
+        format::with_unit(raw, 0, Quantity::Force.row().unit),
+        over,
+        freshness,
+    )
+}
+
+/// What hurts a drive now, in a word: its fault, or how warm it is. Nothing of old values.
+fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
+    let palette = pane.look.palette;
+    let drive = DriveWords::of(pane, dof);
+    // The lamp of an old reading is faint.
+    if drive.lamp == palette.bad {
+        return Some((drive.short, palette.bad));
+    }
+    let (heat, freshness) = pane.newest(dof, pane.state.hand().readings.sample.temperature);
+    let degrees = heat.and_then(|heat| heat.documented());
+    let warm = degrees.filter(|degrees| *degrees >= WARM && freshness == Freshness::Live)?;
+    Some((format!("{warm} °C"), palette.warn))
+}
+
+/// A lock beside a finger's name.
+fn lock_ui(ui: &mut Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &str) {
+    let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
+    let x = if on_left {
+        line.right() - width
+    } else {
+        line.left() + width
+    };
+    let place = Rect::from_center_size(pos2(x, line.center().y), Vec2::splat(theme::TEXT_LINE));
+    let lock = Label::new(theme::LOCKED, pane.look.palette.muted);
+    let lock = lock.font(theme::icon_high(theme::SIGN_SMALL)).center();
+    let named = pane.look.pair(name, pane.look.say(main::LOCKED));
+    lock.named(&named).put(ui, place);
+}
+
+/// A thin line from a figure, which it leaves this way, to its fingertip.
+fn line_to(ui: &Ui, (from, way): (Pos2, Vec2), tip: Pos2, color: Color32) {
+    let knee = from + 3.0 * way;
+    let stop = tip + (knee - tip).normalized() * RING;
+    let painter = ui.painter();
+    painter.line(vec![from + way, knee, stop], Stroke::new(1.0, color));
+    painter.circle_stroke(tip, RING, Stroke::new(theme::FOCUS_LINE, color));
+}

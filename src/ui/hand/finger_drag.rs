@@ -1,0 +1,94 @@
+//! A finger that is dragged in the picture: which angle brings the place that was taken hold of to the pointer.
+
+use crate::hand::Dof;
+use crate::hand::kinematics::{Segment, SegmentFrames};
+use crate::ui::hand::camera::Camera;
+use crate::ui::hand::scene::HandPicture;
+use egui::Pos2;
+use glam::Vec3;
+
+/// Steps from bent to open in which the way of the place is looked through, and halvings of the last one.
+const STEPS: u8 = 40;
+const HALVINGS: u8 = 10;
+/// What is off across the way counts little: else a finger that bends towards the eye would wait, and then jump.
+const ACROSS_PART: f32 = 0.05;
+/// How much faster than the pointer the place may go along its way: where the way turns back it catches up smoothly.
+const CATCH_UP: f32 = 3.0;
+
+/// A place of a finger that a person holds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FingerDrag {
+    /// The joint that is dragged.
+    pub(crate) dof: Dof,
+    segment: Segment,
+    /// The place in the frame of the segment.
+    at: Vec3,
+    /// Where the joint was sent last, and where the pointer was then.
+    share: f32,
+    pointer: Pos2,
+}
+
+impl FingerDrag {
+    /// Takes hold of what the eye sees at this depth below the pointer. None where no joint moves it.
+    pub(crate) fn new(
+        (camera, picture): (&Camera, &HandPicture),
+        (segment, depth): (Segment, f32),
+        pointer: Pos2,
+    ) -> Option<Self> {
+        let dof = segment.dof()?;
+        let frame = camera.hand * picture.pose().frame(segment);
+        let seen = camera.seen_at(pointer, depth);
+        Some(Self {
+            dof,
+            segment,
+            at: frame.inverse().transform_point3(seen),
+            share: picture.actual[dof]?,
+            pointer,
+        })
+    }
+
+    /// The share of the way to open (0..=1) at which the place comes nearest to the pointer.
+    pub(crate) fn follow(
+        &mut self,
+        (camera, picture): (&Camera, &HandPicture),
+        pointer: Pos2,
+    ) -> f32 {
+        let mut shares = picture.actual.map(|share| share.unwrap_or(1.0));
+        let mut place = |share: f32| {
+            shares[self.dof] = share;
+            let pose = SegmentFrames::of_shares(picture.side, &shares);
+            let at = pose.frame(self.segment).transform_point3(self.at);
+            camera.place(at)
+        };
+        let step = 1.0 / f32::from(STEPS);
+        let way: Vec<Pos2> = (0..=STEPS).map(|at| place(f32::from(at) * step)).collect();
+        let (first, last) = (place(0.0), place(1.0));
+        let along = (last - first).normalized();
+        let off = |at: Pos2| {
+            let off = pointer - at;
+            let forth = off.dot(along).powi(2);
+            forth + ACROSS_PART * (off.length_sq() - forth)
+        };
+        let tried = way.iter().zip(0_u8..);
+        let nearest = tried.min_by(|(one, _), (other, _)| off(**one).total_cmp(&off(**other)));
+        let mut best = nearest.map_or(self.share, |(_, at)| f32::from(at) * step);
+        let mut span = step / 2.0;
+        for _ in 0..HALVINGS {
+            for tried in [best - span, best + span].map(|share| share.clamp(0.0, 1.0)) {
+                if off(place(tried)) < off(place(best)) {
+                    best = tried;
+                }
+            }
+            span /= 2.0;
+        }
+        let length: f32 = way
+            .windows(2)
+            .map(|pair| pair.first().zip(pair.last()))
+            .map(|ends| ends.map_or(0.0, |(one, other)| one.distance(*other)))
+            .sum();
+        let most = CATCH_UP * pointer.distance(self.pointer) / length.max(1.0);
+        self.pointer = pointer;
+        self.share = best.clamp(self.share - most, self.share + most);
+        self.share
+    }
+}
