@@ -233,6 +233,7 @@ fn all(things: Things) -> Vec<Action> {
         Action::AngleUnit(AngleUnit::Degrees),
         Action::PlotWindow(PlotWindow::S5),
         Action::ShowPlot(PlotKind::Force, true),
+        Action::GrowPlot(PlotKind::Current),
         Action::Note(Moment::ZERO, "note".into()),
         Action::RemoveMark(note),
         Action::Tare(None),
@@ -431,6 +432,7 @@ async fn these_actions_pass_while_a_recording_is_shown_and_no_others() {
         "AngleUnit",
         "PlotWindow",
         "ShowPlot",
+        "GrowPlot",
     ];
     assert_eq!(names, BTreeSet::from(wanted));
 }
