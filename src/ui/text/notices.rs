@@ -281,6 +281,11 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             path,
             &errors::system_error(look, error),
         ),
+        NoticeKind::NotExported { path, error } => {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let why = errors::export(look, error);
+            look.fill(sessions::NOT_EXPORTED, &[&name, &why])
+        }
         NoticeKind::NotRevealed { path, error } => {
             let why = errors::system_error(look, error);
             look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
