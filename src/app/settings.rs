@@ -208,11 +208,20 @@ impl ShownPlots {
 
 /// The plots that are drawn tall where there is room, the one that was grown last at the end; the others are sparklines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<PlotKind>")]
 pub struct TallPlots([PlotKind; 2]);
 
 impl Default for TallPlots {
     fn default() -> Self {
         Self([PlotKind::Angle, PlotKind::Force])
+    }
+}
+
+impl From<Vec<PlotKind>> for TallPlots {
+    fn from(kinds: Vec<PlotKind>) -> Self {
+        let mut tall = Self::default();
+        kinds.into_iter().for_each(|kind| tall.grow(kind));
+        tall
     }
 }
 

@@ -1,10 +1,9 @@
 //! What a drive says of itself: the colour of its lamp and the words beside it. Draws nothing.
 
 use crate::app::readings::Freshness;
-use crate::hand::{Dof, Fault, Status, Words};
+use crate::hand::{Dof, Status, Words};
 use crate::ui::kit::{Pane, format};
 use crate::ui::text::{main, words};
-use crate::ui::theme::Palette;
 use egui::Color32;
 
 /// What stands beside a drive's lamp.
@@ -38,7 +37,7 @@ impl DriveWords {
             None => sample.status.map(|group| group.asked),
         };
         let freshness = pane.freshness(asked);
-        let live = color(palette, fault, status);
+        let live = palette.drive(fault, status);
         let words = match (fault, status) {
             (Some(fault), _) => Some(words::fault(fault, look.language)),
             (None, Some(status)) => Some(words::status(status, look.language)),
@@ -73,21 +72,5 @@ impl DriveWords {
             words,
             freshness,
         }
-    }
-}
-
-/// The colour of what a drive says: its first fault, else its status.
-pub(crate) const fn color(
-    palette: &Palette,
-    fault: Option<Fault>,
-    status: Option<Status>,
-) -> Color32 {
-    match (fault, status) {
-        (Some(_), _) => palette.bad,
-        (None, Some(status)) if status.is_protective() => palette.bad,
-        (None, Some(Status::Releasing | Status::Grasping)) => palette.accent,
-        (None, Some(Status::ForceReached)) => palette.warn,
-        (None, Some(Status::PositionReached)) => palette.ok,
-        (None, _) => palette.faint,
     }
 }

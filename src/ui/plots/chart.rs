@@ -188,17 +188,7 @@ impl<'a> Chart<'a> {
         let columns = (width - theme::PLOT_AXIS) * ui.pixels_per_point();
         let columns = columns.clamp(1.0, COLUMNS_MOST);
         let extent = self.fetch(&mut traces, (from_s, to_s), columns);
-        let chosen = view.scales.chosen(self.title);
-        let aim = chosen.unwrap_or_else(|| {
-            let wanted = scales::rounded(self.least, extent, self.height - self.caption());
-            let follows = !view.time.is_held();
-            let at_s = follows.then(|| ui.input(|input| input.time));
-            view.scales.settled(self.title, wanted, at_s)
-        });
-        let scale = match chosen {
-            Some(chosen) => chosen,
-            None => scales::eased(ui, self.title, aim),
-        };
+        let (aim, scale) = self.scale(ui, view, extent);
         ui.spacing_mut().item_spacing.y = 0.0;
         // The ground tells where a plot is; a frame would be as loud as its curves.
         let frame = std::mem::take(&mut ui.visuals_mut().widgets.noninteractive.bg_stroke);
@@ -210,7 +200,8 @@ impl<'a> Chart<'a> {
         let per_s = f64::from(columns) / (to_s - from_s);
         let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
         let marks = ui.input(|input| input.modifiers.shift);
-        let plot = self.plot(chosen.is_some()).width(width);
+        let is_fixed = view.scales.chosen(self.title).is_some();
+        let plot = self.plot(is_fixed).width(width);
         let plot = plot.allow_drag([!marks, false]);
         let plot = plot.boxed_zoom_pointer_button(if marks {
             PointerButton::Primary
@@ -259,6 +250,23 @@ impl<'a> Chart<'a> {
         }
         view.act(ui, &shown, self.title, bounds);
         shown
+    }
+
+    /// Where the ends of the scale are to be for values of this extent, and where they are on their way there.
+    fn scale(
+        &self,
+        ui: &Ui,
+        view: &mut ChartView,
+        extent: Option<(f64, f64)>,
+    ) -> ((f64, f64), (f64, f64)) {
+        if let Some(chosen) = view.scales.chosen(self.title) {
+            return (chosen, chosen);
+        }
+        let wanted = scales::rounded(self.least, extent, self.height - self.caption());
+        let follows = !view.time.is_held();
+        let at_s = follows.then(|| ui.input(|input| input.time));
+        let aim = view.scales.settled(self.title, wanted, at_s);
+        (aim, scales::eased(ui, self.title, aim))
     }
 
     const fn caption(&self) -> f32 {

@@ -2,7 +2,6 @@
 
 use crate::hand::Dof;
 use crate::history::StatusRun;
-use crate::ui::faults::drive_lamp;
 use crate::ui::kit::{Label, Look, Pane, format};
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
@@ -83,7 +82,7 @@ impl DrivesPlace<'_> {
         let (from_s, to_s) = self.span;
         for run in history.status(dof, from_s, to_s) {
             let fault = run.faults.and_then(|faults| faults.iter().next());
-            let color = drive_lamp::color(palette, fault, run.status);
+            let color = palette.drive(fault, run.status);
             if color != palette.faint {
                 let from = self.x(frame, run.from_s.max(from_s));
                 let to = self.x(frame, run.until_s.min(to_s)).max(from + 1.0);

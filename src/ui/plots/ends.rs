@@ -7,7 +7,9 @@ use crate::ui::plots::chart::ChartResponse;
 use crate::ui::plots::panels::Panel;
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
-use egui::{Color32, CursorIcon, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2};
+use egui::{
+    Color32, CursorIcon, Rangef, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+};
 
 /// From here on there is room for names.
 const NAMED_FROM: f32 = 600.0;
@@ -69,38 +71,42 @@ pub(crate) fn ends_ui(
         let ys = Rangef::new(middle - pitch / 2.0, middle + pitch / 2.0);
         let xs = Rangef::new(frame.right() + LEADER, right);
         let place = Rect::from_x_y_ranges(xs, ys);
-        let name = look.say(words::dof(end.dof));
-        let id = ui.scope_id().with((panel.title.en, end.dof.index()));
-        let response = ui.interact(place, id, Sense::click());
-        let named = look.pair(look.say(panel.title), name);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, true, &named));
+        if end.value.is_some() {
+            let leader = Stroke::new(1.0, end.color.gamma_multiply(0.6));
+            let line = [pos2(frame.right(), y), pos2(xs.min, middle)];
+            ui.painter().line_segment(line, leader);
+        }
+        let response = end_ui(ui, look, (panel, end), place);
         if response.hovered() {
             pointed = Some((end.dof, response.clicked()));
         }
-        let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
-        response
-            .on_hover_cursor(CursorIcon::PointingHand)
-            .on_hover_text(tip);
-        let from = pos2(frame.right(), y);
-        let leader = Stroke::new(1.0, end.color.gamma_multiply(0.6));
-        if end.value.is_some() {
-            ui.painter()
-                .line_segment([from, pos2(xs.min, middle)], leader);
-        }
-        let digits = panel.row.decimals;
-        let text = end.value.map_or_else(
-            || format::UNKNOWN.to_owned(),
-            |value| format!("{value:.digits$}"),
-        );
-        let (value, rest) = place.split_left_right_at_x(xs.min + VALUE);
-        let label = Label::new(&text, end.color).number().right();
-        label.paint(ui, value);
-        if rest.width() > VALUE {
-            let label = Label::new(name, end.color).small();
-            label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
-        }
     }
     pointed
+}
+
+/// The value of one curve, and its name where there is room.
+fn end_ui(ui: &Ui, look: Look, (panel, end): (&Panel, &CurveEnd), place: Rect) -> Response {
+    let name = look.say(words::dof(end.dof));
+    let id = ui.scope_id().with((panel.title.en, end.dof.index()));
+    let response = ui.interact(place, id, Sense::click());
+    let named = look.pair(look.say(panel.title), name);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, true, &named));
+    let digits = panel.row.decimals;
+    let text = end.value.map_or_else(
+        || format::UNKNOWN.to_owned(),
+        |value| format!("{value:.digits$}"),
+    );
+    let (value, rest) = place.split_left_right_at_x(place.left() + VALUE);
+    let label = Label::new(&text, end.color).number().right();
+    label.paint(ui, value);
+    if rest.width() > VALUE {
+        let label = Label::new(name, end.color).small();
+        label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
+    }
+    let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(tip)
 }
 
 /// Middles at least a pitch apart, as near to the wanted ones as there is room; both in the same order.

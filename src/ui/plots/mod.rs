@@ -106,7 +106,7 @@ impl PlotView {
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
-        let mut shown: Vec<&Panel> = shown.collect();
+        let shown: Vec<&Panel> = shown.collect();
         let at = shown
             .iter()
             .position(|panel| Some(panel.kind) == self.chosen);
@@ -130,20 +130,17 @@ impl PlotView {
         let joints = Dof::ALL.into_iter().filter(|dof| !self.hidden[*dof]);
         let joints: Vec<Dof> = joints.collect();
         let low = drives::height(joints.len());
-        let mut tall = 2.min(shown.len());
-        while tall > 1 && tall_height(ui, (tall, shown.len() - tall), low) < TALL_LEAST {
-            tall -= 1;
-        }
-        let mut height = tall_height(ui, (tall, shown.len() - tall), low);
-        let mut tall = pane.state.settings.tall_plots.of(plots, tall);
-        if has_figures && tall.len() == 1 {
-            tall = vec![chosen.kind];
-        }
-        let is_alone = height < ALONE_BELOW;
-        if is_alone {
-            (tall, height) = (vec![chosen.kind], room(ui, 1));
-            shown = vec![chosen];
-        }
+        let (tall, height) = Self::tall(ui, pane, shown.len(), low);
+        let tall = match tall.len() {
+            1 if has_figures => vec![chosen.kind],
+            _ => tall,
+        };
+        let least = if has_figures { TALL_LEAST } else { ALONE_BELOW };
+        let is_alone = height < least;
+        let (shown, tall, height) = match is_alone {
+            true => (vec![chosen], vec![chosen.kind], room(ui, 1)),
+            false => (shown, tall, height),
+        };
         // In a window that was forced to be tiny there is no place to draw in.
         let end = ends::width(ui);
         if height <= theme::PLOT_CAPTION + theme::PLOT_NUMBER
@@ -167,6 +164,19 @@ impl PlotView {
             };
             place.ui(ui, pane);
         }
+    }
+
+    /// Which of so many shown plots are tall, and how high: two if there is room for them, with this much taken below.
+    fn tall(ui: &Ui, pane: &Pane<'_>, shown: usize, below: f32) -> (Vec<PlotKind>, f32) {
+        let height = |tall: usize| tall_height(ui, (tall, shown - tall), below);
+        let count = match shown {
+            0 | 1 => shown,
+            _ if height(2) >= TALL_LEAST => 2,
+            _ => 1,
+        };
+        let settings = &pane.state.settings;
+        let tall = settings.tall_plots.of(&settings.plots, count);
+        (tall, height(count))
     }
 
     /// The tall plots, over one axis of time.

@@ -100,7 +100,6 @@ impl SessionsView {
             (true, _) if state.looks || state.looked == 0 && state.folder.is_some() => {
                 Some(sessions::LOOKS)
             }
-            (true, _) if state.folder.is_none() => Some(sessions::NOWHERE),
             (true, _) => return empty_ui(ui, pane),
             (false, true) => Some(sessions::FIND_NONE),
             (false, false) => None,
@@ -126,6 +125,14 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         panel::pose_ui(ui, look, picture, &PerDof::splat(Some(0.5)));
         let title = Label::said(look, sessions::NONE_TITLE);
         title.font(theme::title()).ui(ui);
+        if pane.state.sessions.folder.is_none() {
+            Label::muted(look, sessions::NOWHERE).wrap().ui(ui);
+            ui.add_space(theme::GAP);
+            let choose = Button::said(look, sessions::FOLDER_CHANGE);
+            let choose = choose.weight(Weight::Strong).large();
+            let action = SessionAction::ChooseFolder(None);
+            return choose.on_click(ui, pane, Action::Session(action));
+        }
         Label::muted(look, sessions::NONE).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let connect = Button::said(look, sessions::NONE_BUTTON);

@@ -7,12 +7,13 @@ use crate::record::EventKind;
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, Look, Pane, TextField, Weight, format};
 use crate::ui::plots::times::length;
-use crate::ui::sessions::{marks, strip};
+use crate::ui::sessions::marks;
+use crate::ui::sessions::strip;
 use crate::ui::text::{Text, notices, sessions};
 use crate::ui::theme;
 use egui::{
-    Align, Color32, Layout, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui, Vec2,
-    WidgetInfo, vec2,
+    Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
+    Vec2, WidgetInfo, vec2,
 };
 use egui_extras::{Column, TableBuilder};
 use std::path::PathBuf;
@@ -54,12 +55,25 @@ pub(crate) struct MarkedStretch {
 impl MarkedStretch {
     /// How long it is.
     fn length(&self, item: &SessionItem) -> Duration {
-        item.length.mul_f64((self.to - self.from).abs())
+        item.length.mul_f64(self.to - self.from)
     }
 
     fn stretch(&self, item: &SessionItem) -> (Moment, Moment) {
-        let (from, to) = (self.from.min(self.to), self.from.max(self.to));
-        (item.moment(from), item.moment(to))
+        (item.moment(self.from), item.moment(self.to))
+    }
+
+    fn paint(&self, painter: &Painter, look: Look, place: Rect) {
+        let x = |part: f64| {
+            #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
+            let part = part as f32;
+            place.left() + part * place.width()
+        };
+        let xs = Rangef::new(x(self.from), x(self.to));
+        let stretch = Rect::from_x_y_ranges(xs, place.y_range());
+        painter.rect_filled(stretch, 0.0, look.palette.wash(look.palette.accent));
+        let edge = Stroke::new(1.0, look.palette.accent);
+        painter.vline(xs.min, place.y_range(), edge);
+        painter.vline(xs.max, place.y_range(), edge);
     }
 }
 
@@ -150,30 +164,19 @@ impl SessionTable<'_> {
             *self.marked = None;
         }
         let origin = ui.input(|input| input.pointer.press_origin());
-        if let Some((from, to)) = origin.zip(response.interact_pointer_pos())
-            && response.dragged()
-        {
+        let drag = origin.zip(response.interact_pointer_pos());
+        if let Some((from, to)) = drag.filter(|_| response.dragged()) {
+            let (one, other) = (part(from.x), part(to.x));
             *self.marked = Some(MarkedStretch {
                 path: item.path.clone(),
-                from: part(from.x),
-                to: part(to.x),
+                from: one.min(other),
+                to: one.max(other),
             });
         }
-        ui.painter()
-            .rect_filled(place, theme::ROUND_TINY, look.palette.sunken);
+        let painter = ui.painter();
+        painter.rect_filled(place, theme::ROUND_TINY, look.palette.sunken);
         if let Some(marked) = self.of(item) {
-            let x = |part: f64| {
-                #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
-                let part = part as f32;
-                place.left() + part * place.width()
-            };
-            let xs = Rangef::new(x(marked.from.min(marked.to)), x(marked.from.max(marked.to)));
-            let stretch = Rect::from_x_y_ranges(xs, place.y_range());
-            let wash = look.palette.wash(look.palette.accent);
-            ui.painter().rect_filled(stretch, 0.0, wash);
-            let edge = Stroke::new(1.0, look.palette.accent);
-            ui.painter().vline(xs.min, place.y_range(), edge);
-            ui.painter().vline(xs.max, place.y_range(), edge);
+            marked.paint(painter, look, place);
         }
         strip::strip(ui.painter(), look, place, &item.strip);
         strip::marks(ui.painter(), look, place, item);
