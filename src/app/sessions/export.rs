@@ -115,15 +115,17 @@ impl SessionExport {
         format!("{stem}{part}{}", self.form.ending())
     }
 
-    /// Writes it; what to tell a person where that cannot be done.
-    fn write(&self, to: &Path, percent: &AtomicU8) -> Result<u64, NoticeKind> {
-        if let Some(folder) = to.parent() {
-            let made = std::fs::create_dir_all(folder);
-            made.map_err(|error| NoticeKind::not_saved(to.to_owned(), &error))?;
+    /// Writes it; what to tell a person of it.
+    fn write(&self, to: PathBuf, percent: &AtomicU8) -> NoticeKind {
+        let made = to.parent().map(std::fs::create_dir_all);
+        if let Some(Err(error)) = made {
+            return NoticeKind::not_saved(to, &error);
         }
         let path = self.path.clone();
-        let file =
-            SessionFile::open(&path).map_err(|why| NoticeKind::SessionRefused { path, why })?;
+        let file = match SessionFile::open(&path) {
+            Ok(file) => file,
+            Err(why) => return NoticeKind::SessionRefused { path, why },
+        };
         let (from, until) = self.stretch.unwrap_or((file.first(), file.last()));
         let stretch = Stretch {
             from,
@@ -143,10 +145,13 @@ impl SessionExport {
             watch: &watch,
             ..Source::new(&file, stretch)
         };
-        self.form.write(source, to).map_err(|error| {
-            let path = self.path.clone();
-            NoticeKind::NotExported { path, error }
-        })
+        match self.form.write(source, &to) {
+            Ok(rows) => NoticeKind::Saved {
+                path: to,
+                entries: usize::try_from(rows).unwrap_or(usize::MAX),
+            },
+            Err(error) => NoticeKind::NotExported { path, error },
+        }
     }
 
     /// Begins it.
@@ -168,15 +173,8 @@ impl SessionExport {
                 },
             };
             let place = to.clone();
-            let written = on_thread(move || Ok(export.write(&place, &progress))).await;
-            match written {
-                Ok(Ok(rows)) => NoticeKind::Saved {
-                    path: to,
-                    entries: usize::try_from(rows).unwrap_or(usize::MAX),
-                },
-                Ok(Err(told)) => told,
-                Err(error) => NoticeKind::not_saved(to, &error),
-            }
+            let written = on_thread(move || Ok(export.write(place, &progress))).await;
+            written.unwrap_or_else(|error| NoticeKind::not_saved(to, &error))
         });
         RunningExport {
             export: self,

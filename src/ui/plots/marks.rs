@@ -145,7 +145,7 @@ mod tests {
             more: 0,
         };
         // Ten points a letter.
-        let width = |text: &str| text.len() as f32 * 10.0;
+        let width = |text: &str| text.chars().map(|_| 10.0).sum();
         let check = |marks: &[(f32, &str)], wanted: &[(&str, usize)]| {
             let marks = marks.iter().map(|(x, text)| mark(*x, text));
             let all = joined(marks.collect(), 500.0, width);

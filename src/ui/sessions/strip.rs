@@ -18,16 +18,18 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
         return;
     };
     let width = place.width() / width;
-    let color = look.palette.accent.gamma_multiply(0.7);
+    // Opaque, so that no seam is seen where bars meet within a pixel.
+    let color = look.palette.sunken.lerp_to_gamma(look.palette.accent, 0.7);
     let mut left = place.left();
-    for force in forces {
-        if force.is_finite() {
+    for equal in forces.chunk_by(|one, other| one == other) {
+        let right = left + width * count(equal.len()).unwrap_or_default();
+        if let Some(force) = equal.first().filter(|force| force.is_finite()) {
             let height = (force.max(0.0) / full * place.height()).max(1.0);
             let top = pos2(left, place.bottom() - height);
-            let size = vec2(width.max(1.0), height);
+            let size = vec2((right - left).max(1.0), height);
             painter.rect_filled(Rect::from_min_size(top, size), 0.0, color);
         }
-        left += width;
+        left = right;
     }
 }
 

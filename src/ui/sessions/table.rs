@@ -25,7 +25,7 @@ const NAME_MAX: usize = 80;
 /// The least width of a name.
 const NAME: f32 = 200.0;
 /// The strip of force where there is little room, and where there is much: a column for each of its points.
-const STRIP: (f32, f32) = (48.0, 304.0);
+const STRIP: (f32, f32) = (48.0, 308.0);
 /// Marks that are told beside the pointer.
 const MARKS_TOLD: usize = 3;
 /// The drawn hand beside the pointer.
@@ -312,6 +312,7 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     let look = pane.look;
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        ui.add_space(theme::STEP);
         let title = sessions::title(look, pane.state, item);
         let label = Label::new(&title, look.palette.text).ui(ui);
         label.on_hover_text(item.path.display().to_string());
