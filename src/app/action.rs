@@ -141,6 +141,8 @@ pub enum Action {
     PlotWindow(PlotWindow),
     /// Show a plot or hide it; the last one stays.
     ShowPlot(PlotKind, bool),
+    /// Draw a plot tall; the one that was grown before the last becomes a sparkline.
+    GrowPlot(PlotKind),
     /// Put a note of these words into the history at a moment; of no words, none.
     Note(Moment, String),
     /// Take a note out of the history again.
@@ -217,6 +219,7 @@ impl Action {
             | Self::AngleUnit(_)
             | Self::PlotWindow(_)
             | Self::ShowPlot(..)
+            | Self::GrowPlot(_)
             | Self::Note(..)
             | Self::RemoveMark(_)
             | Self::Tare(_)

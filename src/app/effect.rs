@@ -201,7 +201,8 @@ impl Action {
             | Self::Zoom(_)
             | Self::AngleUnit(_)
             | Self::PlotWindow(_)
-            | Self::ShowPlot(..) => Effect::Shows,
+            | Self::ShowPlot(..)
+            | Self::GrowPlot(_) => Effect::Shows,
             Self::Theme(_) | Self::Language(_) => Effect::Dresses,
         }
     }

@@ -4,6 +4,7 @@ use crate::app::readings::faults::FaultKind;
 use crate::app::slot::HandLabel;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
+use crate::record::export::ExportError;
 use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::record::{ArmRefusal, Disarmed, SetpointConflict};
@@ -193,6 +194,12 @@ pub enum NoticeKind {
     Saved { path: PathBuf, entries: usize },
     /// A file could not be written.
     NotSaved { path: PathBuf, error: SystemError },
+    /// A session could not be written in a format of others.
+    NotExported {
+        /// The session.
+        path: PathBuf,
+        error: ExportError,
+    },
     /// A session could not be deleted.
     NotDeleted {
         /// The file.

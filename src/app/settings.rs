@@ -206,6 +206,47 @@ impl ShownPlots {
     }
 }
 
+/// The plots that are drawn tall where there is room, the one that was grown last at the end; the others are sparklines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<PlotKind>")]
+pub struct TallPlots([PlotKind; 2]);
+
+impl Default for TallPlots {
+    fn default() -> Self {
+        Self([PlotKind::Angle, PlotKind::Force])
+    }
+}
+
+impl From<Vec<PlotKind>> for TallPlots {
+    fn from(kinds: Vec<PlotKind>) -> Self {
+        let mut tall = Self::default();
+        kinds.into_iter().for_each(|kind| tall.grow(kind));
+        tall
+    }
+}
+
+impl TallPlots {
+    /// Draws this one tall. The one that was grown before the last shrinks.
+    pub fn grow(&mut self, kind: PlotKind) {
+        let [_, last] = self.0;
+        if last != kind {
+            self.0 = [last, kind];
+        }
+    }
+
+    /// So many of the shown plots, those that were grown first of all.
+    pub fn of(self, shown: &ShownPlots, count: usize) -> Vec<PlotKind> {
+        let [first, last] = self.0;
+        let mut tall = Vec::new();
+        for kind in [last, first].into_iter().chain(PlotKind::ALL) {
+            if shown.shows(kind) && !tall.contains(&kind) && tall.len() < count {
+                tall.push(kind);
+            }
+        }
+        tall
+    }
+}
+
 /// How much larger than designed everything is drawn, within what can be read and used.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "f32", into = "f32")]
@@ -313,6 +354,8 @@ pub struct Settings {
     pub plot_window: PlotWindow,
     /// The plots that are shown.
     pub plots: ShownPlots,
+    /// Those of them that are tall.
+    pub tall_plots: TallPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
     /// Names that a person gave to gestures, by number.
@@ -475,6 +518,28 @@ mod tests {
         assert_eq!(settings.side_of(Some(&endpoint(60))), Side::Right);
         settings.name_hand(&last, "");
         assert_eq!(settings.hand_name(&last), None);
+    }
+
+    #[test]
+    fn the_plots_that_were_grown_last_are_tall_as_far_as_they_are_shown() {
+        use PlotKind::{Angle, Current, Force, Normal, Temperature};
+        let (mut tall, mut shown) = (TallPlots::default(), ShownPlots::default());
+        assert_eq!(tall.of(&shown, 2), [Force, Angle]);
+        assert_eq!(tall.of(&shown, 1), [Force]);
+        tall.grow(Temperature);
+        assert_eq!(tall.of(&shown, 2), [Temperature, Force]);
+        tall.grow(Force);
+        assert_eq!(tall.of(&shown, 2), [Force, Temperature]);
+        tall.grow(Normal);
+        assert_eq!(
+            tall.of(&shown, 2),
+            [Force, Current],
+            "what is not shown is not tall"
+        );
+        for kind in [Force, Current, Temperature] {
+            shown.set(kind, false);
+        }
+        assert_eq!(tall.of(&shown, 2), [Angle]);
     }
 
     #[test]

@@ -20,8 +20,8 @@ pub enum MarkKind {
     StopNotSent,
     /// Feedback showed that the hand rests.
     HoldConfirmed,
-    /// A drive reported a fault.
-    Fault,
+    /// A drive reported a fault: joint and fault by their stable names, `index: stall`.
+    Fault(Arc<str>),
     /// The hand fell silent.
     LinkLost,
     /// The hand answers again.
@@ -45,14 +45,14 @@ impl MarkKind {
         (!line.is_empty()).then(|| Self::Note(line.into()))
     }
 
-    /// Stable lower-case name for files; a note is followed by its words, a gesture by its number.
+    /// Stable lower-case name for files; a note and a fault are followed by their words, a gesture by its number.
     pub fn words(&self) -> String {
         match self {
             Self::Armed => "armed".into(),
             Self::Stop => "stop".into(),
             Self::StopNotSent => "stop not sent".into(),
             Self::HoldConfirmed => "at rest".into(),
-            Self::Fault => "fault".into(),
+            Self::Fault(words) => format!("fault: {words}"),
             Self::LinkLost => "link lost".into(),
             Self::Reconnected => "reconnected".into(),
             Self::Gesture(number) => format!("gesture {number}"),

@@ -10,6 +10,7 @@ pub(crate) mod ring;
 pub(crate) mod series;
 #[cfg(test)]
 pub(crate) mod series_tests;
+pub(crate) mod status;
 pub(crate) mod table;
 pub(crate) mod trace;
 pub(crate) mod track;
@@ -17,6 +18,7 @@ pub(crate) mod track;
 pub use crate::history::mark::{MARKS_MAX, Mark, MarkKind, NOTE_MAX};
 pub use crate::history::reading::{Reading, Summary};
 pub use crate::history::series::{CHANNEL_ROWS, HISTORY_ROWS, HISTORY_SECONDS, History, Series};
+pub use crate::history::status::StatusRun;
 pub use crate::history::table::Table;
 pub(crate) use crate::history::table::TableGroup;
 pub use crate::history::trace::Trace;

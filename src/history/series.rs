@@ -4,6 +4,7 @@ use crate::hand::column::{channel_column, joint_column, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Timed, Touch};
 use crate::history::mark::{Mark, MarkKind, Marks};
 use crate::history::reading::{Reading, Summary};
+use crate::history::status::{StatusRun, StatusRuns};
 use crate::history::table::{Table, TableGroup};
 use crate::history::trace::Trace;
 use crate::history::track::{HistoryTrack, Slice};
@@ -77,6 +78,7 @@ pub struct History {
     /// The newest targets, as sent or as read back.
     targets: PerDof<Option<f32>>,
     sent_at: Option<Moment>,
+    status: StatusRuns,
     marks: Marks,
 }
 
@@ -109,6 +111,7 @@ impl History {
             tracks: (0..TRACKS).map(empty_track).collect(),
             targets: PerDof::splat(None),
             sent_at: None,
+            status: StatusRuns::new(),
             marks: Marks::default(),
         }
     }
@@ -132,6 +135,7 @@ impl History {
                 _ => self.add(quantity as usize, six.received, six.value.as_array()),
             }
         }
+        self.push_status(sample, fresh);
         for (finger, block) in sample.tactile.iter() {
             let Some(block) = block.filter(|_| fresh.contains(Group::Tactile(finger))) else {
                 continue;
@@ -145,6 +149,22 @@ impl History {
             )]
             let counts = block.value.raw.map(|raw| Some(raw as f32));
             self.add(FIRST_CHANNELS + finger.index(), block.received, &counts);
+        }
+    }
+
+    /// A drive is told by the newest of its status and its faults.
+    fn push_status(&mut self, sample: &HandSample, fresh: Groups) {
+        let status = sample.status.filter(|_| fresh.contains(Group::Status));
+        let faults = sample.faults.filter(|_| fresh.contains(Group::Faults));
+        let received = [
+            status.map(|status| status.received),
+            faults.map(|faults| faults.received),
+        ];
+        if let Some(at) = received.into_iter().flatten().max() {
+            self.status.push(at.secs(), |dof| {
+                let status = sample.status.map(|status| status.value[dof]);
+                (status, sample.faults.map(|faults| faults.value[dof]))
+            });
         }
     }
 
@@ -205,6 +225,7 @@ impl History {
     /// The link is lost: all lines break here.
     pub fn gap(&mut self, at: Moment) {
         (self.targets, self.sent_at) = (PerDof::splat(None), None);
+        self.status.gap();
         for track in &mut self.tracks {
             track.gap(at.secs());
         }
@@ -225,6 +246,11 @@ impl History {
         self.marks.between(from_s, to_s)
     }
 
+    /// What a drive said of itself in a stretch of time, oldest first. Of a recording only what was taken in reading by reading is known.
+    pub fn status(&self, dof: Dof, from_s: f64, to_s: f64) -> impl Iterator<Item = &StatusRun> {
+        self.status.between(dof, from_s, to_s)
+    }
+
     /// Fills `out` with one line over `columns` columns of pixels: at most about two points a column, and no
     /// extreme is lost. The work grows with the columns, not with the history.
     pub fn trace(&self, series: Series, from_s: f64, to_s: f64, columns: usize, out: &mut Trace) {
@@ -239,7 +265,8 @@ impl History {
         }
     }
 
-    /// The measurement nearest to a time; `None` in a gap.
+    /// The measurement nearest to a time where a line is drawn; `None` in a gap and before the first. The newest one holds on until
+    /// it is old.
     pub fn reading(&self, series: Series, at_s: f64) -> Option<Reading> {
         self.track(series)?.reading(series.place(), at_s)
     }
@@ -278,7 +305,7 @@ impl History {
         channels.map(HistoryTrack::bytes).sum()
     }
 
-    /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks. The work grows with their number.
+    /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks; not what the drives said. The work grows with their number.
     pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
         let tracks = self.tracks.iter().take(FIRST_CHANNELS);
         let tracks = tracks.map(|track| track.slice(from_s, to_s));
@@ -292,6 +319,7 @@ impl History {
                 .collect(),
             targets: self.targets,
             sent_at: self.sent_at,
+            status: StatusRuns::new(),
             marks,
         }
     }

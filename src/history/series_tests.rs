@@ -287,7 +287,11 @@ fn a_reading_is_the_nearest_measurement_and_there_is_none_in_a_gap() {
     assert_eq!(at(0.06), Some(2.0));
     assert_eq!(at(0.1), Some(2.0));
     assert_eq!(at(2.0), None);
-    assert_eq!(at(4.99), Some(4.0));
+    assert_eq!(at(0.201), None, "no line leads on");
+    assert_eq!(at(4.99), None, "what came later says nothing of it");
+    assert_eq!(at(5.0), Some(4.0));
+    assert_eq!(at(5.4), Some(4.0), "the newest holds on");
+    assert_eq!(at(5.6), None);
     assert_eq!(at(-3.0), None);
 }
 

@@ -43,6 +43,17 @@ impl Trace {
         self.open = false;
     }
 
+    /// Lets the last value stand until a time.
+    pub(crate) fn hold_until(&mut self, time_s: f64) {
+        let last = self.segments.last_mut();
+        if let Some((segment, [last_s, value])) =
+            last.and_then(|segment| segment.last().copied().map(|point| (segment, point)))
+            && last_s < time_s
+        {
+            segment.push([time_s, value]);
+        }
+    }
+
     /// All points of all lines.
     pub fn points(&self) -> impl Iterator<Item = [f64; 2]> {
         self.segments.iter().flatten().copied()

@@ -122,22 +122,25 @@ impl HistoryTrack {
         out.end();
     }
 
-    /// The newest row at or before a time, or the next one if that is nearer; `None` in a gap.
+    /// The row nearest to a time between two known ones, or the newest row while it is not old; `None` in a gap.
     pub(crate) fn reading(&self, quantity: usize, at_s: f64) -> Option<Reading> {
         let column = self.columns.get(quantity)?;
-        let next = self.row_at(at_s, self.whole());
-        let near = |row: usize| {
+        let known = |row: usize| {
             let time_s = self.times.get(row)?;
             let value = column.get(row).filter(|value| !value.is_nan())?;
-            let apart_s = (time_s - at_s).abs();
-            (apart_s <= self.gap_after_s).then_some((apart_s, Reading { time_s, value }))
+            Some(Reading { time_s, value })
         };
-        let both = [next.checked_sub(1).and_then(near), near(next)];
-        let nearest = both
-            .into_iter()
-            .flatten()
-            .min_by(|one, two| one.0.total_cmp(&two.0));
-        nearest.map(|(_, reading)| reading)
+        let next = self.row_at(at_s, self.whole());
+        if let Some(exact) = known(next).filter(|next| next.time_s <= at_s) {
+            return Some(exact);
+        }
+        let before = known(next.checked_sub(1)?)?;
+        let Some(next) = self.times.get(next).map(|_| known(next)) else {
+            return Some(before).filter(|before| at_s - before.time_s <= self.gap_after_s);
+        };
+        let next = next?;
+        let is_nearer = at_s - before.time_s <= next.time_s - at_s;
+        Some(if is_nearer { before } else { next })
     }
 
     /// What the known values of a stretch of time come to; both ends belong to it.

@@ -1,5 +1,6 @@
-//! The time of the calendar, in UTC, as it stands in files and their names. The one place that reads the wall clock for them.
+//! The time of the calendar: in UTC as it stands in files and their names, and as the clock of this computer shows it. The one place that reads the wall clock for them.
 
+use chrono::{DateTime, Local};
 use std::time::{Duration, SystemTime};
 
 /// The time since 1970 now; nothing, where the clock is set before that.
@@ -31,6 +32,17 @@ pub fn stamp(since_1970: Duration) -> String {
     let seconds = since_1970.as_secs() % 86_400;
     let (hour, minute, second) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     format!("{}T{hour:02}:{minute:02}:{second:02}Z", day(since_1970))
+}
+
+/// Day and time of a time since 1970 as the clock of this computer shows them, `2026-11-21` and `10:30`.
+pub fn local(since_1970: Duration) -> (String, String) {
+    let seconds = i64::try_from(since_1970.as_secs()).unwrap_or(i64::MAX);
+    let utc = DateTime::from_timestamp(seconds, 0).unwrap_or_default();
+    let here = utc.with_timezone(&Local);
+    (
+        here.format("%Y-%m-%d").to_string(),
+        here.format("%H:%M").to_string(),
+    )
 }
 
 #[cfg(test)]

@@ -10,9 +10,10 @@ pub(crate) struct RecordedMover {
 }
 
 impl RecordedMover {
-    /// A trial began, as its words say: `2 of 4`.
+    /// A trial began, as its words say: `2 of 4`, and then the joints.
     pub(crate) fn begin_trial(&mut self, words: &str) {
-        let numbers = words.split_once(" of ");
+        let numbers = words.split(", ").next();
+        let numbers = numbers.and_then(|numbers| numbers.split_once(" of "));
         self.trial =
             numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
     }

@@ -304,6 +304,7 @@ impl App {
             Action::AngleUnit(unit) => state.settings.angle_unit = unit,
             Action::PlotWindow(window) => state.settings.plot_window = window,
             Action::ShowPlot(kind, on) => state.settings.plots.set(kind, on),
+            Action::GrowPlot(kind) => state.settings.tall_plots.grow(kind),
             Action::Note(at, words) => hand_actions::note(state, at, &words),
             Action::RemoveMark(mark) => hand_actions::remove_mark(state, &mark),
             Action::Tare(finger) => hand_actions::tare(state, finger, env),

@@ -20,6 +20,21 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
+    /// Stable lower-case name, as session files have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fault(fault) => fault.name(),
+            Self::Status(status) => status.name(),
+        }
+    }
+
+    /// The fault or protective code of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        let faults = (0..8).map(|bit| Self::Fault(Fault::from_bit(bit)));
+        let codes = (0..8).map(|raw| Self::Status(Status::from_raw(raw)));
+        faults.chain(codes).find(|kind| kind.name() == name)
+    }
+
     /// Whether CLEAR_ERROR can clear it (manual 2.6.3); `None` where the manual does not say: unknown bits, and status
     /// codes, which follow from the faults.
     pub const fn clearable(self) -> Option<bool> {

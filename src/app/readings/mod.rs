@@ -140,10 +140,9 @@ impl Measured {
     ) {
         self.history.push(sample, fresh);
         self.recorder.sample(sample, fresh, at);
-        if !faults.is_empty() {
-            self.history.mark(at, MarkKind::Fault);
-        }
         for entry in faults {
+            let words = format!("{}: {}", entry.dof.name(), entry.what.name());
+            self.history.mark(at, MarkKind::Fault(words.into()));
             self.recorder.fault(entry.dof, entry.what, at);
         }
     }

@@ -176,7 +176,7 @@ impl Shown<'_> {
 fn mark_kind(kind: EventKind, words: &str) -> Option<MarkKind> {
     match kind {
         EventKind::Note => MarkKind::note(words),
-        EventKind::Fault => Some(MarkKind::Fault),
+        EventKind::Fault => Some(MarkKind::Fault(words.into())),
         EventKind::Stop => Some(MarkKind::Stop),
         EventKind::Armed => Some(MarkKind::Armed),
         EventKind::LinkLost => Some(MarkKind::LinkLost),

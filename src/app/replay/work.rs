@@ -8,7 +8,7 @@ use crate::app::replay::player::{self, Opened, SessionPlayer};
 use crate::app::sessions::about::SessionAbout;
 use crate::app::sessions::action::SessionAction;
 use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
-use crate::app::sessions::export;
+use crate::app::sessions::export::RunningExport;
 use crate::app::sessions::folder;
 use crate::app::sessions::item::SessionItem;
 use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
@@ -37,7 +37,7 @@ pub(crate) struct SessionWork {
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
     /// Sessions that are being written in formats of others.
-    exporting: Vec<BackgroundJob<NoticeKind>>,
+    exporting: Vec<RunningExport>,
     /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<FilesWritten>,
@@ -114,6 +114,7 @@ impl SessionWork {
         sessions.unread = Arc::new(looked.unread);
         sessions.looks = false;
         sessions.looked += 1;
+        sessions.looked_at = since_1970();
         let opened = self.opened.iter().flatten();
         let in_use: Vec<PathBuf> = sessions.recorded.iter().chain(opened).cloned().collect();
         let room = SessionRoom {
@@ -188,14 +189,19 @@ impl SessionWork {
 
     /// What was written is told where a person looks: in the live window or in the replay.
     fn take_exported(&mut self, state: &mut State) {
-        for job in std::mem::take(&mut self.exporting) {
-            let mut job = Some(job);
-            match (BackgroundJob::take_from(&mut job), &mut self.player) {
-                (Some(told), Some(player)) => player.tell(told),
-                (Some(told), None) => state.notices.push(state.now, told),
-                (None, _) => self.exporting.extend(job),
+        let mut told = Vec::new();
+        self.exporting.retain_mut(|running| {
+            told.extend(BackgroundJob::take_from(&mut running.job));
+            running.job.is_some()
+        });
+        for told in told {
+            match &mut self.player {
+                Some(player) => player.tell(told),
+                None => state.notices.push(state.now, told),
             }
         }
+        let progress = self.exporting.iter().map(RunningExport::progress);
+        state.sessions.exports = progress.collect();
     }
 
     /// From the next recording on; the sessions of that folder are listed at once.
@@ -248,9 +254,7 @@ impl SessionWork {
             }
             SessionAction::DefaultFolder => self.record_into(None, state),
             SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
-            SessionAction::Export(path, form) => {
-                self.exporting.push(export::export(path, form, env))
-            }
+            SessionAction::Export(export) => self.exporting.push(export.begin(env)),
             SessionAction::Look => self.look(state, env),
             SessionAction::Open(path) => self.open(path, None, env),
             SessionAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),

@@ -1,6 +1,6 @@
 //! What a person asks about sessions.
 
-use crate::app::sessions::export::SessionForm;
+use crate::app::sessions::export::SessionExport;
 use crate::hand::Moment;
 use std::path::PathBuf;
 
@@ -25,8 +25,8 @@ pub enum SessionAction {
     Close,
     /// Show where this file lies, in the system's file manager.
     Reveal(PathBuf),
-    /// Write this session in a format of others.
-    Export(PathBuf, SessionForm),
+    /// Write a session, or a stretch of it, in a format of others.
+    Export(SessionExport),
     /// Give a session a name; empty takes it away.
     Name(PathBuf, String),
     /// Give a session a star, or take it away.

@@ -51,10 +51,10 @@ impl PlannedDeletion {
         self.told_unix_s.saturating_add(TOLD_FOR.as_secs())
     }
 
-    /// The same as `2026-11-22 09:30`, UTC.
+    /// The same as the clock of this computer shows it, `2026-11-22 09:30`.
     pub fn due(&self) -> String {
-        let stamp = calendar::stamp(Duration::from_secs(self.due_unix_s()));
-        stamp.replace('T', " ").chars().take(16).collect()
+        let (day, time) = calendar::local(Duration::from_secs(self.due_unix_s()));
+        format!("{day} {time}")
     }
 
     /// Deletes the files and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
@@ -149,8 +149,10 @@ pub(crate) fn told_path(folder: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hand::Moment;
     use crate::record::file::tests::parts::Parts;
     use crate::record::file::{Counts, Opening};
+    use std::sync::Arc;
 
     const DAY_S: u64 = 24 * 3600;
     const NOW_S: u64 = 100 * DAY_S;
@@ -161,10 +163,12 @@ mod tests {
             path: name.into(),
             files: vec![name.into()],
             bytes,
+            first: Moment::ZERO,
             length: Duration::ZERO,
             counts: Counts::default(),
             marks: Vec::new(),
             strip: Vec::new(),
+            poses: Arc::default(),
             closed: true,
             about: SessionAbout::default(),
         }

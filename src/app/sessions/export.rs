@@ -1,14 +1,17 @@
-//! A whole session in a format of others, written off the window's thread into the folder of the day.
+//! A session, or a stretch of it, in a format of others: written off the window's thread into the folder of the day.
 
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
+use crate::hand::Moment;
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan};
 use crate::record::export::{Destination, ExportError, Source, csv, cut, lerobot, parquet, rosbag};
 use crate::record::file::SessionFile;
 use crate::record::file::reader::Stretch;
 use crate::store::{BackgroundJob, calendar, on_thread};
-use std::io;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Frames a second of a data set, as cameras have it.
 const FPS: u32 = 30;
@@ -48,14 +51,9 @@ impl SessionForm {
         }
     }
 
-    /// Writes it; how many rows, messages or frames are in it.
-    fn write(self, file: &SessionFile, to: &Path) -> Result<u64, ExportError> {
-        let whole = Stretch {
-            from: file.first(),
-            to: file.last(),
-            wire: self == Self::Mcap,
-        };
-        let (source, place) = (Source::new(file, whole), Destination::from(to));
+    /// Writes what is wanted of a session; how many rows, messages or frames are in it.
+    fn write(self, source: Source<'_>, to: &Path) -> Result<u64, ExportError> {
+        let place = Destination::from(to);
         let written = match self {
             Self::Csv => csv::write(source, &place),
             Self::Parquet => parquet::write(source, &place),
@@ -74,37 +72,114 @@ impl SessionForm {
     }
 }
 
-/// Writes a session; what to tell a person of it.
-pub(crate) fn export(path: PathBuf, form: SessionForm, env: &Env) -> BackgroundJob<NoticeKind> {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let name = format!("{stem}{}", form.ending());
-    let folder = env.documents.as_ref().map(|documents| {
-        let day = calendar::day(calendar::since_1970());
-        day_folder::of_day(documents, &day)
-    });
-    let files = std::sync::Arc::clone(&env.files);
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
-        let to = match folder {
-            Some(folder) => day_folder::free_path(&folder, &name),
-            None => match files.choose(&name).await {
-                Some(to) => to,
-                None => return NoticeKind::NoFileChosen,
-            },
+/// What is to be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SessionExport {
+    /// The session.
+    pub path: PathBuf,
+    pub form: SessionForm,
+    /// From and to; `None` = all of it.
+    pub stretch: Option<(Moment, Moment)>,
+}
+
+/// How far an export is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExportProgress {
+    pub export: SessionExport,
+    /// Of all that is to be read.
+    pub percent: u8,
+}
+
+/// An export under way.
+pub(crate) struct RunningExport {
+    export: SessionExport,
+    percent: Arc<AtomicU8>,
+    /// What to tell a person once it is done.
+    pub(crate) job: Option<BackgroundJob<NoticeKind>>,
+}
+
+impl RunningExport {
+    pub(crate) fn progress(&self) -> ExportProgress {
+        ExportProgress {
+            export: self.export.clone(),
+            percent: self.percent.load(Ordering::Relaxed),
+        }
+    }
+}
+
+impl SessionExport {
+    /// What it is called: after the session.
+    fn file_name(&self) -> String {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let part = if self.stretch.is_some() { "-part" } else { "" };
+        format!("{stem}{part}{}", self.form.ending())
+    }
+
+    /// Writes it; what to tell a person of it.
+    fn write(&self, to: PathBuf, percent: &AtomicU8) -> NoticeKind {
+        let made = to.parent().map(std::fs::create_dir_all);
+        if let Some(Err(error)) = made {
+            return NoticeKind::not_saved(to, &error);
+        }
+        let path = self.path.clone();
+        let file = match SessionFile::open(&path) {
+            Ok(file) => file,
+            Err(why) => return NoticeKind::SessionRefused { path, why },
         };
-        let place = to.clone();
-        let write = move || {
-            if let Some(folder) = place.parent() {
-                std::fs::create_dir_all(folder)?;
-            }
-            let file = SessionFile::open(&path).map_err(io::Error::other)?;
-            form.write(&file, &place).map_err(io::Error::other)
+        let (from, until) = self.stretch.unwrap_or((file.first(), file.last()));
+        let stretch = Stretch {
+            from,
+            to: until,
+            wire: self.form == SessionForm::Mcap,
         };
-        match on_thread(write).await {
+        let watch = |share: f64| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a share is 0 to 1"
+            )]
+            percent.store((share * 100.0) as u8, Ordering::Relaxed);
+            ControlFlow::Continue(())
+        };
+        let source = Source {
+            watch: &watch,
+            ..Source::new(&file, stretch)
+        };
+        match self.form.write(source, &to) {
             Ok(rows) => NoticeKind::Saved {
                 path: to,
                 entries: usize::try_from(rows).unwrap_or(usize::MAX),
             },
-            Err(error) => NoticeKind::not_saved(to, &error),
+            Err(error) => NoticeKind::NotExported { path, error },
         }
-    })
+    }
+
+    /// Begins it.
+    pub(crate) fn begin(self, env: &Env) -> RunningExport {
+        let name = self.file_name();
+        let folder = env.documents.as_ref().map(|documents| {
+            let day = calendar::day(calendar::since_1970());
+            day_folder::of_day(documents, &day)
+        });
+        let files = Arc::clone(&env.files);
+        let percent = Arc::new(AtomicU8::new(0));
+        let (export, progress) = (self.clone(), Arc::clone(&percent));
+        let job = BackgroundJob::start(&env.runtime, &env.wake, async move {
+            let to = match folder {
+                Some(folder) => day_folder::free_path(&folder, &name),
+                None => match files.choose(&name).await {
+                    Some(to) => to,
+                    None => return NoticeKind::NoFileChosen,
+                },
+            };
+            let place = to.clone();
+            let written = on_thread(move || Ok(export.write(place, &progress))).await;
+            written.unwrap_or_else(|error| NoticeKind::not_saved(to, &error))
+        });
+        RunningExport {
+            export: self,
+            percent,
+            job: Some(job),
+        }
+    }
 }

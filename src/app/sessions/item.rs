@@ -1,16 +1,19 @@
 //! One session of the list: what is known of a file without reading it whole.
 
 use crate::app::sessions::about::{SessionAbout, SessionNote};
-use crate::hand::{Dof, Moment, Quantity};
+use crate::hand::{Dof, Moment, PerDof, Quantity};
 use crate::record::EventKind;
-use crate::record::file::overview::joint_line;
+use crate::record::file::overview::{OverviewRow, joint_line};
 use crate::record::file::{Counts, FileMark, OpenError, Opening, Overview, SessionFile};
 use crate::store::calendar::stamp;
+use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Columns of the strip of force.
-pub const STRIP: usize = 96;
+pub const STRIP: usize = 300;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionItem {
@@ -22,6 +25,8 @@ pub struct SessionItem {
     pub bytes: u64,
     /// What it began with.
     pub opening: Opening,
+    /// The moment of its own clock that it begins at.
+    pub first: Moment,
     /// How long it is.
     pub length: Duration,
     /// How much there is of what.
@@ -30,6 +35,8 @@ pub struct SessionItem {
     pub marks: Vec<FileMark>,
     /// Greatest force of any joint over its length, in grams; NaN where nothing was read.
     pub strip: Vec<f32>,
+    /// Angles of the joints in the same columns; none where none was read.
+    pub poses: Arc<Vec<PerDof<Option<i16>>>>,
     /// True if the recording was ended as it should be.
     pub closed: bool,
     /// What a person says of it.
@@ -57,10 +64,12 @@ impl SessionItem {
             files: file.paths().map(ToOwned::to_owned).collect(),
             bytes: file.bytes(),
             opening: file.opening().clone(),
+            first: file.first(),
             length: file.last().since(file.first()),
             counts: overview.counts,
             marks: overview.marks.clone(),
             strip: strip(overview, span),
+            poses: Arc::new(poses(overview, span)),
             closed: file.is_closed(),
             about,
         }
@@ -88,6 +97,24 @@ impl SessionItem {
         self.files.iter().any(|file| paths.contains(file))
     }
 
+    /// The joints that its trials closed.
+    pub fn tried(&self) -> Vec<Dof> {
+        let trials = self
+            .marks
+            .iter()
+            .filter(|mark| mark.kind == EventKind::Trial);
+        let named: BTreeSet<&str> = trials
+            .flat_map(|mark| mark.words.split(", ").skip(1))
+            .collect();
+        let all = Dof::ALL.into_iter();
+        all.filter(|dof| named.contains(dof.name())).collect()
+    }
+
+    /// The moment of its own clock after a part of its length.
+    pub fn moment(&self, part: f64) -> Moment {
+        self.first.plus(self.length.mul_f64(part.clamp(0.0, 1.0)))
+    }
+
     /// How many marks of a kind there are.
     pub fn count(&self, kind: EventKind) -> usize {
         self.marks.iter().filter(|mark| mark.kind == kind).count()
@@ -112,24 +139,50 @@ impl SessionItem {
 }
 
 /// The greatest force of all joints, column by column.
-pub fn strip(overview: &Overview, (first, last): (Moment, Moment)) -> Vec<f32> {
-    let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
-    let (from, to) = (second(first), second(last));
-    let mut columns = vec![f32::NAN; STRIP];
-    let whole = u64::from(to.saturating_sub(from)) + 1;
-    for row in overview.rows_within(from, to) {
-        let place = u64::from(row.second - from) * STRIP as u64 / whole;
-        let width = (STRIP as u64).div_ceil(whole);
+pub fn strip(overview: &Overview, span: (Moment, Moment)) -> Vec<f32> {
+    let mut all = vec![f32::NAN; STRIP];
+    for (columns, row) in columns(overview, span) {
         let force = Dof::ALL.map(|dof| row.greatest.get(joint_line(Quantity::Force, dof)).copied());
         let force = force.into_iter().flatten().fold(f32::NAN, f32::max);
-        for place in place..(place + width).min(STRIP as u64) {
-            let column = usize::try_from(place)
-                .ok()
-                .and_then(|at| columns.get_mut(at));
-            if let Some(column) = column {
-                *column = column.max(force);
-            }
+        for column in all.get_mut(columns).into_iter().flatten() {
+            *column = column.max(force);
         }
     }
-    columns
+    all
+}
+
+/// The angles of the joints, column by column: the middle of what they were in the last second there.
+fn poses(overview: &Overview, span: (Moment, Moment)) -> Vec<PerDof<Option<i16>>> {
+    let mut all = vec![PerDof::splat(None); STRIP];
+    for (columns, row) in columns(overview, span) {
+        let pose = PerDof::from_fn(|dof| {
+            let line = joint_line(Quantity::Angle, dof);
+            let middle = row.least.get(line)?.midpoint(*row.greatest.get(line)?);
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "cut to what a register holds"
+            )]
+            let angle = middle.round() as i16;
+            (!middle.is_nan()).then_some(angle)
+        });
+        for column in all.get_mut(columns).into_iter().flatten() {
+            *column = pose;
+        }
+    }
+    all
+}
+
+/// Which columns each second of an overview stands in.
+fn columns(
+    overview: &Overview,
+    (first, last): (Moment, Moment),
+) -> impl Iterator<Item = (Range<usize>, &OverviewRow)> {
+    let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
+    let (from, to) = (second(first), second(last));
+    let whole = usize::try_from(to.saturating_sub(from)).unwrap_or(usize::MAX) + 1;
+    overview.rows_within(from, to).iter().map(move |row| {
+        let place = usize::try_from(row.second - from).unwrap_or(usize::MAX);
+        let place = place.saturating_mul(STRIP) / whole;
+        (place..(place + STRIP.div_ceil(whole)).min(STRIP), row)
+    })
 }

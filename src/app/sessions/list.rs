@@ -2,6 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::sessions::budget::{self, PlannedDeletion};
+use crate::app::sessions::export::ExportProgress;
 use crate::app::sessions::item::SessionItem;
 use crate::hand::Moment;
 use crate::record::file::parts;
@@ -64,6 +65,10 @@ pub struct SessionsState {
     pub own: Vec<OwnSession>,
     /// Counts how often they were looked for.
     pub looked: u64,
+    /// The time since 1970 when that was done last: what is today.
+    pub looked_at: Duration,
+    /// What is being written in formats of others.
+    pub exports: Vec<ExportProgress>,
 }
 
 impl SessionsState {

@@ -16,7 +16,7 @@ pub use crate::app::sessions::about::{SessionAbout, SessionNote};
 pub use crate::app::sessions::action::SessionAction;
 pub use crate::app::sessions::beside::BesideSession;
 pub use crate::app::sessions::budget::PlannedDeletion;
-pub use crate::app::sessions::export::SessionForm;
+pub use crate::app::sessions::export::{ExportProgress, SessionExport, SessionForm};
 pub use crate::app::sessions::holding::replay_of;
 pub use crate::app::sessions::item::SessionItem;
 pub use crate::app::sessions::list::{OwnSession, SessionsState};

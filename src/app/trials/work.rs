@@ -191,7 +191,12 @@ impl SeriesRun {
                 SeriesStep::View(view) => {
                     if view.number != self.view.number {
                         (self.since, self.zero) = (at, at);
-                        let words = format!("{} of {}", view.number, view.total);
+                        let closed = Dof::ALL
+                            .into_iter()
+                            .filter(|dof| self.plan.close[*dof].is_some());
+                        let closed = closed.map(|dof| format!(", {}", dof.name()));
+                        let closed: String = closed.collect();
+                        let words = format!("{} of {}{closed}", view.number, view.total);
                         news.begun.push((at, words));
                     }
                     if view.stage == Stage::Closing {

@@ -2,6 +2,7 @@
 //! standard output.
 
 use crate::record::file::reader::Damage;
+use crate::system::SystemError;
 use parquet::errors::ParquetError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -16,18 +17,11 @@ pub enum ExportError {
     #[error("{} is already there and is not overwritten", .path.display())]
     Exists { path: PathBuf },
     /// The system does not let it be written.
-    #[error("cannot write {}: {message}", .path.display())]
-    Unwritable {
-        path: PathBuf,
-        /// What the system says.
-        message: String,
-    },
+    #[error("cannot write {}: {error}", .path.display())]
+    Unwritable { path: PathBuf, error: SystemError },
     /// The session cannot be read on.
-    #[error("cannot read the session to its end: {message}")]
-    Unreadable {
-        /// What the system says.
-        message: String,
-    },
+    #[error("cannot read the session to its end: {error}")]
+    Unreadable { error: SystemError },
     /// There is nothing of this kind in the stretch.
     #[error("there is no reading of the joints in this stretch")]
     Empty,
@@ -125,11 +119,11 @@ impl Unfinished {
             }
             Destination::Stdout => ExportError::Unwritable {
                 path: "standard output".into(),
-                message: error.to_string(),
+                error: error.into(),
             },
             Destination::Path(path) => ExportError::Unwritable {
                 path: path.clone(),
-                message: error.to_string(),
+                error: error.into(),
             },
         }
     }

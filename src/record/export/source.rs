@@ -43,7 +43,7 @@ impl Broken {
     pub(crate) fn of(self, output: &Unfinished) -> ExportError {
         match self {
             Self::Source(error) => ExportError::Unreadable {
-                message: error.to_string(),
+                error: error.into(),
             },
             Self::Output(error) => output.error(&error),
             Self::Table(error) => output.parquet_error(error),

@@ -37,14 +37,7 @@ impl DriveWords {
             None => sample.status.map(|group| group.asked),
         };
         let freshness = pane.freshness(asked);
-        let live = match (fault, status) {
-            (Some(_), _) => palette.bad,
-            (None, Some(status)) if status.is_protective() => palette.bad,
-            (None, Some(Status::Releasing | Status::Grasping)) => palette.accent,
-            (None, Some(Status::ForceReached)) => palette.warn,
-            (None, Some(Status::PositionReached)) => palette.ok,
-            (None, _) => palette.faint,
-        };
+        let live = palette.drive(fault, status);
         let words = match (fault, status) {
             (Some(fault), _) => Some(words::fault(fault, look.language)),
             (None, Some(status)) => Some(words::status(status, look.language)),

@@ -41,7 +41,7 @@ pub(crate) fn lines(look: Look, recording: &Recording) -> Vec<EventLine> {
 /// A mark of the history; a fault's is told better by the drive's own words.
 fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
     // Faults are told by the drives.
-    if mark.kind == MarkKind::Fault {
+    if matches!(mark.kind, MarkKind::Fault(_)) {
         return None;
     }
     let (text, color) = marks::told(look, &mark.kind);

@@ -8,9 +8,9 @@ use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
 use crate::ui::text::{Text, panels};
 use crate::ui::theme;
-use egui::text::{LayoutJob, TextFormat};
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{
-    Align, Color32, Layout, Mesh, PointerButton, Pos2, Response, Role, Sense, Stroke, Ui,
+    Align, Color32, Layout, Mesh, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
     WidgetInfo, vec2,
 };
 use egui_plot::{
@@ -117,7 +117,7 @@ pub(crate) struct ChartView {
     pub(crate) scales: Scales,
     /// Points of lines; of a line that goes on only the newest are fetched.
     traces: Traces,
-    /// The chart and the time that the pointer is at.
+    /// The chart that the pointer is in, and the part of its width that is left of it.
     pointed: Option<(&'static str, f64)>,
 }
 
@@ -144,6 +144,10 @@ pub(crate) struct Chart<'a> {
     pub(crate) empty: Text,
     /// With caption and axis of time.
     pub(crate) height: f32,
+    /// Room at the right, for the half of a word below or for what stands at the ends of the curves.
+    pub(crate) end: f32,
+    /// True without caption and numbers.
+    pub(crate) is_sparkline: bool,
 }
 
 /// What was drawn, with the response of the numbers beside it.
@@ -170,6 +174,8 @@ impl<'a> Chart<'a> {
             is_lowest: true,
             empty: panels::PLOT_EMPTY,
             height,
+            end: theme::PLOT_END,
+            is_sparkline: false,
         }
     }
 
@@ -178,21 +184,24 @@ impl<'a> Chart<'a> {
     pub(crate) fn ui(&self, ui: &mut Ui, view: &mut ChartView) -> ChartResponse {
         let mut traces = std::mem::take(&mut view.traces);
         let (from_s, to_s) = view.time.span();
-        let width = ui.available_width() - theme::PLOT_END;
+        let width = ui.available_width() - self.end;
         let columns = (width - theme::PLOT_AXIS) * ui.pixels_per_point();
         let columns = columns.clamp(1.0, COLUMNS_MOST);
-        let (extent, is_decimated) = self.fetch(&mut traces, (from_s, to_s), columns);
-        let room = self.height - theme::PLOT_CAPTION;
-        let chosen = view.scales.chosen(self.title);
-        let scale = chosen.unwrap_or_else(|| scales::rounded(self.least, extent, room));
+        let extent = self.fetch(&mut traces, (from_s, to_s), columns);
+        let (aim, scale) = self.scale(ui, view, extent);
         ui.spacing_mut().item_spacing.y = 0.0;
-        self.caption_ui(ui, view, is_decimated);
+        // The ground tells where a plot is; a frame would be as loud as its curves.
+        let frame = std::mem::take(&mut ui.visuals_mut().widgets.noninteractive.bg_stroke);
+        if !self.is_sparkline {
+            self.caption_ui(ui, view);
+        }
         let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
         let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
         let per_s = f64::from(columns) / (to_s - from_s);
         let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
         let marks = ui.input(|input| input.modifiers.shift);
-        let plot = self.plot(chosen.is_some()).width(width);
+        let is_fixed = view.scales.chosen(self.title).is_some();
+        let plot = self.plot(is_fixed).width(width);
         let plot = plot.allow_drag([!marks, false]);
         let plot = plot.boxed_zoom_pointer_button(if marks {
             PointerButton::Primary
@@ -206,6 +215,7 @@ impl<'a> Chart<'a> {
                 plot.line(curve.line(piece));
             }
         });
+        ui.visuals_mut().widgets.noninteractive.bg_stroke = frame;
         let frame = *shown.transform.frame();
         let mut mesh = Mesh::default();
         for (curve, piece) in &dense {
@@ -220,6 +230,7 @@ impl<'a> Chart<'a> {
             empty.small().center().put(ui, frame);
         }
         view.traces = traces;
+        self.pointer_ui(ui, view, frame);
         let name = self.look.say(self.title);
         let info = || WidgetInfo::labeled(Role::Image, true, name);
         shown.response.widget_info(info);
@@ -233,19 +244,57 @@ impl<'a> Chart<'a> {
             transform: shown.transform,
             hovered_plot_item: None,
         };
-        let of = (self.title, scale);
-        view.scales.axis_ui(ui, &shown.inner, self.look, of);
+        if !self.is_sparkline {
+            let of = (self.title, aim);
+            view.scales.axis_ui(ui, &shown.inner, self.look, of);
+        }
         view.act(ui, &shown, self.title, bounds);
         shown
     }
 
-    /// Gets the points that are read from a history. What the values span, and whether points stand for several.
+    /// Where the ends of the scale are to be for values of this extent, and where they are on their way there.
+    fn scale(
+        &self,
+        ui: &Ui,
+        view: &mut ChartView,
+        extent: Option<(f64, f64)>,
+    ) -> ((f64, f64), (f64, f64)) {
+        if let Some(chosen) = view.scales.chosen(self.title) {
+            return (chosen, chosen);
+        }
+        let wanted = scales::rounded(self.least, extent, self.height - self.caption());
+        let follows = !view.time.is_held();
+        let at_s = follows.then(|| ui.input(|input| input.time));
+        let aim = view.scales.settled(self.title, wanted, at_s);
+        (aim, scales::eased(ui, self.title, aim))
+    }
+
+    const fn caption(&self) -> f32 {
+        if self.is_sparkline {
+            0.0
+        } else {
+            theme::PLOT_CAPTION
+        }
+    }
+
+    /// The time that the pointer is at in another of the charts: at the same place, however time goes on.
+    fn pointer_ui(&self, ui: &Ui, view: &ChartView, frame: Rect) {
+        let other = view.pointed.filter(|(of, _)| *of != self.title.en);
+        if let Some((_, part)) = other {
+            #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
+            let x = frame.left() + frame.width() * part as f32;
+            let stroke = Stroke::new(1.0, self.look.palette.faint);
+            ui.painter().vline(x, frame.y_range(), stroke);
+        }
+    }
+
+    /// Gets the points that are read from a history. What the values span.
     fn fetch(
         &self,
         traces: &mut Traces,
         (from_s, to_s): TimeSpan,
         columns: f32,
-    ) -> (Option<(f64, f64)>, bool) {
+    ) -> Option<(f64, f64)> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -254,7 +303,6 @@ impl<'a> Chart<'a> {
         let columns = columns as usize;
         let levels = self.levels.iter().map(|(level, _)| (*level, *level));
         let mut extent = levels.fold(None, scales::joined);
-        let mut is_decimated = false;
         for curve in &self.curves {
             let [ahead_s, zero] = curve.zero;
             let (from_s, to_s) = (from_s + ahead_s, to_s + ahead_s);
@@ -266,7 +314,10 @@ impl<'a> Chart<'a> {
                 Points::Measured(history, series) => {
                     let trace = traces.entry((curve.beside, series)).or_default();
                     history.trace(series, from_s, to_s, columns, trace);
-                    is_decimated |= trace.decimated && !curve.steps;
+                    // What was asked for holds until something else is asked, though it is read seldom.
+                    if curve.steps && history.reading(series, to_s).is_some() {
+                        trace.hold_until(to_s);
+                    }
                     // A trace keeps every extreme; the point before the left edge is not seen.
                     let seen = trace.points().filter(|[at_s, _]| *at_s >= from_s);
                     let values = seen.map(|[_, value]| (value - zero, value - zero));
@@ -274,41 +325,40 @@ impl<'a> Chart<'a> {
                 }
             }
         }
-        (extent, is_decimated)
+        extent
     }
 
     /// Title, what is to be known of it, and the values under the pointer; over the curves, never on them.
-    fn caption_ui(&self, ui: &mut Ui, view: &ChartView, is_decimated: bool) {
+    fn caption_ui(&self, ui: &mut Ui, view: &ChartView) {
         let look = self.look;
         let place = vec2(ui.available_width(), theme::PLOT_CAPTION);
         let right = Layout::right_to_left(Align::Center);
         ui.allocate_ui_with_layout(place, right, |ui| {
             ui.set_min_height(theme::PLOT_CAPTION);
+            ui.add_space(self.end - theme::PLOT_END);
+            let title = Label::new(look.say(self.title), look.palette.muted).small();
             if let Some(at_s) = view.pointed_s() {
-                self.readings_ui(ui, at_s);
+                // The title is read first: the values get what it leaves.
+                let taken = kit::text_width(ui, look.say(self.title), theme::small());
+                let room = ui.available_width() - theme::PLOT_AXIS - taken - theme::GAP;
+                self.readings_ui(ui, at_s, room);
             }
             kit::left_ui(ui, |ui| {
                 ui.add_space(theme::PLOT_AXIS);
-                Label::new(look.say(self.title), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                title.ui(ui);
+                let (text, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
+                let width = kit::text_width(ui, look.say(text), theme::small());
                 let is_fixed = view.scales.chosen(self.title).is_some();
-                for (is_said, text, tip) in [
-                    (is_fixed, panels::RANGE_FIXED, panels::RANGE.tip()),
-                    (is_decimated, panels::DECIMATED, panels::DECIMATED.tip()),
-                ] {
-                    let width = kit::text_width(ui, look.say(text), theme::small());
-                    if is_said && width <= ui.available_width() {
-                        let label = Label::muted(look, text);
-                        label.small().ui(ui).on_hover_text(look.say(tip));
-                    }
+                if is_fixed && width <= ui.available_width() {
+                    let label = Label::muted(look, text);
+                    label.small().ui(ui).on_hover_text(look.say(tip));
                 }
             });
         });
     }
 
-    /// The values at a time, each in the colour of its line.
-    fn readings_ui(&self, ui: &mut Ui, at_s: f64) {
+    /// The values at a time, each in the colour of its line, in this room.
+    fn readings_ui(&self, ui: &mut Ui, at_s: f64, room: f32) {
         let mut job = LayoutJob::default();
         let mut texts = Vec::new();
         for curve in &self.curves {
@@ -325,10 +375,12 @@ impl<'a> Chart<'a> {
             job.append(&format!(" {text:>6}"), 0.0, format);
             texts.push(text);
         }
-        if texts.is_empty() {
+        if texts.is_empty() || room <= 0.0 {
             return;
         }
-        let response = ui.add(egui::Label::new(job).truncate());
+        job.wrap = TextWrapping::truncate_at_width(room);
+        let galley = ui.painter().layout_job(job);
+        let response = ui.add(egui::Label::new(galley));
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
         let name = format!(
@@ -352,7 +404,11 @@ impl<'a> Chart<'a> {
             hints.tick_label_color(color).label_spacing(1.0..=2.0)
         };
         let values = hints(AxisHints::new_y(), color).min_thickness(theme::PLOT_AXIS);
-        let values = values.formatter(|mark, _| scales::number(mark.value, mark.step_size));
+        let is_sparkline = self.is_sparkline;
+        let values = values.formatter(move |mark, _| match is_sparkline {
+            true => String::new(),
+            false => scales::number(mark.value, mark.step_size),
+        });
         let times = hints(AxisHints::new_x(), palette.muted).min_thickness(theme::PLOT_TIME_AXIS);
         let own = self.times;
         let times = times.formatter(move |mark, seen| own.label(mark, seen));
@@ -360,7 +416,10 @@ impl<'a> Chart<'a> {
             let text = own.text(at.x, bounds.width() / 100.0);
             format!("{text}  {}", scales::number(at.y, bounds.height() / 100.0))
         };
-        let spacing = |input: GridInput| {
+        let spacing = move |input: GridInput| {
+            if is_sparkline {
+                return Vec::new();
+            }
             let step = scales::step(input.bounds, input.base_step_size);
             marks(input.bounds, 0.0, step)
         };
@@ -369,7 +428,7 @@ impl<'a> Chart<'a> {
             marks(input.bounds, own.zero_s(), step)
         };
         Plot::new(self.title.en)
-            .height(self.height - theme::PLOT_CAPTION)
+            .height(self.height - self.caption())
             .min_size(vec2(0.0, 0.0))
             .show_axes([self.is_lowest, true])
             .custom_x_axes(vec![times])
@@ -379,7 +438,6 @@ impl<'a> Chart<'a> {
             .grid_color(palette.grid)
             .grid_fade(0.0)
             .cursor_color(palette.faint)
-            .link_cursor(egui::Id::unique("charts"), [true, false])
             .coordinates_formatter(Corner::RightBottom, CoordinatesFormatter::new(pointed))
             .allow_zoom([true, false])
             .allow_axis_zoom_drag([true, false])
@@ -445,7 +503,9 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 impl ChartView {
     /// The time that the pointer is at in one of the charts.
     pub(crate) fn pointed_s(&self) -> Option<f64> {
-        self.pointed.map(|(_, at_s)| at_s)
+        let (from_s, to_s) = self.time.span();
+        let at_s = |(_, part)| from_s + part * (to_s - from_s);
+        self.pointed.map(at_s)
     }
 
     /// Takes over what `egui_plot` made of drags, and follows wheel and double click.
@@ -474,7 +534,13 @@ impl ChartView {
             ui.request_repaint();
         }
         if pointed.is_some() || self.pointed.is_some_and(|(of, _)| of == title.en) {
-            self.pointed = pointed.map(|at_s| (title.en, at_s));
+            let (from_s, to_s) = bounds.range_x().into_inner();
+            let before = self.pointed;
+            self.pointed = pointed.map(|at_s| (title.en, (at_s - from_s) / (to_s - from_s)));
+            if self.pointed != before {
+                // The charts above were drawn before this was known.
+                ui.request_repaint();
+            }
         }
         if shown.response.double_clicked() {
             self.time.follow();

@@ -8,10 +8,14 @@ use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
 use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
+use crate::ui::plots::times::length;
 use crate::ui::text::{Text, panels, words};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
+
+/// Width of the menu.
+const MENU: f32 = 264.0;
 
 /// Title and switches.
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
@@ -48,11 +52,15 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         .ui(ui, look);
     let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     menu.show(|ui| {
+        ui.set_max_width(MENU);
         ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
         ui.separator();
+        ui.label(look.say(panels::CURVES));
+        legend_ui(ui, look, view);
+        ui.separator();
         ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
-        if entry_ui(ui, look, panels::NOTE_NAME) {
+        if entry_ui(ui, look, (look.say(panels::NOTE_NAME), panels::NOTE_NAME)) {
             pane.open(ViewRequest::Note);
             Popup::close_all(ui.ctx());
         }
@@ -63,16 +71,13 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         }
         keep_ui(ui, pane, view);
         ui.separator();
-        ui.set_max_width(250.0);
         let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
 }
 
-fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
-    ui.button(look.say(text))
-        .on_hover_text(look.tip(text))
-        .clicked()
+fn entry_ui(ui: &mut Ui, look: Look, (words, text): (&str, Text)) -> bool {
+    ui.button(words).on_hover_text(look.tip(text)).clicked()
 }
 
 /// A switch for each plot. The last one that is shown stays.
@@ -92,12 +97,13 @@ fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
-    let save = entry_ui(ui, look, panels::SAVE_CSV).then(|| {
+    let words = look.fill(panels::SAVE_CSV, &[&length(to_s - from_s)]);
+    let save = entry_ui(ui, look, (&words, panels::SAVE_CSV)).then(|| {
         let history = &pane.state.hand().measured.history;
         let series = view.shown_series(pane);
         Action::Save(Export::Plots(history.table(&series, from_s, to_s)))
     });
-    let picture = entry_ui(ui, look, panels::SAVE_PNG);
+    let picture = entry_ui(ui, look, (look.say(panels::SAVE_PNG), panels::SAVE_PNG));
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);
@@ -151,9 +157,8 @@ pub(crate) const fn span_text(window: PlotWindow) -> &'static str {
 }
 
 /// The six joints, each a switch for its curves, and the switch for thresholds; in as many rows as they need.
-pub(crate) fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
+fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
     let palette = look.palette;
-    view.pointed = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme::STEP, 0.0);
         ui.spacing_mut().button_padding = egui::vec2(theme::STEP, 2.0);
@@ -165,9 +170,6 @@ pub(crate) fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
             let sign = ("■ ", palette.dof[dof]);
             let response = switch_ui(ui, look, (sign, words, shown));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, shown, &named));
-            if response.hovered() && shown {
-                view.pointed = Some(dof);
-            }
             if response
                 .on_hover_text(look.say(panels::SHOW_CURVE))
                 .clicked()

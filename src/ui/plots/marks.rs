@@ -4,7 +4,7 @@ use crate::history::{Mark, MarkKind};
 use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
 use crate::ui::plots::times::clock;
-use crate::ui::text::panels;
+use crate::ui::text::{notices, panels};
 use crate::ui::theme;
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
@@ -18,37 +18,77 @@ pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): (f64, f64)) -> Vec<(f64, 
     marks.map(moment).collect()
 }
 
-/// The words of the marks, once, in the topmost plot. Words that would overlap are left out.
+/// Words beside a line: of the newest of those that have no room of their own, and how many more these are.
+struct MarkWords {
+    x: f32,
+    text: String,
+    color: Color32,
+    more: usize,
+}
+
+/// The words of the marks, once, in the topmost plot. Where they would overlap they are joined.
 pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let rect = *shown.transform.frame();
     let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
-    let mut free_from = rect.left();
-    for mark in pane.state.hand().measured.history.marks(from_s, to_s) {
+    let marks = pane.state.hand().measured.history.marks(from_s, to_s);
+    let words = marks.map(|mark| {
         let x = shown.transform.position_from_point_x(mark.at.secs());
-        if x < free_from {
-            continue;
-        }
         let (text, color) = told(pane.look, &mark.kind);
-        let text: String = text.chars().take(NOTE_SHOWN).collect();
-        let size = vec2(
-            kit::text_width(ui, &text, theme::small()) + 1.0,
-            theme::TEXT_LINE,
-        );
-        let right = x + size.x + theme::GAP <= rect.right();
-        let left = if right {
-            x + theme::STEP
-        } else {
-            x - size.x - theme::STEP
-        };
-        if left < free_from {
-            continue;
+        let text = text.chars().take(NOTE_SHOWN).collect();
+        let more = 0;
+        MarkWords {
+            x,
+            text,
+            color,
+            more,
         }
+    });
+    let width = |text: &str| kit::text_width(ui, text, theme::small());
+    for words in joined(words.collect(), rect.right(), width) {
+        words.ui(ui, pane.look, rect);
+    }
+}
+
+/// The words that have room, from the newest to the oldest; others are counted with those that are newer.
+fn joined(mut marks: Vec<MarkWords>, right: f32, width: impl Fn(&str) -> f32) -> Vec<MarkWords> {
+    marks.reverse();
+    let more = width(" +99");
+    let mut free_until = right;
+    let mut all: Vec<MarkWords> = Vec::new();
+    for words in marks {
+        let (x, width) = (words.x, width(&words.text) + more);
+        let fits = x + theme::STEP + width + theme::GAP <= free_until;
+        match all.last_mut().filter(|_| !fits) {
+            Some(newer) => newer.more += 1,
+            None => {
+                // The newest stands left of its line where there is no room right of it.
+                free_until = if fits { x } else { x - width - theme::GAP };
+                all.push(words);
+            }
+        }
+    }
+    all
+}
+
+impl MarkWords {
+    fn ui(&self, ui: &Ui, look: Look, rect: Rect) {
+        let text = match self.more {
+            0 => self.text.clone(),
+            more => format!("{} +{more}", self.text),
+        };
+        let width = kit::text_width(ui, &text, theme::small()) + 1.0;
+        let size = vec2(width, theme::TEXT_LINE);
+        let is_right = self.x + theme::STEP + width <= rect.right();
+        let left = if is_right {
+            self.x + theme::STEP
+        } else {
+            self.x - width - theme::STEP
+        };
         let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), size);
-        let ground = pane.look.palette.sunken.gamma_multiply(0.8);
+        let ground = look.palette.sunken.gamma_multiply(0.8);
         ui.painter()
             .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
-        Label::new(&text, color).small().paint(ui, place);
-        free_from = left + size.x + theme::GAP;
+        Label::new(&text, self.color).small().paint(ui, place);
     }
 }
 
@@ -60,7 +100,7 @@ pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
         MarkKind::Stop => (panels::MARK_STOP, palette.bad),
         MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
         MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
-        MarkKind::Fault => (panels::MARK_FAULT, palette.warn),
+        MarkKind::Fault(words) => return (notices::fault_mark(look, words), palette.warn),
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         MarkKind::Gesture(number) => {
@@ -90,4 +130,43 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     });
     let lines: Vec<String> = lines.collect();
     (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crowded_marks_are_counted_with_the_newest_and_none_is_lost() {
+        let mark = |x: f32, text: &str| MarkWords {
+            x,
+            text: text.into(),
+            color: Color32::WHITE,
+            more: 0,
+        };
+        // Ten points a letter.
+        let width = |text: &str| text.chars().map(|_| 10.0).sum();
+        let check = |marks: &[(f32, &str)], wanted: &[(&str, usize)]| {
+            let marks = marks.iter().map(|(x, text)| mark(*x, text));
+            let all = joined(marks.collect(), 500.0, width);
+            let told: Vec<_> = all
+                .iter()
+                .map(|one| (one.text.as_str(), one.more))
+                .collect();
+            assert_eq!(told, wanted);
+        };
+        check(
+            &[(100.0, "stop"), (300.0, "armed")],
+            &[("armed", 0), ("stop", 0)],
+        );
+        check(
+            &[(300.0, "a"), (310.0, "b"), (320.0, "c"), (330.0, "d")],
+            &[("d", 3)],
+        );
+        // The newest has its words left of its line, over the lines there.
+        check(
+            &[(100.0, "far"), (450.0, "near"), (495.0, "newest")],
+            &[("newest", 1), ("far", 0)],
+        );
+    }
 }

@@ -2,6 +2,8 @@
 pub(crate) mod bars;
 pub(crate) mod chart;
 pub(crate) mod cursors;
+pub(crate) mod drives;
+pub(crate) mod ends;
 pub(crate) mod head;
 pub(crate) mod legend;
 pub(crate) mod marks;
@@ -11,24 +13,43 @@ pub(crate) mod scales;
 pub(crate) mod time_window;
 pub(crate) mod times;
 
+use crate::app::action::Action;
 use crate::app::settings::PlotKind;
 use crate::hand::{Dof, PerDof};
 use crate::history::Series;
 use crate::transport::Endpoint;
-use crate::ui::kit::{self, Look, Pane, dash};
+use crate::ui::kit::{self, Label, Look, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::cursors::Cursors;
+use crate::ui::plots::drives::DrivesPlace;
+use crate::ui::plots::ends::CurveEnd;
 use crate::ui::plots::panels::{PANELS, Panel, PanelLine};
+use crate::ui::plots::scales::joined;
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::Times;
 use crate::ui::text::panels as text;
 use crate::ui::theme;
-use egui::{Stroke, Ui};
+use egui::{Align2, Role, Stroke, Ui, WidgetInfo, pos2};
 
 /// What was asked for is paler than what was measured.
 const WISHED_PART: f32 = 0.45;
-/// So pale are all joints but the one that the pointer is at in the legend.
+/// So pale are all joints but the one whose value the pointer is at.
 const BEHIND_PART: f32 = 0.2;
+/// Height of a sparkline: its name and its unit.
+const SPARKLINE: f32 = 32.0;
+/// A tall plot is at least as high: its title, and the values of six joints at the ends of their curves.
+const TALL_LEAST: f32 = 104.0;
+/// Where no plot could be higher, only one is shown.
+const ALONE_BELOW: f32 = 72.0;
+
+/// Where one of the plots stands.
+struct PlotPlace {
+    height: f32,
+    /// Room at its right.
+    end: f32,
+    is_lowest: bool,
+    is_sparkline: bool,
+}
 
 /// What the plots need between frames.
 #[derive(Debug, Default)]
@@ -37,7 +58,7 @@ pub(crate) struct PlotView {
     pub(crate) view: ChartView,
     /// Joints whose curves are hidden.
     hidden: PerDof<bool>,
-    /// The joint that the pointer is at in the legend.
+    /// The joint whose value the pointer is at.
     pointed: Option<Dof>,
     /// Whether thresholds are shown.
     thresholds: bool,
@@ -59,7 +80,6 @@ impl PlotView {
         self.size = ui.available_size().into();
         kit::card_ui(ui, pane.look, |ui| {
             head::head_ui(ui, pane, self);
-            head::legend_ui(ui, pane.look, self);
             self.body_ui(ui, pane);
         });
     }
@@ -86,7 +106,7 @@ impl PlotView {
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
-        let mut shown: Vec<&Panel> = shown.collect();
+        let shown: Vec<&Panel> = shown.collect();
         let at = shown
             .iter()
             .position(|panel| Some(panel.kind) == self.chosen);
@@ -94,7 +114,8 @@ impl PlotView {
         let Some(chosen) = shown.get(at).copied() else {
             return;
         };
-        if self.cursors.0.is_some() {
+        let has_figures = self.cursors.0.is_some();
+        if has_figures {
             let measured = chosen.measured(&self.hidden);
             let table = egui::Panel::bottom("figures of the cursors").frame(egui::Frame::NONE);
             let table = table
@@ -104,36 +125,91 @@ impl PlotView {
                 let next = shown.get(at + 1).or(shown.first());
                 self.chosen = next.map(|panel| panel.kind);
             }
-            if room(ui, shown.len()) < 62.0 {
-                shown = vec![chosen];
-            }
         }
-        let height = room(ui, shown.len());
         ui.spacing_mut().item_spacing.y = 0.0;
+        let joints = Dof::ALL.into_iter().filter(|dof| !self.hidden[*dof]);
+        let joints: Vec<Dof> = joints.collect();
+        let low = drives::height(joints.len());
+        let (tall, height) = Self::tall(ui, pane, shown.len(), low);
+        let tall = match tall.len() {
+            1 if has_figures => vec![chosen.kind],
+            _ => tall,
+        };
+        let least = if has_figures { TALL_LEAST } else { ALONE_BELOW };
+        let is_alone = height < least;
+        let (shown, tall, height) = match is_alone {
+            true => (vec![chosen], vec![chosen.kind], room(ui, 1)),
+            false => (shown, tall, height),
+        };
         // In a window that was forced to be tiny there is no place to draw in.
-        if height > theme::PLOT_CAPTION + theme::PLOT_NUMBER
-            && ui.available_width() > 4.0 * theme::PLOT_AXIS
+        let end = ends::width(ui);
+        if height <= theme::PLOT_CAPTION + theme::PLOT_NUMBER
+            || ui.available_width() <= 4.0 * theme::PLOT_AXIS + end
         {
-            self.stack_ui(ui, pane, &shown, height);
+            return;
+        }
+        let (tall, low): (Vec<&Panel>, Vec<&Panel>) = shown
+            .into_iter()
+            .partition(|panel| tall.contains(&panel.kind));
+        self.tall_ui(ui, pane, &tall, (height, end));
+        for panel in low {
+            self.sparkline_ui(ui, pane, panel, end);
+        }
+        if !is_alone {
+            let place = DrivesPlace {
+                joints: &joints,
+                span: self.view.time.span(),
+                end,
+                pointed_s: self.view.pointed_s(),
+            };
+            place.ui(ui, pane);
         }
     }
 
-    fn stack_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &[&Panel], height: f32) {
+    /// Which of so many shown plots are tall, and how high: two if there is room for them, with this much taken below.
+    fn tall(ui: &Ui, pane: &Pane<'_>, shown: usize, below: f32) -> (Vec<PlotKind>, f32) {
+        let height = |tall: usize| tall_height(ui, (tall, shown - tall), below);
+        let count = match shown {
+            0 | 1 => shown,
+            _ if height(2) >= TALL_LEAST => 2,
+            _ => 1,
+        };
+        let settings = &pane.state.settings;
+        let tall = settings.tall_plots.of(&settings.plots, count);
+        (tall, height(count))
+    }
+
+    /// The tall plots, over one axis of time.
+    fn tall_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        shown: &[&Panel],
+        (height, end): (f32, f32),
+    ) {
+        let mut pointed = None;
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
-            let height = height
-                + if is_lowest {
-                    theme::PLOT_TIME_AXIS
-                } else {
-                    0.0
-                };
-            let chart = self.panel_ui(ui, pane, panel, (height, is_lowest));
+            let axis = if is_lowest {
+                theme::PLOT_TIME_AXIS
+            } else {
+                0.0
+            };
+            let place = PlotPlace {
+                height: height + axis,
+                end,
+                is_lowest,
+                is_sparkline: false,
+            };
+            let chart = self.panel_ui(ui, pane, panel, &place);
             if n == 0 {
                 marks::words_ui(ui, pane, &chart);
             }
             if is_lowest {
                 self.cursors.flags_ui(ui, pane.look, &chart);
             }
+            let ends = self.ends(pane, panel);
+            pointed = pointed.or(ends::ends_ui(ui, pane.look, (panel, &chart), &ends));
             if chart.response.clicked() {
                 self.chosen = Some(panel.kind);
             }
@@ -141,6 +217,69 @@ impl PlotView {
                 chart.response.on_hover_text_at_pointer(marks);
             }
         }
+        self.pointed = pointed.map(|(dof, _)| dof);
+        if let Some((dof, true)) = pointed {
+            self.hidden[dof] = true;
+        }
+    }
+
+    /// The newest values of a plot: those at its right edge.
+    fn ends(&self, pane: &Pane<'_>, panel: &Panel) -> Vec<CurveEnd> {
+        let history = &pane.state.hand().measured.history;
+        let (_, to_s) = self.view.time.span();
+        let end = |line: PanelLine| {
+            let reading = history.reading(line.series, to_s);
+            CurveEnd {
+                dof: line.dof,
+                value: reading.map(|reading| reading.value.into()),
+                color: self.stroke(pane.look, &line).color,
+            }
+        };
+        panel.measured(&self.hidden).into_iter().map(end).collect()
+    }
+
+    /// A plot that tells its course alone, with its name and what its newest values span.
+    fn sparkline_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, panel: &Panel, end: f32) {
+        let look = pane.look;
+        let place = PlotPlace {
+            height: SPARKLINE,
+            end,
+            is_lowest: false,
+            is_sparkline: true,
+        };
+        ui.add_space(theme::STEP);
+        let chart = self.panel_ui(ui, pane, panel, &place);
+        let frame = *chart.transform.frame();
+        let name = look.pair(look.say(text::GROW), look.say(panel.title));
+        let grow = chart.inner;
+        grow.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        let at = pos2(frame.left() - theme::STEP, frame.center().y);
+        let color = if grow.hovered() {
+            look.palette.text
+        } else {
+            look.palette.muted
+        };
+        let short = look.say(panel.short).to_owned();
+        ui.painter()
+            .text(at, Align2::RIGHT_CENTER, short, theme::small(), color);
+        let values = self.ends(pane, panel).into_iter();
+        let values = values.filter_map(|end| end.value);
+        if let Some((low, high)) = values.fold(None, |all, value| joined(all, (value, value))) {
+            let digits = panel.row.decimals;
+            let (low, high) = (format!("{low:.digits$}"), format!("{high:.digits$}"));
+            let place = frame.with_min_x(frame.right() + theme::STEP);
+            let place = place.with_max_x(frame.right() + ends::VALUES);
+            let both = format!("{low}…{high}");
+            let fits = kit::text_width(ui, &both, theme::number()) <= place.width();
+            let text = if fits && low != high { both } else { high };
+            Label::new(&text, color).number().right().paint(ui, place);
+        }
+        if chart.response.clicked() || grow.clicked() {
+            self.chosen = Some(panel.kind);
+            pane.actions.push(Action::GrowPlot(panel.kind));
+        }
+        let tip = format!("{}\n{}", look.say(panel.title), look.tip(text::GROW));
+        grow.on_hover_text(tip);
     }
 
     fn panel_ui(
@@ -148,7 +287,7 @@ impl PlotView {
         ui: &mut Ui,
         pane: &mut Pane<'_>,
         panel: &Panel,
-        place: (f32, bool),
+        place: &PlotPlace,
     ) -> ChartResponse {
         let look = pane.look;
         let hand = pane.state.hand();
@@ -195,8 +334,10 @@ impl PlotView {
             } else {
                 Times::From(span.1, look.say(text::NOW))
             },
-            is_lowest: place.1,
-            ..Chart::new(look, panel.title, place.0)
+            is_lowest: place.is_lowest,
+            end: place.end,
+            is_sparkline: place.is_sparkline,
+            ..Chart::new(look, panel.title, place.height)
         };
         chart.ui(ui, &mut self.view)
     }
@@ -231,6 +372,13 @@ impl PlotView {
         let lines = panels.flat_map(|panel| panel.lines(&self.hidden));
         lines.map(|line| line.series).collect()
     }
+}
+
+/// Height of each tall plot beside so many sparklines, and what is below.
+fn tall_height(ui: &Ui, (tall, low): (usize, usize), below: f32) -> f32 {
+    let count = |count: usize| f32::from(u8::try_from(count).unwrap_or(u8::MAX));
+    let room = ui.available_height() - theme::PLOT_TIME_AXIS - below;
+    ((room - count(low) * (SPARKLINE + theme::STEP)) / count(tall.max(1))).floor()
 }
 
 /// Height of each of so many plots above their time axis.

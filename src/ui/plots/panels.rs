@@ -12,30 +12,50 @@ pub(crate) struct Panel {
     pub(crate) kind: PlotKind,
     /// Title with unit.
     pub(crate) title: Text,
+    /// The same where it is a sparkline.
+    pub(crate) short: Text,
     /// Digits and scale.
     pub(crate) row: &'static QuantityRow,
 }
 
 /// All, from top to bottom.
 pub(crate) const PANELS: [Panel; 6] = [
-    Panel::new(PlotKind::Force, panels::PLOT_FORCE, Quantity::Force.row()),
-    Panel::new(PlotKind::Normal, panels::NORMAL, Touch::Normal.row()),
-    Panel::new(
-        PlotKind::Tangential,
-        panels::TANGENTIAL,
-        Touch::Tangential.row(),
-    ),
-    Panel::new(
-        PlotKind::Current,
-        panels::PLOT_CURRENT,
-        Quantity::Current.row(),
-    ),
-    Panel::new(
-        PlotKind::Temperature,
-        panels::PLOT_TEMPERATURE,
-        Quantity::Temperature.row(),
-    ),
-    Panel::new(PlotKind::Angle, panels::PLOT_ANGLE, Quantity::Angle.row()),
+    Panel {
+        kind: PlotKind::Force,
+        title: panels::PLOT_FORCE,
+        short: panels::SHORT_FORCE,
+        row: Quantity::Force.row(),
+    },
+    Panel {
+        kind: PlotKind::Normal,
+        title: panels::NORMAL,
+        short: panels::SHORT_NORMAL,
+        row: Touch::Normal.row(),
+    },
+    Panel {
+        kind: PlotKind::Tangential,
+        title: panels::TANGENTIAL,
+        short: panels::SHORT_TANGENTIAL,
+        row: Touch::Tangential.row(),
+    },
+    Panel {
+        kind: PlotKind::Current,
+        title: panels::PLOT_CURRENT,
+        short: panels::SHORT_CURRENT,
+        row: Quantity::Current.row(),
+    },
+    Panel {
+        kind: PlotKind::Temperature,
+        title: panels::PLOT_TEMPERATURE,
+        short: panels::SHORT_TEMPERATURE,
+        row: Quantity::Temperature.row(),
+    },
+    Panel {
+        kind: PlotKind::Angle,
+        title: panels::PLOT_ANGLE,
+        short: panels::SHORT_ANGLE,
+        row: Quantity::Angle.row(),
+    },
 ];
 
 /// One line of a plot.
@@ -50,10 +70,6 @@ pub(crate) struct PanelLine {
 }
 
 impl Panel {
-    const fn new(kind: PlotKind, title: Text, row: &'static QuantityRow) -> Self {
-        Self { kind, title, row }
-    }
-
     /// The lines of all parts that are not hidden; those that were asked for come first, under the measured ones.
     pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PanelLine> {
         let joint = |quantity| {

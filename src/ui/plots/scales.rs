@@ -14,6 +14,10 @@ const NARROWEST: f64 = 0.01;
 const BASE_PX: f64 = 8.0;
 /// Points between two times.
 const TIME_PX: f64 = 60.0;
+/// A scale becomes narrower only when its values would have fitted in less for so long.
+const ROOMY_S: f64 = 2.0;
+/// A scale takes so long to its new ends.
+const EASE_S: f32 = 0.12;
 /// Steps of time above a second, where tens do not fit.
 const LONG_STEPS: [f64; 8] = [10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
 
@@ -84,26 +88,81 @@ pub(crate) fn number(value: f64, step: f64) -> String {
     format!("{:.digits$}", value + 0.0)
 }
 
+/// The ends of a scale on their way to where they are to be; there at once where nothing is to move by itself.
+pub(crate) fn eased(ui: &Ui, title: Text, aim: (f64, f64)) -> (f64, f64) {
+    if ui.style().animation_time <= 0.0 {
+        return aim;
+    }
+    let id = ui.scope_id().with(title.en);
+    let end = |name: &str, aim: f64| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "shown for a tenth of a second"
+        )]
+        let near = aim as f32;
+        let moved = ui
+            .ctx()
+            .animate_value_with_time(id.with(name), near, EASE_S);
+        if moved == near { aim } else { f64::from(moved) }
+    };
+    (end("low", aim.0), end("high", aim.1))
+}
+
+/// The ends of a scale that follows its values, and since when these would fit in less, seconds.
+#[derive(Debug)]
+struct SettledScale {
+    ends: (f64, f64),
+    roomy_since: Option<f64>,
+}
+
 /// The scales that a person chose; others follow their values.
 #[derive(Debug, Default)]
-pub(crate) struct Scales(BTreeMap<&'static str, (f64, f64)>);
+pub(crate) struct Scales {
+    chosen: BTreeMap<&'static str, (f64, f64)>,
+    settled: BTreeMap<&'static str, SettledScale>,
+}
 
 impl Scales {
     /// The ends that a person chose.
     pub(crate) fn chosen(&self, title: Text) -> Option<(f64, f64)> {
-        self.0.get(title.en).copied()
+        self.chosen.get(title.en).copied()
+    }
+
+    /// The ends of a scale that follows its values: wider at once, narrower once that held for a while; without a time at once, too.
+    pub(crate) fn settled(
+        &mut self,
+        title: Text,
+        wanted: (f64, f64),
+        at_s: Option<f64>,
+    ) -> (f64, f64) {
+        let own = self.settled.entry(title.en).or_insert(SettledScale {
+            ends: wanted,
+            roomy_since: None,
+        });
+        let holds = own.ends.0 <= wanted.0 && wanted.1 <= own.ends.1;
+        let Some(at_s) = at_s.filter(|_| own.ends != wanted) else {
+            (own.ends, own.roomy_since) = (wanted, None);
+            return wanted;
+        };
+        if !holds {
+            own.ends = (own.ends.0.min(wanted.0), own.ends.1.max(wanted.1));
+            own.roomy_since = None;
+        } else if at_s - *own.roomy_since.get_or_insert(at_s) >= ROOMY_S {
+            (own.ends, own.roomy_since) = (wanted, None);
+        }
+        own.ends
     }
 
     /// Takes these ends.
     pub(crate) fn choose(&mut self, title: Text, low: f64, high: f64) {
         let low = low.clamp(-MOST, MOST - NARROWEST);
-        self.0
+        self.chosen
             .insert(title.en, (low, high.clamp(low + NARROWEST, MOST)));
     }
 
     /// Follows the values again.
     pub(crate) fn forget(&mut self, title: Text) {
-        self.0.remove(title.en);
+        self.chosen.remove(title.en);
     }
 
     /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
@@ -186,6 +245,24 @@ mod tests {
         let (low, high) = scales.chosen(panels::NORMAL).unwrap_or_default();
         assert!(high <= MOST && low < high);
         assert_eq!(scales.chosen(panels::TANGENTIAL), None);
+    }
+
+    #[test]
+    fn a_scale_grows_at_once_and_shrinks_only_after_a_while() {
+        let mut scales = Scales::default();
+        let mut settled = |wanted, at_s| scales.settled(panels::PLOT_FORCE, wanted, at_s);
+        assert_eq!(settled((0.0, 200.0), Some(0.0)), (0.0, 200.0));
+        assert_eq!(settled((0.0, 1000.0), Some(0.1)), (0.0, 1000.0));
+        assert_eq!(settled((-100.0, 200.0), Some(0.2)), (-100.0, 1000.0));
+        assert_eq!(settled((0.0, 200.0), Some(1.0)), (-100.0, 1000.0));
+        // It is full once more: the while begins again.
+        assert_eq!(settled((-100.0, 1000.0), Some(2.9)), (-100.0, 1000.0));
+        assert_eq!(settled((0.0, 500.0), Some(3.0)), (-100.0, 1000.0));
+        assert_eq!(settled((0.0, 200.0), Some(4.9)), (-100.0, 1000.0));
+        assert_eq!(settled((0.0, 200.0), Some(5.1)), (0.0, 200.0));
+        // Who looks at what was, sees it as it fits.
+        settled((0.0, 1000.0), Some(6.0));
+        assert_eq!(settled((0.0, 300.0), None), (0.0, 300.0));
     }
 
     #[test]

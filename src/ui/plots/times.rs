@@ -61,6 +61,15 @@ impl Times {
     }
 }
 
+/// How long a stretch is, as the choice of windows names it: `10 s`, `2.5 s`, `5 min`.
+pub(crate) fn length(seconds: f64) -> String {
+    let minutes = seconds / 60.0;
+    match minutes >= 1.0 && (minutes - minutes.round()).abs() < 1e-3 {
+        true => format!("{minutes:.0} min"),
+        false => format!("{} s", (seconds * 100.0).round() / 100.0),
+    }
+}
+
 /// A time of the program as a clock shows it, fine enough for steps of `step_s`.
 pub(crate) fn clock(at_s: f64, step_s: f64) -> String {
     let digits = scales::digits(step_s);
@@ -95,6 +104,12 @@ mod tests {
         ] {
             assert_eq!(clock(at_s, step_s), text);
         }
+    }
+
+    #[test]
+    fn a_length_has_the_digits_it_needs() {
+        let lengths = [10.0, 2.504, 60.0, 90.0, 3600.0].map(length);
+        assert_eq!(lengths, ["10 s", "2.5 s", "1 min", "90 s", "60 min"]);
     }
 
     #[test]

@@ -39,8 +39,8 @@ fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     }
     ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
         for item in others.into_iter().take(OFFERED) {
-            let began: String = item.began().replace('T', " ").chars().take(16).collect();
-            if ui.button(format!("{began}  {}", item.title())).clicked() {
+            let title = sessions::title(pane.look, pane.state, item);
+            if ui.button(title).on_hover_text(item.title()).clicked() {
                 let beside = SessionAction::Beside(Some(item.path.clone()));
                 pane.actions.push(Action::Session(beside));
             }

@@ -8,14 +8,23 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::sessions::{SessionAction, SessionItem};
 use crate::app::state::State;
+use crate::hand::PerDof;
+use crate::ui::hand::panel;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
-use crate::ui::kit::{self, Button, ButtonRole, Card, Choice, Label, Look, Pane, format};
+use crate::ui::kit::{
+    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, ViewRequest, Weight, format,
+};
+use crate::ui::sessions::table::{MarkedStretch, SessionTable};
 use crate::ui::text::sessions;
-use egui::Ui;
+use crate::ui::theme;
+use crate::ui::view::View;
+use egui::{ProgressBar, Ui, vec2};
 use std::time::Duration;
 
 /// Other programs record too: the list is looked for again so often while it is open.
 const LOOK_EACH: Duration = Duration::from_secs(5);
+/// How far an export is, is drawn again so often.
+const PROGRESS_EACH: Duration = Duration::from_millis(100);
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -25,6 +34,8 @@ pub(crate) struct SessionsView {
     looked: Option<f64>,
     /// The field for another file is open.
     other: bool,
+    /// What is marked on a strip.
+    marked: Option<MarkedStretch>,
 }
 
 impl SessionsView {
@@ -49,6 +60,7 @@ impl SessionsView {
             }
             folder_ui(ui, pane);
             foot_ui(ui, pane);
+            exports_ui(ui, pane);
             self.list_ui(ui, pane);
         });
     }
@@ -79,7 +91,7 @@ impl SessionsView {
         });
     }
 
-    fn list_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let state = &pane.state.sessions;
         let all = state.items.iter();
@@ -88,8 +100,7 @@ impl SessionsView {
             (true, _) if state.looks || state.looked == 0 && state.folder.is_some() => {
                 Some(sessions::LOOKS)
             }
-            (true, _) if state.folder.is_none() => Some(sessions::NOWHERE),
-            (true, _) => Some(sessions::NONE),
+            (true, _) => return empty_ui(ui, pane),
             (false, true) => Some(sessions::FIND_NONE),
             (false, false) => None,
         };
@@ -97,8 +108,64 @@ impl SessionsView {
             Some(text) => {
                 Label::muted(look, text).wrap().ui(ui);
             }
-            None => table::table_ui(ui, pane, &shown),
+            None => {
+                let marked = &mut self.marked;
+                SessionTable { marked }.ui(ui, pane, &shown);
+            }
         }
+    }
+}
+
+/// A picture, what comes here by itself, and the one thing to do.
+fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() * 0.2);
+        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
+        panel::pose_ui(ui, look, picture, &PerDof::splat(Some(0.5)));
+        let title = Label::said(look, sessions::NONE_TITLE);
+        title.font(theme::title()).ui(ui);
+        if pane.state.sessions.folder.is_none() {
+            Label::muted(look, sessions::NOWHERE).wrap().ui(ui);
+            ui.add_space(theme::GAP);
+            let choose = Button::said(look, sessions::FOLDER_CHANGE);
+            let choose = choose.weight(Weight::Strong).large();
+            let action = SessionAction::ChooseFolder(None);
+            return choose.on_click(ui, pane, Action::Session(action));
+        }
+        Label::muted(look, sessions::NONE).wrap().ui(ui);
+        ui.add_space(theme::GAP);
+        let connect = Button::said(look, sessions::NONE_BUTTON);
+        if connect
+            .weight(Weight::Strong)
+            .large()
+            .ui(ui, look)
+            .clicked()
+        {
+            pane.open(ViewRequest::View(View::Connection));
+        }
+    });
+}
+
+/// What is being written in formats of others, and how far that is.
+fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    for running in &pane.state.sessions.exports {
+        let mut items = pane.state.sessions.items.iter();
+        let item = items.find(|item| item.path == running.export.path);
+        let name = item.map_or_else(
+            || running.export.path.display().to_string(),
+            |item| sessions::title(look, pane.state, item),
+        );
+        let form = look.say(sessions::form(running.export.form));
+        let parts: [&dyn std::fmt::Display; 2] = [&look.pair(&name, form), &running.percent];
+        let words = look.fill(sessions::EXPORTING, &parts);
+        ui.horizontal(|ui| {
+            let bar = ProgressBar::new(f32::from(running.percent) / 100.0);
+            ui.add(bar.desired_width(160.0).desired_height(theme::GAP));
+            Label::new(&words, look.palette.text).small().ui(ui);
+        });
+        ui.ctx().request_repaint_after(PROGRESS_EACH);
     }
 }
 
@@ -183,7 +250,9 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let path = state.sessions.to_delete.as_ref()?;
     let mut all = state.sessions.items.iter();
-    let title = all.find(|item| item.path == *path).map(SessionItem::title);
+    let title = all
+        .find(|item| item.path == *path)
+        .map(|item| sessions::title(look, state, item));
     let title = title.unwrap_or_else(|| path.display().to_string());
     let back = Choice::new(sessions::DELETE_NOT, ButtonRole::Safe);
     let delete = Choice::new(sessions::DELETE_SURE, ButtonRole::Danger);

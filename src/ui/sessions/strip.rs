@@ -1,7 +1,11 @@
 //! The strip of force of a session: an instrument, painted by hand. The same in the list and under the time line.
 
+use crate::app::sessions::SessionItem;
+use crate::hand::Moment;
+use crate::record::EventKind;
 use crate::ui::kit::Look;
-use egui::{Painter, Rect, pos2, vec2};
+use crate::ui::sessions::marks;
+use egui::{Color32, Painter, Rect, Stroke, pos2, vec2};
 
 /// A force that fills the strip at least, in grams: a quiet session does not look like a grasp.
 const FULL_LEAST: f32 = 200.0;
@@ -14,17 +18,43 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
         return;
     };
     let width = place.width() / width;
-    let color = look.palette.accent.gamma_multiply(0.7);
+    // Opaque, so that no seam is seen where bars meet within a pixel.
+    let color = look.palette.sunken.lerp_to_gamma(look.palette.accent, 0.7);
     let mut left = place.left();
-    for force in forces {
-        if force.is_finite() {
+    for equal in forces.chunk_by(|one, other| one == other) {
+        let right = left + width * count(equal.len()).unwrap_or_default();
+        if let Some(force) = equal.first().filter(|force| force.is_finite()) {
             let height = (force.max(0.0) / full * place.height()).max(1.0);
             let top = pos2(left, place.bottom() - height);
-            let size = vec2(width.max(1.0), height);
+            let size = vec2((right - left).max(1.0), height);
             painter.rect_filled(Rect::from_min_size(top, size), 0.0, color);
         }
-        left += width;
+        left = right;
     }
+}
+
+/// Paints faults, stops and notes of a session over its strip.
+pub(crate) fn marks(painter: &Painter, look: Look, place: Rect, item: &SessionItem) {
+    let length = item.length.as_secs_f32().max(1e-3);
+    for (at, color) in moments(look, item) {
+        let x = place.left() + at.since(item.first).as_secs_f32() / length * place.width();
+        painter.vline(x, place.y_range(), Stroke::new(1.0, color));
+    }
+}
+
+/// The moments and colours of what is marked.
+pub(crate) fn moments(look: Look, item: &SessionItem) -> Vec<(Moment, Color32)> {
+    let is_marked = |kind| {
+        matches!(
+            kind,
+            EventKind::Fault | EventKind::Stop | EventKind::LinkLost
+        )
+    };
+    let marks = item.marks.iter().filter(|mark| is_marked(mark.kind));
+    let marks = marks.filter_map(|mark| Some((mark.at, marks::shown(look, mark.kind)?.1)));
+    let notes = item.notes().into_iter();
+    let notes = notes.map(|note| (note.at(), look.palette.text));
+    marks.chain(notes).collect()
 }
 
 fn count(len: usize) -> Option<f32> {

@@ -1,29 +1,40 @@
 //! The table of sessions: a row each, with what is done with it at its end.
 
 use crate::app::action::Action;
-use crate::app::sessions::{SessionAction, SessionForm, SessionItem};
+use crate::app::sessions::{SessionAction, SessionExport, SessionForm, SessionItem};
+use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
-use crate::ui::kit::{Button, Label, Pane, TextField, Weight, format};
+use crate::ui::hand::panel;
+use crate::ui::kit::{Button, Label, Look, Pane, TextField, Weight, format};
+use crate::ui::plots::times::length;
+use crate::ui::sessions::marks;
 use crate::ui::sessions::strip;
-use crate::ui::text::{Text, sessions};
+use crate::ui::text::{Text, notices, sessions};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Popup, Sense, Ui, vec2};
+use egui::{
+    Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
+    Vec2, WidgetInfo, vec2,
+};
 use egui_extras::{Column, TableBuilder};
+use std::path::PathBuf;
+use std::time::Duration;
 
-const ROW: f32 = 32.0;
+const ROW: f32 = 40.0;
 /// Characters of a name.
 const NAME_MAX: usize = 80;
-
 /// The least width of a name.
-const NAME: f32 = 140.0;
-/// The strip of force where there is much room, and where there is little.
-const STRIP: (f32, f32) = (48.0, 112.0);
+const NAME: f32 = 200.0;
+/// The strip of force where there is little room, and where there is much: a column for each of its points.
+const STRIP: (f32, f32) = (48.0, 308.0);
+/// Marks that are told beside the pointer.
+const MARKS_TOLD: usize = 3;
+/// The drawn hand beside the pointer.
+const HAND: Vec2 = vec2(96.0, 112.0);
 
 /// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
-const COLUMNS: [(Text, f32); 10] = [
+const COLUMNS: [(Text, f32); 9] = [
     (sessions::STAR, 36.0),
     (sessions::NAME, 0.0),
-    (sessions::BEGAN, 132.0),
     (sessions::LENGTH, 84.0),
     (sessions::FORCE, STRIP.0),
     (sessions::FAULTS, 52.0),
@@ -33,45 +44,229 @@ const COLUMNS: [(Text, f32); 10] = [
     (sessions::REPLAY, 100.0),
 ];
 
-/// Draws the table.
-pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem]) {
-    let look = pane.look;
-    ui.spacing_mut().item_spacing.x = theme::STEP;
-    let strip = strip_width(ui.available_width());
-    let mut table = TableBuilder::new(ui)
-        .id_salt("recorded")
-        .striped(true)
-        .cell_layout(Layout::left_to_right(Align::Center))
-        .auto_shrink([false, false]);
-    for (title, width) in COLUMNS {
-        table = table.column(match width {
-            0.0 => Column::remainder().at_least(NAME).clip(true),
-            _ if title == sessions::FORCE => Column::exact(strip),
-            width => Column::exact(width),
-        });
+/// A stretch that is marked on the strip of a recording, as parts of its length.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MarkedStretch {
+    path: PathBuf,
+    from: f64,
+    to: f64,
+}
+
+impl MarkedStretch {
+    /// How long it is.
+    fn length(&self, item: &SessionItem) -> Duration {
+        item.length.mul_f64(self.to - self.from)
     }
-    let table = table.header(theme::CONTROL, |mut row| {
-        for (title, _) in COLUMNS {
-            row.col(|ui| {
-                let text = if title == sessions::REPLAY {
-                    ""
-                } else {
-                    look.say(title)
-                };
-                Label::new(text, look.palette.muted).small().ui(ui);
+
+    fn stretch(&self, item: &SessionItem) -> (Moment, Moment) {
+        (item.moment(self.from), item.moment(self.to))
+    }
+
+    fn paint(&self, painter: &Painter, look: Look, place: Rect) {
+        let x = |part: f64| {
+            #[expect(clippy::cast_possible_truncation, reason = "a place on a screen")]
+            let part = part as f32;
+            place.left() + part * place.width()
+        };
+        let xs = Rangef::new(x(self.from), x(self.to));
+        let stretch = Rect::from_x_y_ranges(xs, place.y_range());
+        painter.rect_filled(stretch, 0.0, look.palette.wash(look.palette.accent));
+        let edge = Stroke::new(1.0, look.palette.accent);
+        painter.vline(xs.min, place.y_range(), edge);
+        painter.vline(xs.max, place.y_range(), edge);
+    }
+}
+
+/// The table, with what is marked in it.
+pub(crate) struct SessionTable<'a> {
+    pub(crate) marked: &'a mut Option<MarkedStretch>,
+}
+
+impl SessionTable<'_> {
+    /// Draws it.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem]) {
+        let look = pane.look;
+        ui.spacing_mut().item_spacing.x = theme::STEP;
+        let strip = strip_width(ui.available_width());
+        let mut table = TableBuilder::new(ui)
+            .id_salt("recorded")
+            .striped(true)
+            .cell_layout(Layout::left_to_right(Align::Center))
+            .auto_shrink([false, false]);
+        for (title, width) in COLUMNS {
+            table = table.column(match width {
+                0.0 => Column::remainder().at_least(NAME).clip(true),
+                _ if title == sessions::FORCE => Column::exact(strip),
+                width => Column::exact(width),
             });
         }
-    });
-    table.body(|body| {
-        body.rows(ROW, items.len(), |mut row| {
-            let Some(item) = items.get(row.index()) else {
-                return;
-            };
-            for column in 0..COLUMNS.len() {
-                row.col(|ui| cell_ui(ui, pane, item, column));
+        let table = table.header(theme::CONTROL, |mut row| {
+            for (title, _) in COLUMNS {
+                row.col(|ui| {
+                    let text = if title == sessions::REPLAY {
+                        ""
+                    } else {
+                        look.say(title)
+                    };
+                    Label::new(text, look.palette.muted).small().ui(ui);
+                });
             }
         });
-    });
+        table.body(|body| {
+            body.rows(ROW, items.len(), |mut row| {
+                let Some(item) = items.get(row.index()) else {
+                    return;
+                };
+                for column in 0..COLUMNS.len() {
+                    row.col(|ui| self.cell_ui(ui, pane, item, column));
+                }
+            });
+        });
+    }
+
+    fn cell_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) {
+        let palette = pane.look.palette;
+        let count = |ui: &mut Ui, count: u64, color: Color32| {
+            let color = if count == 0 { palette.faint } else { color };
+            Label::new(&count.to_string(), color).number().ui(ui);
+        };
+        match column {
+            0 => star_ui(ui, pane, item),
+            1 => name_ui(ui, pane, item),
+            2 => {
+                let length = format::duration(pane.state.sessions.length(item));
+                Label::new(&length, palette.text).number().ui(ui);
+            }
+            3 => self.strip_ui(ui, pane, item),
+            4 => count(ui, item.counts.faults, palette.bad),
+            5 => {
+                let trials = item.count(EventKind::Trial);
+                count(ui, u64::try_from(trials).unwrap_or_default(), palette.text);
+            }
+            6 => {
+                let notes = item.notes().len();
+                count(ui, u64::try_from(notes).unwrap_or_default(), palette.text);
+            }
+            7 => size_ui(ui, pane, item),
+            _ => self.ends_ui(ui, pane, item),
+        }
+    }
+
+    /// The strip of force: the pointer shows the hand of then, a drag marks a stretch and offers its export.
+    fn strip_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+        let look = pane.look;
+        let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
+        let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        let name = look.pair(look.say(sessions::STRIP), &item.title());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        let part = |x: f32| f64::from(((x - place.left()) / place.width()).clamp(0.0, 1.0));
+        if response.clicked() {
+            *self.marked = None;
+        }
+        let origin = ui.input(|input| input.pointer.press_origin());
+        let drag = origin.zip(response.interact_pointer_pos());
+        if let Some((from, to)) = drag.filter(|_| response.dragged()) {
+            let (one, other) = (part(from.x), part(to.x));
+            *self.marked = Some(MarkedStretch {
+                path: item.path.clone(),
+                from: one.min(other),
+                to: one.max(other),
+            });
+        }
+        let painter = ui.painter();
+        painter.rect_filled(place, theme::ROUND_TINY, look.palette.sunken);
+        if let Some(marked) = self.of(item) {
+            marked.paint(painter, look, place);
+        }
+        strip::strip(ui.painter(), look, place, &item.strip);
+        strip::marks(ui.painter(), look, place, item);
+        let is_marked = response.drag_stopped() && self.of(item).is_some();
+        let open = is_marked.then_some(SetOpenCommand::Bool(true));
+        let menu = Popup::from_response(&response).open_memory(open);
+        let menu = menu
+            .at_pointer_fixed()
+            .layout(Layout::top_down_justified(Align::Min));
+        menu.show(|ui| self.forms_ui(ui, pane, item));
+        let pointed = response.hover_pos().map(|at| part(at.x));
+        if let Some(part) = pointed.filter(|_| !response.dragged()) {
+            response.on_hover_ui_at_pointer(|ui| moment_ui(ui, look, item, part));
+        }
+    }
+
+    /// What is marked of a recording.
+    fn of(&self, item: &SessionItem) -> Option<&MarkedStretch> {
+        self.marked
+            .as_ref()
+            .filter(|marked| marked.path == item.path)
+    }
+
+    /// The formats that a recording, or what is marked of it, can be exported in.
+    fn forms_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+        let look = pane.look;
+        let marked = self.of(item);
+        let title = match marked {
+            Some(marked) => {
+                let length = length(marked.length(item).as_secs_f64());
+                look.fill(sessions::EXPORT_PART, &[&length])
+            }
+            None => look.say(sessions::EXPORT).to_owned(),
+        };
+        ui.label(title);
+        for form in SessionForm::ALL {
+            if ui.button(look.say(sessions::form(form))).clicked() {
+                let export = SessionExport {
+                    path: item.path.clone(),
+                    form,
+                    stretch: marked.map(|marked| marked.stretch(item)),
+                };
+                pane.actions
+                    .push(Action::Session(SessionAction::Export(export)));
+                ui.close();
+            }
+        }
+    }
+
+    fn ends_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+        let look = pane.look;
+        let title = item.title();
+        let named = look.pair(look.say(sessions::REPLAY), &title);
+        let replay = Button::said(look, sessions::REPLAY).named(&named);
+        let open = SessionAction::Open(item.path.clone());
+        replay.on_click(ui, pane, Action::Session(open));
+        let named = look.pair(look.say(sessions::MORE), &title);
+        let more = Button::said(look, sessions::MORE).named(&named);
+        let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
+        let close = egui::PopupCloseBehavior::CloseOnClickOutside;
+        Popup::menu(&more).close_behavior(close).show(|ui| {
+            ui.set_min_width(220.0);
+            let field = TextField::new(look.say(sessions::RENAME), NAME_MAX);
+            let field = field.hint(look.tip(sessions::RENAME));
+            if let Some(name) = field.ui(ui, pane, &item.about.name) {
+                let action = SessionAction::Name(item.path.clone(), name.trim().to_owned());
+                pane.actions.push(Action::Session(action));
+            }
+            let reveal = ui.button(look.say(sessions::REVEAL));
+            if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
+                let reveal = SessionAction::Reveal(item.path.clone());
+                pane.actions.push(Action::Session(reveal));
+                ui.close();
+            }
+            ui.separator();
+            self.forms_ui(ui, pane, item);
+            ui.separator();
+            let copy = ui.button(look.say(sessions::COPY_PATH));
+            if copy.on_hover_text(look.tip(sessions::COPY_PATH)).clicked() {
+                ui.copy_text(item.path.display().to_string());
+                ui.close();
+            }
+            let delete = ui.button(look.say(sessions::DELETE));
+            if delete.on_hover_text(look.tip(sessions::DELETE)).clicked() {
+                let ask = SessionAction::AskDelete(item.path.clone());
+                pane.actions.push(Action::Session(ask));
+                ui.close();
+            }
+        });
+    }
 }
 
 /// How wide the strip of force is, so that all columns fit in the smallest window.
@@ -79,46 +274,6 @@ fn strip_width(room: f32) -> f32 {
     let others = COLUMNS.iter().map(|(_, width)| width + theme::STEP);
     let taken = others.sum::<f32>() - STRIP.0 + NAME;
     (room - taken - theme::GAP).clamp(STRIP.0, STRIP.1)
-}
-
-fn cell_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) {
-    let palette = pane.look.palette;
-    let number = |ui: &mut Ui, text: &str, color: Color32| {
-        Label::new(text, color).number().ui(ui);
-    };
-    let count = |ui: &mut Ui, count: u64, color: Color32| {
-        let color = if count == 0 { palette.faint } else { color };
-        number(ui, &count.to_string(), color);
-    };
-    match column {
-        0 => star_ui(ui, pane, item),
-        1 => name_ui(ui, pane, item),
-        2 => {
-            let began: String = item.began().replace('T', " ").chars().take(16).collect();
-            number(ui, &began, palette.muted);
-        }
-        3 => {
-            let length = pane.state.sessions.length(item);
-            number(ui, &format::duration(length), palette.text);
-        }
-        4 => {
-            let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
-            let (place, response) = ui.allocate_exact_size(size, Sense::hover());
-            strip::strip(ui.painter(), pane.look, place, &item.strip);
-            response.on_hover_text(pane.look.tip(sessions::FORCE));
-        }
-        5 => count(ui, item.counts.faults, palette.bad),
-        6 => {
-            let trials = item.count(EventKind::Trial);
-            count(ui, u64::try_from(trials).unwrap_or_default(), palette.text);
-        }
-        7 => {
-            let notes = item.notes().len();
-            count(ui, u64::try_from(notes).unwrap_or_default(), palette.text);
-        }
-        8 => size_ui(ui, pane, item),
-        _ => ends_ui(ui, pane, item),
-    }
 }
 
 /// The size; told apart where it goes to make room.
@@ -152,82 +307,68 @@ fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     button.on_click(ui, pane, Action::Session(action));
 }
 
-/// The name, and below it the hand.
+/// The name in words, and below it the hand.
 fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
     let look = pane.look;
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let title = item.title();
+        ui.add_space(theme::STEP);
+        let title = sessions::title(look, pane.state, item);
         let label = Label::new(&title, look.palette.text).ui(ui);
         label.on_hover_text(item.path.display().to_string());
-        let mut about = item.opening.hand.clone();
-        if item.opening.simulated {
-            about = format!("{}  {about}", look.say(sessions::SIMULATED));
-        }
-        let mut color = look.palette.muted;
         let is_recorded = item.is_in(&pane.state.sessions.recorded);
-        let state = match item.closed {
-            _ if is_recorded => Some((sessions::RECORDS_NOW, look.palette.ok)),
-            true => None,
-            false => Some((sessions::UNCLOSED, look.palette.warn)),
+        let simulated = item.opening.simulated.then_some(sessions::SIMULATED);
+        let (state, color) = match item.closed {
+            _ if is_recorded => (Some(sessions::RECORDS_NOW), look.palette.ok),
+            true => (None, look.palette.muted),
+            false => (Some(sessions::UNCLOSED), look.palette.warn),
         };
-        if let Some((text, own)) = state {
-            about = format!("{}  {about}", look.say(text));
-            color = own;
-        }
-        let label = Label::new(&about, color).small().ui(ui);
+        let about = state
+            .into_iter()
+            .chain(simulated)
+            .map(|text| look.say(text));
+        let about: Vec<&str> = about.chain([item.opening.hand.as_str()]).collect();
+        let label = Label::new(&about.join("  "), color).small().ui(ui);
         if !item.closed {
             label.on_hover_text(look.tip(sessions::UNCLOSED));
         }
     });
 }
 
-fn ends_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
-    let look = pane.look;
-    let title = item.title();
-    let named = look.pair(look.say(sessions::REPLAY), &title);
-    let replay = Button::said(look, sessions::REPLAY).named(&named);
-    let open = SessionAction::Open(item.path.clone());
-    replay.on_click(ui, pane, Action::Session(open));
-    let named = look.pair(look.say(sessions::MORE), &title);
-    let more = Button::said(look, sessions::MORE).named(&named);
-    let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
-    let close = egui::PopupCloseBehavior::CloseOnClickOutside;
-    Popup::menu(&more).close_behavior(close).show(|ui| {
-        ui.set_min_width(220.0);
-        let field = TextField::new(look.say(sessions::RENAME), NAME_MAX);
-        let field = field.hint(look.tip(sessions::RENAME));
-        if let Some(name) = field.ui(ui, pane, &item.about.name) {
-            let action = SessionAction::Name(item.path.clone(), name.trim().to_owned());
-            pane.actions.push(Action::Session(action));
-        }
-        let reveal = ui.button(look.say(sessions::REVEAL));
-        if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
-            let reveal = SessionAction::Reveal(item.path.clone());
-            pane.actions.push(Action::Session(reveal));
-            ui.close();
-        }
-        let exports = ui.menu_button(look.say(sessions::EXPORT), |ui| {
-            SessionForm::ALL.into_iter().find(|form| {
-                let name = look.say(sessions::form(*form));
-                ui.button(name).clicked()
-            })
-        });
-        if let Some(form) = exports.inner.flatten() {
-            let export = SessionAction::Export(item.path.clone(), form);
-            pane.actions.push(Action::Session(export));
-            ui.close();
-        }
-        let copy = ui.button(look.say(sessions::COPY_PATH));
-        if copy.on_hover_text(look.tip(sessions::COPY_PATH)).clicked() {
-            ui.copy_text(item.path.display().to_string());
-            ui.close();
-        }
-        let delete = ui.button(look.say(sessions::DELETE));
-        if delete.on_hover_text(look.tip(sessions::DELETE)).clicked() {
-            let ask = SessionAction::AskDelete(item.path.clone());
-            pane.actions.push(Action::Session(ask));
-            ui.close();
-        }
+/// The hand as it was after a part of a recording, with the time, its greatest force and what happened there.
+fn moment_ui(ui: &mut Ui, look: Look, item: &SessionItem, part: f64) {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "a place in a short list"
+    )]
+    let column =
+        ((item.strip.len() as f64 * part) as usize).min(item.strip.len().saturating_sub(1));
+    if let Some(pose) = item.poses.get(column) {
+        let (_, place) = ui.allocate_space(HAND);
+        let shares = PerDof::from_fn(|dof| pose[dof].map(|angle| f32::from(angle) / 1000.0));
+        panel::pose_ui(ui, look, place, &shares);
+    }
+    let at = item.moment(part);
+    let force = item.strip.get(column).filter(|force| force.is_finite());
+    let force = force.map_or_else(|| format::UNKNOWN.into(), |force| format!("{force:.0}"));
+    let clock = marks::clock(at.since(item.first));
+    let words = look.fill(sessions::AT_MOMENT, &[&clock, &force]);
+    Label::new(&words, look.palette.text).number().ui(ui);
+    let near = item.length.mul_f64(1.5 / f64::from(STRIP.1));
+    let is_near = |moment: Moment| at.since(moment).max(moment.since(at)) <= near;
+    let notes = item.notes().into_iter().filter(|note| is_near(note.at()));
+    let marks = item.marks.iter().filter(|mark| is_near(mark.at));
+    let marks = marks.filter_map(|mark| {
+        let (text, _) = marks::shown(look, mark.kind)?;
+        Some(match mark.kind {
+            EventKind::Note => return None,
+            EventKind::Fault => notices::fault_mark(look, &mark.words),
+            _ => look.say(text).to_owned(),
+        })
     });
+    for words in marks.chain(notes.map(|note| note.words)).take(MARKS_TOLD) {
+        Label::new(&words, look.palette.muted).small().ui(ui);
+    }
 }

@@ -8,6 +8,7 @@ use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
 use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
 use crate::record::NotSent;
+use crate::record::export::ExportError;
 use crate::share::gateway::WriteRefusal;
 use crate::store::{FileCause, FileError};
 use crate::system::SystemError;
@@ -135,6 +136,17 @@ chinese! {
         EndpointError::Key { key, kind, .. } => "{kind}: 没有 {key} 这一项。";
         EndpointError::Twice { key } => "{key} 出现了两次，请只写一次。";
         EndpointError::Value { key, value, want } => "{key}={value} 无效：应为{}。", want_zh(want);
+    }
+
+    fn export_zh(&ExportError) {
+        ExportError::Exists { path } => "{} 已存在，不会覆盖。", path.display();
+        ExportError::Unwritable { path, error } => "无法写入 {}：{}。", path.display(), system_error_zh(error);
+        ExportError::Unreadable { error } => "无法读完此录制：{}。", system_error_zh(error);
+        ExportError::Empty => "这一段中没有自由度的读数。";
+        ExportError::NoNotes => "这一段中没有可作为片段起点的备注。";
+        ExportError::BothSides => "左手与右手的自由度名称不同，不能放入同一数据集。";
+        ExportError::Interrupted => "已中断。";
+        ExportError::ReaderGone => "输出的读取方已离开。";
     }
 
     fn want_zh(&Want) {
@@ -310,6 +322,10 @@ pub(crate) fn backup(look: Look, error: &BackupError) -> String {
 }
 
 /// What the system said.
+pub(crate) fn export(look: Look, error: &ExportError) -> String {
+    told(look, error, export_zh)
+}
+
 pub(crate) fn system_error(look: Look, error: &SystemError) -> String {
     match look.language {
         Language::En => error.to_string(),

@@ -3,7 +3,7 @@
 use crate::app::notices::{Notice, NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
-use crate::hand::Words;
+use crate::hand::{Dof, Words};
 use crate::record::Disarmed;
 use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
@@ -87,6 +87,21 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
         FaultKind::Fault(fault) => words::fault(fault, language),
         FaultKind::Status(status) => words::status(status, language),
     }
+}
+
+/// The words of a fault's mark, `index: stall, over_current`, as a person reads them.
+pub(crate) fn fault_mark(look: Look, mark: &str) -> String {
+    let Some((joint, names)) = mark.split_once(": ") else {
+        return look.say(panels::MARK_FAULT).to_owned();
+    };
+    let dof = Dof::ALL.into_iter().find(|dof| dof.name() == joint);
+    let titles = names.split(", ").map(|name| match FaultKind::named(name) {
+        Some(kind) => fault_kind(kind, look.language).title,
+        None => name,
+    });
+    let titles: Vec<&str> = titles.collect();
+    let joint = dof.map_or(joint, |dof| look.say(words::dof(dof)));
+    look.pair(joint, &titles.join(" + "))
 }
 
 fn asked(look: Look, what: RequestKind) -> String {
@@ -267,6 +282,11 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             path,
             &errors::system_error(look, error),
         ),
+        NoticeKind::NotExported { path, error } => {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let why = errors::export(look, error);
+            look.fill(sessions::NOT_EXPORTED, &[&name, &why])
+        }
         NoticeKind::NotRevealed { path, error } => {
             let why = errors::system_error(look, error);
             look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
@@ -329,4 +349,28 @@ fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> Str
     let facts: Vec<String> = facts.collect();
     let intro = look.say(scan::OTHER_HAND);
     format!("{intro} ({last_seen}) {}", facts.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::state::State;
+
+    #[test]
+    fn the_mark_of_a_fault_says_joint_and_fault_in_both_languages() {
+        let mut state = State::default();
+        let mut told = |language, mark: &str| {
+            state.settings.language = language;
+            fault_mark(Look::of(&state), mark)
+        };
+        let mark = "index: stall, over_current";
+        assert_eq!(told(Language::En, mark), "Index: Stall + Over-current");
+        assert_eq!(told(Language::Zh, mark), "食指：堵转故障 + 过流故障");
+        assert_eq!(
+            told(Language::En, "thumb_bend: stalled"),
+            "Thumb bend: Stalled"
+        );
+        assert_eq!(told(Language::En, "index: other"), "Index: other");
+        assert_eq!(told(Language::En, ""), "Fault");
+    }
 }

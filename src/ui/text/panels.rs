@@ -16,6 +16,17 @@ texts! {
     PAUSED: "Paused", "已暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     PAUSE_NAME: "Pause the plots", "暂停曲线";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
+    HIDE_CURVE: "Press to hide this joint's curves. More shows them again.", "点击隐藏该自由度的曲线，可在“更多”中重新显示。";
+    CURVES: "Curves", "曲线";
+    GROW: "Grow", "放大", "Press to draw this plot tall.", "点击放大此曲线图。";
+    DRIVES: "Status", "状态", "What each drive says of itself. Blue: it moves. Green: in position. Amber: at force. Red: a fault, or stopped to protect itself. Empty: not known.", "各驱动器的状态。蓝：运动中。绿：位置到位。黄：力控到位。红：故障或保护停止。空白：未知。";
+    DRIVE_SINCE: "since {}, for {}", "自 {} 起，持续 {}";
+    SHORT_FORCE: "Force\ng", "受力\ng";
+    SHORT_NORMAL: "Normal\nN", "法向\nN";
+    SHORT_TANGENTIAL: "Shear\nN", "切向\nN";
+    SHORT_CURRENT: "Current\nmA", "电流\nmA";
+    SHORT_TEMPERATURE: "Temp.\n°C", "温度\n°C";
+    SHORT_ANGLE: "Angle", "角度";
     THRESHOLDS: "Thresholds", "阈值", "Shows the force thresholds as dashed lines.", "以虚线显示力阈值。";
     PLOT_FORCE: "Force, g", "受力 g";
     PLOT_CURRENT: "Current, mA", "电流 mA";
@@ -174,7 +185,6 @@ texts! {
     AREA_TIP: "Wheel: zoom in time. Drag: move. Shift and drag: zoom to what is marked. Double-click: follow the newest again.", "滚轮：时间缩放。拖动：平移。按住 Shift 拖动：放大所选范围。双击：重新跟随最新数据。";
     NORMAL: "Normal force at the tips, N", "指尖法向力 N";
     TANGENTIAL: "Tangential force at the tips, N", "指尖切向力 N";
-    DECIMATED: "min and max", "最小最大值", "Decimated: there are more measurements than pixels, so each column of pixels shows the smallest and the largest of several. No extreme is lost. The figures of the cursors come from all measurements.", "已抽取：数据点多于像素，每列像素显示其中的最小值和最大值，不会丢失极值。游标数值由全部数据计算。";
     RANGE: "Value scale", "数值范围", "Drag: move. Wheel: zoom. Double-click: automatic again.", "拖动：平移。滚轮：缩放。双击：恢复自动。";
     RANGE_FIXED: "fixed scale", "固定范围";
     UNDER_POINTER: "under the pointer", "指针处数值";
@@ -182,7 +192,7 @@ texts! {
     MORE_NAME: "More for the plots", "曲线更多选项";
     SHOWN: "Plots shown", "显示的曲线";
     ENLARGE: "Fill the view", "放大显示";
-    SAVE_CSV: "Save as CSV", "保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window goes on meanwhile.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
+    SAVE_CSV: "Save these {} as CSV", "将这 {} 保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window goes on meanwhile.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
     SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots as they stand, twice as fine as on the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
     CURSORS: "A|B", "A|B", "Two cursors with values, difference, slope, and smallest, largest and mean value between them.", "两个游标：数值、差值、斜率，以及区间最小、最大和平均值。";
     CURSORS_NAME: "Cursors", "游标";

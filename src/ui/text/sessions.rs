@@ -1,45 +1,64 @@
-//! Sentences of recorded sessions: the list, the time line, the lamp in the header.
+//! Sentences of recordings: the list, the time line, the lamp in the header.
 
-use crate::app::sessions::SessionForm;
+use crate::app::sessions::{SessionForm, SessionItem};
+use crate::app::settings::{Language, Settings};
+use crate::app::state::State;
+use crate::hand::kinematics::Side;
+use crate::record::EventKind;
+use crate::store::calendar;
+use crate::ui::style::Look;
 use crate::ui::style::phrase::texts;
+use crate::ui::text::{panels, words};
+use std::time::Duration;
 
 texts! {
-    TITLE: "Sessions", "会话";
-    FIND: "Find sessions", "查找会话", "name, hand, day, note or fault", "名称、灵巧手、日期、备注或故障";
-    FIND_NONE: "No session has these words.", "没有包含这些文字的会话。";
-    NONE: "No session has been recorded yet. What a hand does is recorded here by itself; built-in hands only if you ask for it.", "还没有录制的会话。连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
+    TITLE: "Recordings", "录制";
+    FIND: "Find recordings", "查找录制", "name, hand, day, note or fault", "名称、灵巧手、日期、备注或故障";
+    FIND_NONE: "No recording has these words.", "没有包含这些文字的录制。";
+    NONE_TITLE: "No recordings yet", "还没有录制";
+    NONE: "What a hand does is recorded here by itself once it is connected; built-in hands only if you ask for it.", "连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
+    NONE_BUTTON: "Connect a hand", "连接灵巧手", "Opens the place where a hand is connected.", "打开连接灵巧手的页面。";
     NOWHERE: "There is no folder to record into: this computer names no documents of yours.", "没有可供录制的文件夹：此计算机未提供您的文档目录。";
-    FOLDER: "Folder", "文件夹", "Where sessions are recorded. A recording that runs stays in its file; the next goes into a newly chosen folder.", "会话的录制位置。正在进行的录制保留在原文件中；下一次录制使用新文件夹。";
-    FOLDER_CHANGE: "Change ...", "更改……", "Chooses the folder for sessions.", "选择会话文件夹。";
+    FOLDER: "Folder", "文件夹", "Where recordings are kept. A recording that runs stays in its file; the next goes into a newly chosen folder.", "录制的保存位置。正在进行的录制保留在原文件中；下一次录制使用新文件夹。";
+    FOLDER_CHANGE: "Change ...", "更改……", "Chooses the folder for recordings.", "选择录制文件夹。";
     FOLDER_DEFAULT: "Default", "默认", "Records into your documents again.", "恢复录制到您的文档目录。";
     FOLDER_IS_DEFAULT: "This is the default folder.", "已是默认文件夹。";
     FOLDER_PATH: "Path of the folder", "文件夹路径", "type the path of the folder here", "在此输入文件夹路径";
     FOLDER_TAKE: "Record here", "录制到此处", "Records into the folder that was typed. Enter does the same.", "录制到所输入的文件夹。按回车作用相同。";
-    LOOKS: "Looking for sessions ...", "正在查找会话……";
+    LOOKS: "Looking for recordings ...", "正在查找录制……";
     OPEN_OTHER: "Another file", "其他文件", "Opens a recording by its path; it can also be dropped onto the window.", "按路径打开录制文件；也可将文件拖入窗口。";
 
-    BEGAN: "Began (UTC)", "开始时间 (UTC)";
-    NAME: "Session", "会话";
+    TODAY: "today", "今天";
+    YESTERDAY: "yesterday", "昨天";
+    TRIALS_COUNT: "{} trials", "{} 次试验";
+    TRIAL_ONE: "1 trial", "1 次试验";
+    SIMULATED_HAND: "Simulated hand", "仿真手";
+    AT_MOMENT: "{}   {} g", "{}   {} g";
+    STRIP: "Force over time", "受力时间条", "Greatest force of any joint over the recording, with faults, stops and notes. Drag to mark a stretch and export it.", "整个录制中各自由度的最大受力，并标出故障、停止与备注。拖动可选择一段并导出。";
+    EXPORT_PART: "Export the marked {}", "导出选中的 {}";
+    EXPORTING: "Exporting {}: {} %", "正在导出 {}：{} %";
+    NOT_EXPORTED: "Not exported: {}: {}", "未能导出：{}：{}";
+    NAME: "Recording", "录制";
     LENGTH: "Length", "时长";
-    FORCE: "Force", "受力", "Greatest force of any joint over the session.", "整个会话中各自由度的最大受力。";
+    FORCE: "Force", "受力", "Greatest force of any joint over the recording.", "整个录制中各自由度的最大受力。";
     FAULTS: "Faults", "故障";
     TRIALS: "Trials", "试验";
     NOTES: "Notes", "备注";
     SIZE: "Size", "大小";
-    STAR: "Keep", "收藏", "A session with a star, a name or notes is never deleted to make room.", "带星标、名称或备注的会话不会为腾出空间而被删除。";
+    STAR: "Keep", "收藏", "A recording with a star, a name or notes is never deleted to make room.", "带星标、名称或备注的录制不会为腾出空间而被删除。";
     UNSTAR: "Kept: press to take the star away.", "已收藏：按下取消星标。";
-    REPLAY: "Replay", "回放", "Shows this session in the whole window. The hand stays connected behind it.", "在整个窗口中回放此会话。灵巧手在后台保持连接。";
-    REPLAY_STRETCH: "Replay", "回放", "Replays the recorded session from two seconds before, this stretch again and again.", "从此前两秒开始循环回放录制会话的这一段。";
-    REPLAY_NONE: "No session of this run of the program holds it.", "本次运行录制的会话中没有这一段。";
+    REPLAY: "Replay", "回放", "Shows this recording in the whole window. The hand stays connected behind it.", "在整个窗口中回放此录制。灵巧手在后台保持连接。";
+    REPLAY_STRETCH: "Replay", "回放", "Replays the recording from two seconds before, this stretch again and again.", "从此前两秒开始循环回放录制的这一段。";
+    REPLAY_NONE: "No recording of this run of the program holds it.", "本次运行录制中没有这一段。";
     MORE: "More", "更多", "Rename, show in the folder, export, delete.", "重命名、打开所在文件夹、导出、删除。";
-    RENAME: "Name of the session", "会话名称", "a name of your own", "自定义名称";
+    RENAME: "Name of the recording", "录制名称", "a name of your own", "自定义名称";
     REVEAL: "Show in folder", "在文件夹中显示", "Shows the file in the system's file manager.", "在系统文件管理器中显示此文件。";
-    EXPORT: "Export the whole session", "导出整个会话";
+    EXPORT: "Export the whole recording", "导出整个录制";
     NOT_DELETED: "Could not be deleted:", "无法删除：";
     NOT_REVEALED: "The file manager did not start: {}. The file is {}", "无法启动文件管理器：{}。文件位于 {}";
     COPY_PATH: "Copy path", "复制路径", "Copies where the file lies.", "复制文件所在位置。";
     DELETE: "Delete ...", "删除……", "Asks before anything is deleted.", "删除前会先询问。";
-    DELETE_TITLE: "Delete this session?", "删除此会话？";
+    DELETE_TITLE: "Delete this recording?", "删除此录制？";
     DELETE_WHAT: "The recording of {} is lost for good.", "{} 的录制将永久丢失。";
     DELETE_NOT: "Keep it", "保留";
     DELETE_SURE: "Delete the recording", "删除录制";
@@ -47,12 +66,12 @@ texts! {
     RECORDS_NOW: "is being recorded", "正在录制";
     SIMULATED: "simulated", "仿真";
     UNREAD: "{} files here cannot be read.", "此处有 {} 个文件无法读取。";
-    TOTAL: "Sessions: {}. Room: {} of {} GB.", "会话：{} 个。空间：已用 {}，共 {} GB。";
-    PLANNED: "Recorded sessions need more room than they may. The {} oldest without star, name or notes ({}, recorded {} to {}) are deleted when a recording begins after {} UTC. The view Sessions shows them and keeps them if you like.", "录制的会话占用空间超出限额。最早的 {} 个没有星标、名称或备注的会话（{}，录制于 {} 至 {}）将在 {} UTC 之后开始录制时删除。可在“会话”视图中查看并保留。";
-    BEYOND: "More than fits: the {} oldest ({}) go when a recording begins after {} UTC.", "超出限额：最早的 {} 个会话（{}）将在 {} UTC 之后开始录制时删除。";
-    GOES: "Goes to make room, not before {} UTC. A star, a name or a note keeps it.", "为腾出空间将被删除，不早于 {} UTC。星标、名称或备注可将其保留。";
-    ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest sessions without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的会话，直到不超限额。";
-    ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些会话全部加星标，使其不会被自动删除。";
+    TOTAL: "Recordings: {}. Room: {} of {} GB.", "录制：{} 个。空间：已用 {}，共 {} GB。";
+    PLANNED: "Recordings need more room than they may. The {} oldest without star, name or notes ({}, recorded {} to {}) are deleted when a recording begins after {}. The place Recordings shows them and keeps them if you like.", "录制占用空间超出限额。最早的 {} 个没有星标、名称或备注的录制（{}，录制于 {} 至 {}）将在 {} 之后开始录制时删除。可在“录制”中查看并保留。";
+    BEYOND: "More than fits: the {} oldest ({}) go when a recording begins after {}.", "超出限额：最早的 {} 个录制（{}）将在 {} 之后开始录制时删除。";
+    GOES: "Goes to make room, not before {}. A star, a name or a note keeps it.", "为腾出空间将被删除，不早于 {}。星标、名称或备注可将其保留。";
+    ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest recordings without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的录制，直到不超限额。";
+    ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些录制全部加星标，使其不会被自动删除。";
 
     RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
     NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";
@@ -71,14 +90,14 @@ texts! {
     STEP_BACK: "Reading before", "上一次读数", "Goes to the reading of the angles before this.", "跳到上一次角度读数。";
     PACE: "Pace", "速度", "How fast time goes.", "播放速度。";
     LOOP_OFF: "Loop off", "取消循环", "Plays all of it once again.", "恢复完整播放。";
-    EVENTS: "Marks", "标记", "Faults, stops, notes and trials of this session: press one to go there.", "此会话的故障、停止、备注和试验：点击跳转。";
-    NO_EVENTS: "Nothing is marked in this session.", "此会话没有标记。";
-    BESIDE: "Compare with", "对比会话", "Draws another session over this one, dashed, in all plots.", "在所有曲线图中以虚线叠加另一会话。";
+    EVENTS: "Marks", "标记", "Faults, stops, notes and trials of this recording: press one to go there.", "此录制的故障、停止、备注和试验：点击跳转。";
+    NO_EVENTS: "Nothing is marked in this recording.", "此录制没有标记。";
+    BESIDE: "Compare with", "对比录制", "Draws another recording over this one, dashed, in all plots.", "在所有曲线图中以虚线叠加另一录制。";
     BESIDE_OFF: "Compare no longer", "取消对比";
-    BESIDE_NONE: "There is no other session.", "没有其他会话。";
-    ALIGN: "Align", "对齐", "Lays a mark of each session over the other.", "将两个会话各自的一个标记对齐。";
-    ALIGN_OWN: "This session, at", "本会话，位于";
-    ALIGN_OTHER: "The other, at", "另一会话，位于";
+    BESIDE_NONE: "There is no other recording.", "没有其他录制。";
+    ALIGN: "Align", "对齐", "Lays a mark of each recording over the other.", "将两个录制各自的一个标记对齐。";
+    ALIGN_OWN: "This recording, at", "本录制，位于";
+    ALIGN_OTHER: "The other, at", "另一录制，位于";
     BEGINNING: "its beginning", "开头";
     THIS_MOMENT: "the moment shown", "当前时刻";
     NOTE_HERE: "Note here", "在此添加备注", "what is to be seen here", "此处值得注意的内容";
@@ -95,8 +114,8 @@ texts! {
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
     NOT_NOW: "Not replayed now: a series of trials or a question about the hand must be ended first.", "现在不能回放：请先结束抓取试验或完成关于灵巧手的询问。";
-    DELETED: "Sessions deleted:", "已删除会话：";
-    SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their sessions are marked.", "仿真手也会被录制，其会话会有标记。";
+    DELETED: "Recordings deleted:", "已删除录制：";
+    SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their recordings are marked.", "仿真手也会被录制，其录制会有标记。";
 
     /// The formats that a session can be exported in.
     fn form(SessionForm) {
@@ -104,6 +123,130 @@ texts! {
         SessionForm::Parquet => "Table (Parquet)", "表格（Parquet）";
         SessionForm::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
         SessionForm::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
-        SessionForm::Mcap => "Session file (MCAP)", "会话文件（MCAP）";
+        SessionForm::Mcap => "Recording file (MCAP)", "录制文件（MCAP）";
+    }
+}
+
+/// What a recording is of: its own name, else what was done in it or with which hand.
+pub(crate) fn what(look: Look, settings: &Settings, item: &SessionItem) -> String {
+    if !item.about.name.is_empty() {
+        return item.about.name.clone();
+    }
+    let joints = item.tried().into_iter();
+    let joints = joints.map(|dof| look.say(words::dof(dof)).to_owned());
+    let trials = match item.count(EventKind::Trial) {
+        0 => None,
+        1 => Some(look.say(TRIAL_ONE).to_owned()),
+        count => Some(look.fill(TRIALS_COUNT, &[&count])),
+    };
+    let all: Vec<String> = joints.chain(trials).collect();
+    if !all.is_empty() {
+        return listed(look, &all);
+    }
+    let endpoint = item.opening.hand.parse().ok();
+    let name = endpoint.as_ref().and_then(|hand| settings.hand_name(hand));
+    let hand = match item.opening.side {
+        _ if item.opening.simulated => SIMULATED_HAND,
+        Side::Right => panels::RIGHT_HAND,
+        Side::Left => panels::LEFT_HAND,
+    };
+    name.unwrap_or(look.say(hand)).to_owned()
+}
+
+/// When a recording began on the clock here, `today 20:21`; `None` if nobody knows.
+pub(crate) fn when(look: Look, item: &SessionItem, now_since_1970: Duration) -> Option<String> {
+    if item.opening.is_imported() {
+        return None;
+    }
+    let (day, time) = calendar::local(item.opening.began_since_1970());
+    let is_day = |ago: u32| {
+        let then = now_since_1970.saturating_sub(ago * Duration::from_secs(24 * 3600));
+        calendar::local(then).0 == day
+    };
+    Some(match (is_day(0), is_day(1)) {
+        (true, _) => format!("{} {time}", look.say(TODAY)),
+        (_, true) => format!("{} {time}", look.say(YESTERDAY)),
+        _ => format!("{day} {time}"),
+    })
+}
+
+/// Both in one line.
+pub(crate) fn title(look: Look, state: &State, item: &SessionItem) -> String {
+    let what = what(look, &state.settings, item);
+    let when = when(look, item, state.sessions.looked_at);
+    let all: Vec<String> = std::iter::once(what).chain(when).collect();
+    listed(look, &all)
+}
+
+fn listed(look: Look, all: &[String]) -> String {
+    all.join(match look.language {
+        Language::En => ", ",
+        Language::Zh => "，",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::sessions::SessionAbout;
+    use crate::hand::Moment;
+    use crate::record::file::{Counts, FileMark, Opening};
+
+    fn item(began_s: u64, trials: &[&str]) -> SessionItem {
+        let mark = |words: &&str| FileMark {
+            at: Moment::ZERO,
+            kind: EventKind::Trial,
+            words: (*words).to_owned(),
+        };
+        SessionItem {
+            path: "file.mcap".into(),
+            files: Vec::new(),
+            bytes: 0,
+            opening: Opening {
+                base_nanos: began_s * 1_000_000_000,
+                version: "test".into(),
+                hand: "rs485:COM1".into(),
+                ..Opening::unknown(0)
+            },
+            first: Moment::ZERO,
+            length: Duration::ZERO,
+            counts: Counts::default(),
+            marks: trials.iter().map(mark).collect(),
+            strip: Vec::new(),
+            poses: std::sync::Arc::default(),
+            closed: true,
+            about: SessionAbout::default(),
+        }
+    }
+
+    #[test]
+    fn a_recording_is_named_by_what_was_done_and_when_on_the_clock_here() {
+        const DAY_S: u64 = 24 * 3600;
+        let mut state = State::default();
+        state.sessions.looked_at = Duration::from_secs(20_000 * DAY_S);
+        let look = Look::of(&state);
+        let time = |began_s| calendar::local(Duration::from_secs(began_s)).1;
+        let now = 20_000 * DAY_S;
+        let all = item(now, &["1 of 2, index, middle", "2 of 2, index, middle"]);
+        let told = title(look, &state, &all);
+        assert_eq!(
+            told,
+            format!("Middle, Index, 2 trials, today {}", time(now))
+        );
+        let one = item(now - DAY_S, &["1 of 1"]);
+        let told = title(look, &state, &one);
+        assert_eq!(told, format!("1 trial, yesterday {}", time(now)));
+        let (day, hour) = calendar::local(Duration::from_secs(now - 9 * DAY_S));
+        let mut none = item(now - 9 * DAY_S, &[]);
+        assert_eq!(
+            title(look, &state, &none),
+            format!("Right hand, {day} {hour}")
+        );
+        none.about.name = "sponge".into();
+        assert_eq!(title(look, &state, &none), format!("sponge, {day} {hour}"));
+        assert_eq!(
+            title(look, &state, &item(0, &[])).matches("1970").count(),
+            1
+        );
     }
 }

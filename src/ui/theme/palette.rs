@@ -1,7 +1,7 @@
 //! Every colour of the window, dark and light, by what it is for. No sizes.
 
 use crate::app::settings::Theme;
-use crate::hand::PerDof;
+use crate::hand::{Fault, PerDof, Status};
 use crate::ui::theme::hand::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
 use egui::Color32;
 
@@ -149,6 +149,18 @@ impl Palette {
         match theme {
             Theme::Dark => &DARK,
             Theme::Light => &LIGHT,
+        }
+    }
+
+    /// What a drive says: its first fault, else its status.
+    pub(crate) const fn drive(&self, fault: Option<Fault>, status: Option<Status>) -> Color32 {
+        match (fault, status) {
+            (Some(_), _) => self.bad,
+            (None, Some(status)) if status.is_protective() => self.bad,
+            (None, Some(Status::Releasing | Status::Grasping)) => self.accent,
+            (None, Some(Status::ForceReached)) => self.warn,
+            (None, Some(Status::PositionReached)) => self.ok,
+            (None, _) => self.faint,
         }
     }
 

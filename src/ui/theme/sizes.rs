@@ -69,7 +69,7 @@ pub(crate) const FIELD_INSET: Margin = Margin::symmetric(8, 2);
 /// Points of the wheel that halve or double what is shown.
 pub(crate) const PLOT_WHEEL: f32 = 180.0;
 /// Room for the numbers of the vertical axis.
-pub(crate) const PLOT_AXIS: f32 = 46.0;
+pub(crate) const PLOT_AXIS: f32 = 48.0;
 /// Room for the half of a word below the right edge.
 pub(crate) const PLOT_END: f32 = 12.0;
 /// Room for the numbers of the time axis.

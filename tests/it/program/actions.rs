@@ -15,7 +15,7 @@ use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
 use handscope::app::readings::faults::FaultKind;
 use handscope::app::scan::ScanTarget;
-use handscope::app::sessions::{SessionAction, SessionForm};
+use handscope::app::sessions::{SessionAction, SessionExport, SessionForm};
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SessionId, TrialAction};
 use handscope::exhibit::run::ExhibitWish;
@@ -121,7 +121,11 @@ fn sessions() -> Vec<SessionAction> {
         SessionAction::OpenAt(path(), (at, at)),
         SessionAction::Close,
         SessionAction::Reveal(path()),
-        SessionAction::Export(path(), SessionForm::Csv),
+        SessionAction::Export(SessionExport {
+            path: path(),
+            form: SessionForm::Csv,
+            stretch: None,
+        }),
         SessionAction::Name(path(), "name".into()),
         SessionAction::Star(path(), true),
         SessionAction::AskDelete(path()),
@@ -233,6 +237,7 @@ fn all(things: Things) -> Vec<Action> {
         Action::AngleUnit(AngleUnit::Degrees),
         Action::PlotWindow(PlotWindow::S5),
         Action::ShowPlot(PlotKind::Force, true),
+        Action::GrowPlot(PlotKind::Current),
         Action::Note(Moment::ZERO, "note".into()),
         Action::RemoveMark(note),
         Action::Tare(None),
@@ -431,6 +436,7 @@ async fn these_actions_pass_while_a_recording_is_shown_and_no_others() {
         "AngleUnit",
         "PlotWindow",
         "ShowPlot",
+        "GrowPlot",
     ];
     assert_eq!(names, BTreeSet::from(wanted));
 }

@@ -37,6 +37,7 @@ fn carry_out(state: &mut State, action: &Action) {
             .history
             .mark(*at, MarkKind::note(words).unwrap()),
         Action::PlotWindow(window) => state.settings.plot_window = *window,
+        Action::GrowPlot(kind) => state.settings.tall_plots.grow(*kind),
         Action::ShowPlot(kind, on) => state.settings.plots.set(*kind, *on),
         _ => {}
     }

@@ -130,7 +130,6 @@ fn every_control_has_its_name() {
         "Open all",
         "Faults",
         "Pause the plots",
-        "Thresholds",
         "Plot window",
         "Gesture 1 open",
         "Gesture 14 cup",
@@ -140,6 +139,9 @@ fn every_control_has_its_name() {
     ] {
         harness.get_by_label(name);
     }
+    harness.get_by_label("More for the plots").click();
+    harness.run_steps(3);
+    harness.get_by_label("Thresholds");
 }
 
 #[test]

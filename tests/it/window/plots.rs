@@ -35,7 +35,7 @@ fn what_the_plots_show_is_saved_as_csv_and_as_png_while_the_window_goes_on() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.wait(2000);
     let before = bench.now();
-    let (path, rows) = saved(&mut bench, "Save as CSV");
+    let (path, rows) = saved(&mut bench, "Save these 10 s as CSV");
     assert!(bench.now() > before && rows > 150, "{rows}");
     let csv = std::fs::read_to_string(path).unwrap();
     assert!(csv.starts_with("time_s,") && csv.contains("force_index_g"));

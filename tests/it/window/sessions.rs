@@ -9,7 +9,9 @@ use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::sessions::recording::HandRecording;
-use handscope::app::sessions::{SessionAbout, SessionAction, SessionForm, SessionItem};
+use handscope::app::sessions::{
+    SessionAbout, SessionAction, SessionExport, SessionForm, SessionItem,
+};
 use handscope::app::settings::Theme;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::inputs::mirror::MirrorScale;
@@ -180,26 +182,28 @@ fn the_list_finds_names_stars_and_deletes_after_a_question() {
     bench.show(View::Sessions);
     settle(&mut bench, |bench| bench.state().sessions.looked > 0);
     let title = read_item(&path).unwrap().title();
-    assert!(bench.shows(&title), "{:?}", bench.texts());
-    bench.type_into("Find sessions", "nothing like it");
-    assert!(bench.shows("No session has these words."));
-    bench.type_into("Find sessions", "127.0.0.1");
-    assert!(bench.shows(&title));
+    let listed = format!("Keep: {title}");
+    assert!(bench.shows(&listed), "{:?}", bench.texts());
+    assert_eq!(bench.texts_with("Right hand, today ").len(), 1);
+    bench.type_into("Find recordings", "nothing like it");
+    assert!(bench.shows("No recording has these words."));
+    bench.type_into("Find recordings", "127.0.0.1");
+    assert!(bench.shows(&listed));
 
-    bench.click(&format!("Keep: {title}"));
+    bench.click(&listed);
     settle(&mut bench, |_| read_item(&path).unwrap().about.star);
     bench.click(&format!("More: {title}"));
     bench.run(100);
-    bench.type_into("Name of the session", "Old finger 捏");
+    bench.type_into("Name of the recording", "Old finger 捏");
     bench.key(egui::Key::Enter);
     settle(&mut bench, |_| {
         read_item(&path).unwrap().about.name == "Old finger 捏"
     });
     bench.run(100);
-    assert!(bench.shows("Old finger 捏"));
+    assert_eq!(bench.texts_with("Old finger 捏, today ").len(), 1);
     bench.click_button("Delete ...");
     bench.run(100);
-    assert!(bench.shows("Delete this session?") && path.exists());
+    assert!(bench.shows("Delete this recording?") && path.exists());
     bench.click_button("Keep it");
     bench.run(100);
     assert!(path.exists());
@@ -288,11 +292,86 @@ fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
             paths.collect::<Vec<_>>()
         };
         let before = saved(&bench).len();
-        session(&mut bench, SessionAction::Export(path.clone(), form));
+        session(&mut bench, export(&path, form, None));
         settle(&mut bench, |bench| saved(bench).len() > before);
         let (to, entries) = saved(&bench).remove(0);
         assert!(to.exists() && entries > 10, "{form:?}: {entries} in {to:?}");
     }
+}
+
+fn export(path: &Path, form: SessionForm, stretch: Option<(Moment, Moment)>) -> SessionAction {
+    let path = path.to_owned();
+    SessionAction::Export(SessionExport {
+        path,
+        form,
+        stretch,
+    })
+}
+
+#[test]
+fn a_stretch_that_is_dragged_on_the_strip_is_exported_alone() {
+    let mut bench = bench(Scenario::Grasp);
+    bench.wait(5000);
+    let path = ended(&mut bench);
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
+    bench.run(100);
+    let item = read_item(&path).unwrap();
+    let strip = bench.rect(Role::Image, &format!("Force over time: {}", item.title()));
+    let at = |part| strip.lerp_inside(egui::vec2(part, 0.5));
+    bench.drag_from_to(at(0.25), at(0.5));
+    bench.run(100);
+    assert_eq!(bench.texts_with("Export the marked ").len(), 1);
+    bench.click_button("Table (CSV)");
+    let saved = |bench: &Bench| {
+        let mut notices = bench.state().notices.iter();
+        notices.find_map(|notice| match &notice.what {
+            NoticeKind::Saved { path, .. } => Some(path.clone()),
+            _ => None,
+        })
+    };
+    settle(&mut bench, |bench| saved(bench).is_some());
+    let to = saved(&bench).unwrap();
+    assert!(to.to_string_lossy().ends_with("-part.csv"), "{to:?}");
+    let csv = std::fs::read_to_string(to).unwrap();
+    let time = |line: &str| line.split(',').next()?.parse::<f64>().ok();
+    let times: Vec<f64> = csv.lines().filter_map(time).collect();
+    let span = times.last().unwrap() - times[0];
+    let wanted = item.length.as_secs_f64() / 4.0;
+    assert!((span - wanted).abs() < 0.2, "{span} is not {wanted}");
+    settle(&mut bench, |bench| {
+        bench.state().sessions.exports.is_empty()
+    });
+}
+
+#[test]
+fn an_export_that_fails_says_why() {
+    let mut bench = bench(Scenario::Idle);
+    let path = ended(&mut bench);
+    let first = read_item(&path).unwrap().first;
+    let nothing = Some((first, first));
+    session(&mut bench, export(&path, SessionForm::LeRobot, nothing));
+    settle(&mut bench, |bench| {
+        let told = bench.texts_with("Not exported: ");
+        told.iter()
+            .any(|told| told.contains("There is no reading of the joints in this stretch."))
+    });
+}
+
+#[test]
+fn an_empty_place_says_what_comes_there_and_leads_to_a_hand() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    bench.show(View::Sessions);
+    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    bench.run(60);
+    assert!(bench.shows("No recordings yet"));
+    bench.click_button("Connect a hand");
+    bench.run(60);
+    assert!(
+        bench.shows("Kind of link: Simulated"),
+        "{:?}",
+        bench.texts()
+    );
 }
 
 #[test]
@@ -526,7 +605,7 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     bench.click_button("Compare with");
     bench.run(100);
     let title = read_item(&second).unwrap().title();
-    let offered = bench.buttons_with(&title);
+    let offered = bench.buttons_with("Right hand, today ");
     bench.click_button(&offered[0]);
     settle(&mut bench, |bench| bench.state().beside.is_some());
     let note = |path| read_item(path).unwrap().notes()[0].at();
@@ -757,11 +836,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     settle(&mut bench, |bench| {
         bench.state().sessions.planned.len() == 3
     });
-    assert!(
-        !bench
-            .texts_with("Recorded sessions need more room")
-            .is_empty()
-    );
+    assert!(!bench.texts_with("Recordings need more room").is_empty());
     let told = bench.folder().join("documents/Handscope/to-delete.toml");
     settle(&mut bench, |_| told.exists());
     session(&mut bench, SessionAction::Record(true));
@@ -775,7 +850,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     session(&mut bench, SessionAction::Record(true));
     settle(&mut bench, |_| !old[1].exists());
     assert!(old[0].exists() && old[2].exists() && first.exists());
-    assert!(!bench.texts_with("Sessions deleted").is_empty());
+    assert!(!bench.texts_with("Recordings deleted").is_empty());
     settle(&mut bench, |bench| {
         bench.state().sessions.planned.len() == 2
     });

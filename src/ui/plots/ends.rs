@@ -1,0 +1,162 @@
+//! The newest values at the right ends of the curves, each in the colour of its curve and apart from the others where curves meet,
+//! so that equal curves are told apart, too. A click hides a joint's curves.
+
+use crate::hand::Dof;
+use crate::ui::kit::{Label, Look, format};
+use crate::ui::plots::chart::ChartResponse;
+use crate::ui::plots::panels::Panel;
+use crate::ui::text::{panels, words};
+use crate::ui::theme;
+use egui::{
+    Color32, CursorIcon, Rangef, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+};
+
+/// From here on there is room for names.
+const NAMED_FROM: f32 = 600.0;
+/// From the end of a curve to its value.
+const LEADER: f32 = 8.0;
+/// To the right edge of a value.
+pub(crate) const VALUES: f32 = LEADER + VALUE;
+/// A value.
+const VALUE: f32 = 40.0;
+/// A name.
+const NAME: f32 = 88.0;
+
+/// The end of a curve.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CurveEnd {
+    pub(crate) dof: Dof,
+    /// `None` where it is not known.
+    pub(crate) value: Option<f64>,
+    pub(crate) color: Color32,
+}
+
+/// Room at the right of plots as wide as `ui`.
+pub(crate) fn width(ui: &Ui) -> f32 {
+    let name = if ui.available_width() < NAMED_FROM {
+        0.0
+    } else {
+        NAME
+    };
+    VALUES + theme::STEP + name
+}
+
+/// Draws them beside a plot. The joint that the pointer is at, and whether it was pressed.
+pub(crate) fn ends_ui(
+    ui: &Ui,
+    look: Look,
+    (panel, chart): (&Panel, &ChartResponse),
+    ends: &[CurveEnd],
+) -> Option<(Dof, bool)> {
+    if ends.iter().all(|end| end.value.is_none()) {
+        return None;
+    }
+    let frame = *chart.transform.frame();
+    let right = frame.right() + width(ui);
+    let place = |end: &CurveEnd| {
+        let y = end
+            .value
+            .map(|value| chart.transform.position_from_point_y(value));
+        y.unwrap_or(frame.bottom())
+            .clamp(frame.top(), frame.bottom())
+    };
+    let mut ends: Vec<(f32, &CurveEnd)> = ends.iter().map(|end| (place(end), end)).collect();
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let wanted: Vec<f32> = ends.iter().map(|(y, _)| *y).collect();
+    let count = f32::from(u8::try_from(ends.len()).unwrap_or(u8::MAX));
+    let pitch = (frame.height() / count).min(theme::TEXT_LINE);
+    let middles = apart(&wanted, pitch, frame.y_range());
+    let mut pointed = None;
+    for ((y, end), middle) in ends.into_iter().zip(middles) {
+        let ys = Rangef::new(middle - pitch / 2.0, middle + pitch / 2.0);
+        let xs = Rangef::new(frame.right() + LEADER, right);
+        let place = Rect::from_x_y_ranges(xs, ys);
+        if end.value.is_some() {
+            let leader = Stroke::new(1.0, end.color.gamma_multiply(0.6));
+            let line = [pos2(frame.right(), y), pos2(xs.min, middle)];
+            ui.painter().line_segment(line, leader);
+        }
+        let response = end_ui(ui, look, (panel, end), place);
+        if response.hovered() {
+            pointed = Some((end.dof, response.clicked()));
+        }
+    }
+    pointed
+}
+
+/// The value of one curve, and its name where there is room.
+fn end_ui(ui: &Ui, look: Look, (panel, end): (&Panel, &CurveEnd), place: Rect) -> Response {
+    let name = look.say(words::dof(end.dof));
+    let id = ui.scope_id().with((panel.title.en, end.dof.index()));
+    let response = ui.interact(place, id, Sense::click());
+    let named = look.pair(look.say(panel.title), name);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, true, &named));
+    let digits = panel.row.decimals;
+    let text = end.value.map_or_else(
+        || format::UNKNOWN.to_owned(),
+        |value| format!("{value:.digits$}"),
+    );
+    let (value, rest) = place.split_left_right_at_x(place.left() + VALUE);
+    let label = Label::new(&text, end.color).number().right();
+    label.paint(ui, value);
+    if rest.width() > VALUE {
+        let label = Label::new(name, end.color).small();
+        label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
+    }
+    let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(tip)
+}
+
+/// Middles at least a pitch apart, as near to the wanted ones as there is room; both in the same order.
+fn apart(wanted: &[f32], pitch: f32, room: Rangef) -> Vec<f32> {
+    // Groups that touch: how many, and the mean of where their first ones would stand.
+    let mut groups: Vec<(f32, f32)> = Vec::new();
+    let within = |(count, first): (f32, f32)| {
+        let last = room.max - pitch * (count - 0.5);
+        first.min(last).max(room.min + pitch / 2.0)
+    };
+    for y in wanted {
+        let mut group = (1.0, *y);
+        while let Some(before) =
+            groups.pop_if(|before| within(*before) + pitch * before.0 > within(group))
+        {
+            let count = before.0 + group.0;
+            let first = (before.0 * before.1 + group.0 * (group.1 - pitch * before.0)) / count;
+            group = (count, first);
+        }
+        groups.push(group);
+    }
+    let mut middles = Vec::with_capacity(wanted.len());
+    for group in groups {
+        let mut middle = within(group);
+        let mut left = group.0;
+        while left >= 1.0 {
+            middles.push(middle);
+            middle += pitch;
+            left -= 1.0;
+        }
+    }
+    middles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_of_equal_curves_stand_apart_and_within_the_plot() {
+        let room = Rangef::new(0.0, 100.0);
+        for (wanted, middles) in [
+            (&[20.0, 60.0][..], &[20.0, 60.0][..]),
+            (&[50.0, 50.0, 50.0], &[34.0, 50.0, 66.0]),
+            (&[100.0, 100.0, 100.0], &[60.0, 76.0, 92.0]),
+            (&[0.0, 0.0, 90.0], &[8.0, 24.0, 90.0]),
+            (&[20.0, 70.0, 74.0], &[20.0, 64.0, 80.0]),
+            (&[80.0, 99.0, 99.0], &[60.0, 76.0, 92.0]),
+        ] {
+            assert_eq!(apart(wanted, 16.0, room), middles, "{wanted:?}");
+        }
+    }
+}
