@@ -18,7 +18,6 @@ use crate::ui::sessions::SessionsView;
 use crate::ui::theme;
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
-use crate::ui::trials::compare::CompareView;
 use crate::ui::trials::tune::TuneView;
 use crate::ui::view::View;
 use crate::ui::window::rooms::{RoomSize, Rooms};
@@ -51,7 +50,6 @@ pub(super) struct Body {
     rooms: Rooms,
     poses: PoseView,
     tune: TuneView,
-    compare: CompareView,
     sessions: SessionsView,
 }
 
@@ -143,7 +141,7 @@ impl Body {
             View::Live => self.live_ui(ui, rect, pane),
             View::Touch => self.own.touch.large_ui(ui, pane),
             View::Tune => self.tune.ui(ui, pane),
-            View::Compare => self.compare.ui(ui, pane),
+            View::Compare => self.tune.results_ui(ui, pane),
             View::Faults => self.own.faults.ui(ui, pane),
             View::Poses => self.poses.ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
