@@ -53,10 +53,10 @@ texts! {
     REPEATS: "times each", "每组次数", "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
     FAST: "Fast speed", "快速段速度", "Speed until the fast part ends.", "快速段的速度。";
-    UNTIL_MARGIN: "Slow before contact by", "接触前减速提前量", "Units of the angle before the contact that a first, slow trial measures.", "距首次慢速试验测得的接触处的提前量，角度单位。";
-    UNTIL_ANGLE: "Slow down at angle", "减速的角度", "The joints stop at this angle by themselves, then go on slowly.", "自由度先停在该角度，再慢速继续。";
-    UNTIL_PROXIMITY: "Slow at proximity rise", "减速的接近增量", "Counts that the fingertip's proximity rises by.", "指尖接近值的增量，计数。";
-    UNTIL_TOUCH: "Slow down at touch, g", "减速的触碰力 g", "Grams that the fingertip or the force sensor feels.", "指尖或力传感器感到的克数。";
+    UNTIL_MARGIN: "Contact margin", "接触前减速提前量", "Units of the angle before the contact that a first, slow trial measures.", "距首次慢速试验测得的接触处的提前量，角度单位。";
+    UNTIL_ANGLE: "Slow at angle", "减速的角度", "The joints stop at this angle by themselves, then go on slowly.", "自由度先停在该角度，再慢速继续。";
+    UNTIL_PROXIMITY: "Slow at proximity", "减速的接近增量", "Counts that the fingertip's proximity rises by.", "指尖接近值的增量，计数。";
+    UNTIL_TOUCH: "Slow at touch, g", "减速的触碰力 g", "Grams that the fingertip or the force sensor feels.", "指尖或力传感器感到的克数。";
     DWELL: "Hold, s", "保持时间 s", "Time held after the stop; the steady force is measured at its end.", "停下后的保持时间，稳态力在其末尾测量。";
     REST: "Rest, s", "间隔时间 s", "Time between two trials.", "两次试验之间的时间。";
     CEILING_CAPTION: "Force limit, g", "力上限 g", "Force above the reading at rest that ends the series with a stop.", "超过静止读数达到此力时，立即停止并结束。";
@@ -88,7 +88,7 @@ texts! {
     PLAN_WRONG: "Correct the plan first.", "请先修正计划。";
     WILL: "Trials: {}, at most about {}.", "试验 {} 次，最长约 {}。";
     WILL_PROBE: "The first, slow one measures the contact.", "第一次慢速试验用于测量接触位置。";
-    EXPECT: "On a rigid object over the threshold by up to {} g (speed {}, threshold {} g).", "抓握刚性物体时，峰值可能超过力阈值 {} g（速度 {}，力阈值 {} g）。", "The threshold stops the drive, it does not regulate force. Slower at the contact is gentler.", "力阈值只会让驱动器停下，并不调节力。接触时越慢越轻柔。";
+    EXPECT: "On a rigid object up to {} g over the threshold (speed {}, threshold {} g).", "抓握刚性物体时，峰值可能超过力阈值 {} g（速度 {}，力阈值 {} g）。", "The threshold stops the drive, it does not regulate force. Slower at the contact is gentler.", "力阈值只会让驱动器停下，并不调节力。接触时越慢越轻柔。";
     ANY_KEY: "Any key ends it with a stop.", "按任意键即停止并结束。";
     STOP_SERIES: "End with a stop", "停止并结束", "Holds the hand and ends the series.", "保持灵巧手当前位置并结束试验。";
     TRIAL: "Trial {} of {}: {}", "第 {} 次，共 {} 次：{}";

@@ -10,8 +10,7 @@ use crate::ui::kit::{
 };
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
-use crate::ui::trials::PLOT_LEAST;
-use crate::ui::trials::compare_best::BestView;
+use crate::ui::trials::compare_best::{self, BestView};
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
@@ -23,7 +22,9 @@ use egui::{Align2, Panel, ScrollArea, Sense, Ui, vec2};
 const NOTE_CHARS: usize = 300;
 /// From this width on the best stands beside curves and table, and from that one on beside the curves.
 const WIDE: f32 = 1500.0;
-const BESIDE: f32 = 600.0;
+const BESIDE: f32 = 640.0;
+/// Room that curves, their choices and the map of overshoot get before the table does.
+const CURVES_LEAST: f32 = 272.0;
 /// Most width of where a session lies.
 const PLACE: f32 = 280.0;
 
@@ -81,6 +82,8 @@ impl ResultsView {
             let session = focus.unwrap_or(session);
             if trials.running != Some(session.id) {
                 end_ui(ui, pane, session);
+            }
+            if trials.running != Some(session.id) && ui.available_width() >= BESIDE {
                 ui.horizontal(|ui| words_ui(ui, pane, session));
             }
             self.session_ui(ui, pane, session);
@@ -100,21 +103,22 @@ impl ResultsView {
             self.comparison = Some(comparison);
             return;
         }
-        if room.x >= WIDE {
+        // What is armed cannot be given defaults: the best waits for the end.
+        if !runs && room.x >= WIDE {
             self.best_ui(ui, pane, &comparison, focus);
         }
         let height = compare_table::height(comparison.rows.len());
-        let most = (room.y - 2.0 * PLOT_LEAST).max(room.y * 0.48);
+        let most = (room.y - CURVES_LEAST).max(room.y * 0.4);
         let table = Panel::bottom("trial table");
         let table = kit::bare(table, height.min(most), theme::GAP_TOP);
         table.show(ui, |ui| {
             let replay = self.table.ui(ui, pane, &comparison, &mut self.strong);
             pane.actions.extend(replay.map(Action::Session));
         });
-        if (BESIDE..WIDE).contains(&room.x) {
+        if !runs && (BESIDE..WIDE).contains(&room.x) {
             self.best_ui(ui, pane, &comparison, focus);
-        } else if room.x < BESIDE {
-            self.best.line_ui(ui, pane, &comparison);
+        } else if !runs && room.x < BESIDE {
+            compare_best::best_ui(ui, pane, &comparison);
         }
         if runs && ui.available_width() >= BESIDE / 2.0 {
             let width = ui.available_width() * 0.4;
@@ -134,7 +138,7 @@ impl ResultsView {
         comparison: &Comparison,
         focus: &TrialSession,
     ) {
-        let width = (ui.available_width() * 0.36).clamp(248.0, 440.0);
+        let width = (ui.available_width() * 0.36).clamp(288.0, 440.0);
         kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 self.best.ui(ui, pane, comparison, focus);

@@ -66,7 +66,8 @@ impl BestView {
         focus: &TrialSession,
     ) {
         let look = pane.look;
-        self.line_ui(ui, pane, comparison);
+        self.choice_ui(ui, pane);
+        best_ui(ui, pane, comparison);
         let own = pane.state.hand().connection.name();
         if focus.head.hand != own {
             let words = look.fill(tune::TRIED_ON, &[&focus.head.hand]);
@@ -80,8 +81,8 @@ impl BestView {
         map_ui(ui, pane, comparison);
     }
 
-    /// Draws the choice and the best.
-    pub(crate) fn line_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
+    /// By what the best is chosen.
+    fn choice_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             let all = [
@@ -89,6 +90,8 @@ impl BestView {
                 (Wanted::Fastest, tune::FASTEST),
             ];
             kit::pick_ui(ui, look, (&mut self.wanted, tune::BEST.tip()), all);
+        });
+        ui.horizontal(|ui| {
             let name = look.say(tune::HOLD_AT_LEAST);
             Label::new(name, look.palette.muted).small().ui(ui);
             let field = NumberField::new(name, look.say(tune::HOLD_TIP), 0.0..=4000.0);
@@ -96,12 +99,11 @@ impl BestView {
                 self.steady_g = steady_g;
             }
         });
-        best_ui(ui, pane, comparison);
     }
 }
 
 /// The best, and what makes it the default.
-fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
+pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
     let (look, palette) = (pane.look, pane.look.palette);
     let best = comparison.best.as_ref();
     let none = look.say(tune::BEST_NONE);

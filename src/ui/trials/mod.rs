@@ -14,6 +14,3 @@ pub(crate) mod start;
 pub(crate) mod tune;
 pub(crate) mod tune_form;
 pub(crate) mod tune_live;
-
-/// Least height of curves.
-pub(crate) const PLOT_LEAST: f32 = 96.0;

@@ -10,7 +10,7 @@ use crate::trials::{Approach, TrialPlan, Until};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, Weight, format};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use egui::{Align, CollapsingHeader, Grid, Layout, ScrollArea, Ui, vec2};
+use egui::{CollapsingHeader, ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use std::time::Duration;
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of the words before a field: all fields begin at one edge.
-const CAPTION: f32 = 136.0;
+const CAPTION: f32 = 112.0;
 /// Speed of a fast part unless a person says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
@@ -171,13 +171,14 @@ impl Pass<'_, '_> {
         let caption = self.pane.look.say(tune::JOINTS);
         self.row_ui(ui, caption, |pass, ui| {
             let width = (ui.available_width() - theme::STEP) / 2.0;
-            let chips = Grid::new("joints").spacing(vec2(theme::STEP, theme::STEP));
-            chips.min_col_width(width).show(ui, |ui| {
-                for (at, dof) in Dof::ALL.into_iter().enumerate() {
-                    pass.joint_ui(ui, dof, width);
-                    if at % 2 == 1 {
-                        ui.end_row();
-                    }
+            ui.vertical(|ui| {
+                for pair in Dof::ALL.chunks(2) {
+                    ui.horizontal(|ui| {
+                        ui.spacing_mut().item_spacing.x = theme::STEP;
+                        for dof in pair {
+                            pass.joint_ui(ui, *dof, width);
+                        }
+                    });
                 }
             });
         });
@@ -193,10 +194,8 @@ impl Pass<'_, '_> {
             .named(&name)
             .disabled(self.disabled)
             .switch(takes_part);
-        let wide = Layout::top_down_justified(Align::Center);
-        let size = vec2(width, theme::CONTROL);
-        let pressed = ui.allocate_ui_with_layout(size, wide, |ui| button.ui(ui, look).clicked());
-        if pressed.inner {
+        let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+        if button.put(ui, look, place, id).clicked() {
             let angle = self.form.targets[dof];
             set_target(&mut self.plan, dof, (!takes_part).then_some(angle));
         }
@@ -216,7 +215,9 @@ impl Pass<'_, '_> {
                 tune::STANDS
             };
             let caption = look.fill(caption, &[&look.say(words::dof(dof))]);
-            self.row_ui(ui, &caption, |pass, ui| pass.way_ui(ui, dof));
+            self.row_ui(ui, &caption, |pass, ui| {
+                ui.horizontal(|ui| pass.way_ui(ui, dof));
+            });
             self.trouble_ui(ui, PlanField::Way(dof));
         }
     }
