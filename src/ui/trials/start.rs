@@ -61,12 +61,16 @@ impl StartButton {
 
     /// True once it was held long enough, by the pointer on it or by Enter.
     fn is_held(&mut self, ui: &Ui, pane: &Pane<'_>, response: &Response) -> bool {
-        let by_pointer = response.is_pointer_button_down_on() && response.contains_pointer();
-        let (pressed, by_key) = ui.input(|input| {
-            let pressed = input.pointer.primary_pressed() || input.key_pressed(Key::Enter);
-            (pressed, input.key_down(Key::Enter) && response.has_focus())
+        let has_pointer = response.contains_pointer();
+        let has_keyboard = response.has_focus();
+        // Not the response's own press: that is over once it is too long for a click.
+        let (begins, is_down) = ui.input(|input| {
+            let pointer = &input.pointer;
+            let begins = has_pointer && pointer.primary_pressed()
+                || has_keyboard && input.key_pressed(Key::Enter);
+            let by_key = has_keyboard && input.key_down(Key::Enter);
+            (begins, has_pointer && pointer.primary_down() || by_key)
         });
-        let is_down = by_pointer || by_key;
         let now = pane.state.now;
         let connection = &pane.state.hand().connection;
         let is_stopped = self
@@ -74,7 +78,7 @@ impl StartButton {
             .is_some_and(|at| connection.is_disarmed_since(at));
         if is_stopped || !response.sense.senses_click() {
             *self = Self::default();
-        } else if is_down && pressed {
+        } else if is_down && begins {
             (self.since, self.is_short) = (Some(now), false);
         } else if !is_down {
             self.is_short |= self.since.take().is_some() || response.clicked();
