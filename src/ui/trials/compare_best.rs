@@ -2,8 +2,8 @@
 //! default. Writes nothing: a card asks first.
 
 use crate::app::action::Action;
-use crate::app::params::ParamAction;
 use crate::app::params::state::Doing;
+use crate::app::params::{ParamAction, ParamRefusal};
 use crate::app::trials::{Comparison, TrialSession};
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
@@ -125,6 +125,8 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
     let refusal = hand
         .params
         .save_refusal_with(&values, &hand.connection.status);
+    // A hand that was just tried is soon seen to rest: only who asks is told.
+    let passes = refusal == Some(ParamRefusal::Moving);
     let refusal = refusal.map(|why| look.say(device::refusal(why)));
     let refusal = pane
         .recorded()
@@ -149,7 +151,7 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
         let words = look.fill(tune::BEST_OVER, &[&format!("{:.0}", over.max)]);
         kit::say_ui(ui, &words, palette.text);
     }
-    kept_ui(ui, pane, &values, refusal);
+    kept_ui(ui, pane, &values, refusal.filter(|_| !passes));
 }
 
 /// Whether the best is kept, and why it cannot be.

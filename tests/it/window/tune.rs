@@ -110,8 +110,9 @@ fn hold(bench: &mut Bench, millis: u64) {
 fn check_nothing(bench: &Bench, why: &str) {
     assert!(!runs(bench), "{why}");
     assert!(!bench.state().hand().connection.is_armed(), "{why}");
-    let angles = |write: &Write| [ANGLE_SET, SPEED_SET, FORCE_SET].contains(&write.address);
-    assert!(!bench.writes().iter().any(angles), "{why}");
+    let arms = |write: &Write| [SPEED_SET, FORCE_SET].contains(&write.address);
+    assert!(!bench.writes().iter().any(arms), "{why}");
+    assert_eq!(bench.angle(Dof::Index), 1000, "{why}");
 }
 
 #[test]
@@ -121,7 +122,7 @@ fn held_for_a_second_the_button_arms_the_hand_and_then_starts() {
     assert!(bench.shows("Hold for 1 s, by mouse or Enter: then the hand moves."));
     hold(&mut bench, 900);
     check_nothing(&bench, "not yet");
-    bench.until(1000, |bench| runs(bench));
+    bench.until(1000, runs);
     let is_angle = |write: &Write| write.address == ANGLE_SET;
     let writes = bench.writes();
     let limits = |address| writes.iter().position(|write| write.address == address);
@@ -152,7 +153,7 @@ fn the_enter_key_held_on_the_button_does_the_same() {
     check_nothing(&bench, "let go too early");
     bench.focus_button(GUARDED);
     bench.key_down(Key::Enter);
-    bench.until(1500, |bench| runs(bench));
+    bench.until(1500, runs);
 }
 
 #[test]
@@ -518,7 +519,7 @@ fn a_lost_link_ends_it() {
         matches!(why, Abort::LinkLost | Abort::NotRead { .. }),
         "{why:?}"
     );
-    assert!(bench.is_disabled(Role::Button, "Start trials"));
+    assert!(bench.is_disabled(Role::Button, GUARDED));
 }
 
 #[test]
