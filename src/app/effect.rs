@@ -111,7 +111,7 @@ impl Action {
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
-            | Self::Trial(TrialAction::Start) => Effect::Moves,
+            | Self::Trial(TrialAction::Start | TrialAction::ArmAndStart) => Effect::Moves,
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)

@@ -136,6 +136,8 @@ pub enum NoticeKind {
     },
     /// Something else was asked of the hand while a series runs. Nothing was sent.
     SeriesRuns,
+    /// The hand was to be armed for a series, and is not, or the plan is another by now.
+    SeriesNotBegun,
     /// An exhibition needs a hand that is connected, and that nothing else is done to.
     ExhibitNotBegun,
     /// An exhibition is for one hand, and several are connected.

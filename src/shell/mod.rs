@@ -69,8 +69,13 @@ impl DesktopApp {
         if self.window.view() == View::Traffic {
             self.app.read_traffic(now);
         }
-        if self.window.view() == View::Device {
-            self.app.look_at_params(now);
+        match self.window.view() {
+            View::Device => self.app.look_at_params(now),
+            // What was tried may be made the default, which is compared with what the hand keeps.
+            View::Tune | View::Compare if self.app.may_keep_tried() => {
+                self.app.look_at_params(now);
+            }
+            _ => {}
         }
         for action in self.window.ui(ui, self.app.state()) {
             match action {

@@ -100,6 +100,11 @@ impl Connection {
         self.status.state == LinkState::Armed
     }
 
+    /// Whether the hand was stopped or disarmed from this window since then.
+    pub fn is_disarmed_since(&self, then: Moment) -> bool {
+        self.disarmed_at.is_some_and(|at| at >= then)
+    }
+
     /// How long an armed hand was asked nothing, once that is long.
     pub fn idle(&self, now: Moment) -> Option<Duration> {
         let idle = now.since(self.asked_at);

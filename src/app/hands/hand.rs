@@ -54,6 +54,8 @@ pub struct Hand {
     pub sequence: Option<SequenceRun>,
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
+    /// The plan that begins once the arming that was asked for with it holds, and when that was.
+    pub(crate) series_asked: Option<(TrialPlan, Moment)>,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
@@ -200,6 +202,7 @@ impl Hand {
             readings: Readings::default(),
             sequence: None,
             series: None,
+            series_asked: None,
             inputs: HandInputs::default(),
             recording: None,
             recorded: None,
@@ -243,6 +246,7 @@ impl Hand {
             }
             Record::State { .. } | Record::Answered { .. } => {}
             Record::ArmRefused { at, reason } => {
+                self.series_asked = None;
                 notices.push(*at, NoticeKind::ArmRefused(*reason));
             }
         }
@@ -306,6 +310,22 @@ impl Hand {
         }
     }
 
+    /// Arms the hand for a series, which begins once that holds. Whatever refuses, stops or disarms ends the wish.
+    pub(crate) fn arm_for_series(&mut self, plan: TrialPlan, ctx: &mut Ctx<'_>) {
+        let refusal = self.series_refusal(&plan);
+        if refusal.is_some_and(|why| why != StartRefusal::NotArmed) {
+            return;
+        }
+        let may_arm = self.activity().lets_arm() && self.arm_refusal(ctx.now).is_none();
+        self.arm(ctx);
+        self.series_asked = may_arm.then_some((plan, ctx.now));
+    }
+
+    /// Whether a series begins as soon as the hand is armed for it.
+    pub const fn arms_for_series(&self) -> bool {
+        self.series_asked.is_some()
+    }
+
     /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
     /// nothing could be sent.
     pub(crate) fn stop(&mut self, ctx: &mut Ctx<'_>) {
@@ -316,6 +336,7 @@ impl Hand {
         if let Some(run) = &mut self.series {
             run.end(Abort::Person);
         }
+        self.series_asked = None;
         self.controls.held.forget_press();
         self.follow();
     }
@@ -323,6 +344,7 @@ impl Hand {
     /// Lets no setpoint pass any more. The hand keeps what it was told.
     pub(crate) fn disarm(&mut self, now: Moment) {
         self.connection.disarm(now);
+        self.series_asked = None;
         self.controls.held.forget_press();
         self.follow();
     }

@@ -167,9 +167,16 @@ impl ParamsState {
 
     /// Why the hand's parameters cannot be written to its flash now.
     pub fn save_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
+        self.save_refusal_with(&Params::default(), link)
+    }
+
+    /// The same where these values are staged first.
+    pub fn save_refusal_with(&self, more: &Params, link: &LinkStatus) -> Option<ParamRefusal> {
         // A SAVE whose result is in doubt may be tried again, and what was never saved here may be elsewhere than in flash.
         let is_known = self.known.saved.is_some() && self.known.doubtful.is_none();
-        let nothing = is_known && self.unsaved().is_empty();
+        let before = self.before_changes(&self.live_params());
+        let after = self.to_save().with(more);
+        let nothing = is_known && before.differences(&after).is_empty();
         let refusals = [
             (self.files.is_none(), ParamRefusal::NoFolder),
             (self.live.is_empty(), ParamRefusal::NothingRead),

@@ -14,6 +14,11 @@ use crate::app::trials::work::SeriesHand;
 use crate::app::trials::{SeriesRun, TrialsState};
 use crate::hand::Moment;
 use crate::record::EventKind;
+use crate::trials::TrialPlan;
+use std::time::Duration;
+
+/// A hand that is not armed by then, on the slowest of wires, is not any more.
+const ARM_WITHIN: Duration = Duration::from_secs(2);
 
 /// What all hands have in common.
 pub(super) struct Shared<'a> {
@@ -46,6 +51,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
         ctx.tell(NoticeKind::IdleDisarmed);
     }
     hand.params.tick(&hand.connection, ctx);
+    start_asked(hand, shared.trials, ctx);
     tick_series(hand, shared.trials, ctx);
     tick_procedure(hand, shared.settings, ctx);
     if let Some(link) = hand.connection.link() {
@@ -84,6 +90,25 @@ pub(super) fn start_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &Ctx<
         connection,
     };
     hand.series = Some(SeriesRun::begin(at, trials, ctx));
+}
+
+/// Begins the series that the hand was to be armed for, once it is. One that was not armed in time, or for which another
+/// plan is written by now, does not begin.
+fn start_asked(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
+    let is_armed = hand.connection.is_armed();
+    let is_over = |(plan, at): &mut (TrialPlan, Moment)| {
+        let is_late = ctx.now.since(*at) > ARM_WITHIN;
+        is_armed || is_late || *plan != trials.plan
+    };
+    let Some((plan, _)) = hand.series_asked.take_if(is_over) else {
+        return;
+    };
+    if is_armed && plan == trials.plan {
+        start_series(hand, trials, ctx);
+    }
+    if hand.series.is_none() {
+        ctx.tell(NoticeKind::SeriesNotBegun);
+    }
 }
 
 /// Takes in what the series did.

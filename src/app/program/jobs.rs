@@ -108,6 +108,15 @@ impl Jobs {
                 });
                 state.trials = trials;
             }
+            TrialAction::ArmAndStart => {
+                let may_start = trials.running.is_none() && trials.plan.check().is_ok();
+                let plan = may_start.then(|| trials.plan.clone());
+                hands::with_shown(state, env, |hand, _, ctx| {
+                    if let Some(plan) = plan {
+                        hand.arm_for_series(plan, ctx);
+                    }
+                });
+            }
             TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
             TrialAction::Open(typed) => {
                 trials.is_opening = true;

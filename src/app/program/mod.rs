@@ -19,6 +19,7 @@ use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::Exhibition;
 use crate::app::files::export::{self, Export};
+use crate::app::hand::Activity;
 use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::hands::hand::REST_WITHIN;
@@ -356,6 +357,13 @@ impl App {
         }
         let hand = self.state.hands.shown_mut();
         hand.params.look_at(&hand.connection, &self.env, now);
+    }
+
+    /// Whether something was tried, and reading what the hand keeps comes between nothing and the hand.
+    pub fn may_keep_tried(&self) -> bool {
+        let hand = self.state.hand();
+        let is_free = hand.activity() == Activity::Idle && !hand.connection.is_armed();
+        is_free && !self.state.trials.sessions.is_empty()
     }
 
     /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.

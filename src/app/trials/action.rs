@@ -11,6 +11,8 @@ pub enum TrialAction {
     Plan(Box<TrialPlan>),
     /// Run the plan, in the arming that is in force. Needs arming.
     Start,
+    /// Arm the hand, and run the plan as soon as that holds.
+    ArmAndStart,
     /// Give a session this note.
     Note(SessionId, String),
     /// Give a session these tags, separated by commas.

@@ -5,9 +5,9 @@ use crate::app::trials::lines::{JointLines, TrialQuantity};
 use crate::app::trials::state::{SessionId, SessionTrial, TrialSession, TrialsState};
 use crate::hand::Dof;
 use crate::history::decimated;
-use crate::trials::best::{Score, scores};
+use crate::trials::best::{Score, best, scores};
 use crate::trials::session::SessionHead;
-use crate::trials::{JointMetrics, TrialSetting, TrialSummary};
+use crate::trials::{Criterion, JointMetrics, TrialSetting, TrialSummary};
 
 /// Sessions that are shown at once: as many as there are kinds of strokes that an eye tells apart.
 pub const SHOWN_MAX: usize = 4;
@@ -107,6 +107,8 @@ pub struct Comparison {
     pub scores: Vec<Score>,
     /// Why settings are not judged over all sessions; empty if they are.
     pub differences: Vec<SessionDifference>,
+    /// The best of the scores by the criterion that was judged by last.
+    pub best: Option<Score>,
 }
 
 /// Its state by which a change is seen: trials are added to a session and never change.
@@ -147,9 +149,21 @@ impl Comparison {
             joints: joints(&pooled),
             scores: scores(summaries(&pooled)),
             differences,
+            best: None,
             focus,
             of,
         }
+    }
+
+    /// Judges what settings come to by this.
+    pub fn judge(&mut self, criterion: Criterion) {
+        self.best = best(&self.scores, criterion).cloned();
+    }
+
+    /// Whether this setting is the best.
+    pub fn is_best(&self, setting: TrialSetting) -> bool {
+        let best = self.best.as_ref();
+        best.is_some_and(|best| best.setting == setting)
     }
 
     /// True while it would come out the same.

@@ -58,7 +58,10 @@ impl TrialsState {
                 }
             }
             TrialAction::CancelForget => self.to_confirm = None,
-            TrialAction::Start | TrialAction::Open(_) | TrialAction::Save(..) => {}
+            TrialAction::Start
+            | TrialAction::ArmAndStart
+            | TrialAction::Open(_)
+            | TrialAction::Save(..) => {}
         }
     }
 
@@ -98,12 +101,10 @@ pub fn start_refusal(
     locked: &PerDof<bool>,
 ) -> Option<StartRefusal> {
     if runs {
-        Some(StartRefusal::Runs)
-    } else if epoch.is_none() {
-        Some(StartRefusal::NotArmed)
-    } else {
-        plan.locked(locked).map(StartRefusal::Locked)
+        return Some(StartRefusal::Runs);
     }
+    let locked = plan.locked(locked).map(StartRefusal::Locked);
+    locked.or_else(|| epoch.is_none().then_some(StartRefusal::NotArmed))
 }
 
 /// A hand that is armed for a series.

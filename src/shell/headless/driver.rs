@@ -353,7 +353,8 @@ impl Driver {
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is
     /// opened: that is waited for.
     pub fn picture(&mut self, view: View) -> Picture {
-        if view == View::Device {
+        let is_tried = !self.desktop_app.state().trials.sessions.is_empty();
+        if view == View::Device || is_tried && matches!(view, View::Tune | View::Compare) {
             self.read_rows();
         }
         let now = self.now();

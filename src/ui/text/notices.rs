@@ -223,6 +223,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
         NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
+        NoticeKind::SeriesNotBegun => said(tune::NOT_BEGUN),
         NoticeKind::ExhibitWantsOneHand => said(window::EXHIBIT_ONE_HAND),
         NoticeKind::OpenElsewhere { endpoint, hand } => {
             look.fill(window::OPEN_ELSEWHERE, &[endpoint, hand])

@@ -35,6 +35,8 @@ pub(crate) const PLAY: Icon = icons::ICON_PLAY_ARROW.codepoint;
 pub(crate) const STAR: Icon = icons::ICON_BOOKMARK_ADDED.codepoint;
 /// Could be kept.
 pub(crate) const NO_STAR: Icon = icons::ICON_BOOKMARK.codepoint;
+/// The best of several.
+pub(crate) const BEST: Icon = icons::ICON_STAR.codepoint;
 /// More of the same.
 pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 
@@ -42,7 +44,7 @@ pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 pub(crate) const BACKSPACE: Icon = icons::ICON_BACKSPACE.codepoint;
 
 #[cfg(test)]
-pub(crate) const ALL: [Icon; 17] = [
+pub(crate) const ALL: [Icon; 18] = [
     TO_LEFT, TO_RIGHT, TO_TOP, TO_BOTTOM, MENU, LOCKED, UNLOCKED, TUNE, LINKED, WARNING, CLOSE,
-    PAUSE, PLAY, STAR, NO_STAR, MORE, BACKSPACE,
+    PAUSE, PLAY, STAR, NO_STAR, BEST, MORE, BACKSPACE,
 ];

@@ -3,7 +3,16 @@
 use crate::app::settings::Theme;
 use crate::hand::{Fault, PerDof, Status};
 use crate::ui::theme::hand::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
-use egui::Color32;
+use egui::{Color32, Rgba};
+
+/// White and black are read equally well on a ground of this luminance.
+const HALF_BRIGHT: f32 = 0.179;
+
+/// Relative luminance as WCAG 2 defines it.
+fn luminance(color: Color32) -> f32 {
+    let color = Rgba::from(color);
+    0.2126 * color.r() + 0.7152 * color.g() + 0.0722 * color.b()
+}
 
 /// All colours of one theme, by what they are for.
 #[derive(Debug)]
@@ -94,12 +103,12 @@ static DARK: Palette = Palette {
     studio: &DARK_STUDIO,
     signs: &DARK_SIGNS,
     dof: PerDof::new([
-        Color32::from_rgb(0x5A, 0xB4, 0xE8),
-        Color32::from_rgb(0xE8, 0xA0, 0x20),
-        Color32::from_rgb(0x2F, 0xC0, 0x96),
-        Color32::from_rgb(0xEE, 0xE2, 0x5A),
-        Color32::from_rgb(0xF0, 0x78, 0x4A),
-        Color32::from_rgb(0xD8, 0x8A, 0xC0),
+        Color32::from_rgb(0x54, 0xB9, 0xFF),
+        Color32::from_rgb(0xEB, 0xA1, 0x0C),
+        Color32::from_rgb(0x2D, 0xBE, 0x8C),
+        Color32::from_rgb(0xE7, 0xE3, 0x48),
+        Color32::from_rgb(0xEA, 0x6C, 0x3F),
+        Color32::from_rgb(0xC7, 0x81, 0xC3),
     ]),
     theme: Theme::Dark,
 };
@@ -133,12 +142,12 @@ static LIGHT: Palette = Palette {
     studio: &LIGHT_STUDIO,
     signs: &LIGHT_SIGNS,
     dof: PerDof::new([
-        Color32::from_rgb(0x00, 0x67, 0xA1),
-        Color32::from_rgb(0x8A, 0x56, 0x00),
-        Color32::from_rgb(0x00, 0x6B, 0x4F),
-        Color32::from_rgb(0x69, 0x60, 0x00),
-        Color32::from_rgb(0xAD, 0x3E, 0x0A),
-        Color32::from_rgb(0x98, 0x3E, 0x77),
+        Color32::from_rgb(0x1A, 0x65, 0xC7),
+        Color32::from_rgb(0x8F, 0x4B, 0x0F),
+        Color32::from_rgb(0x00, 0x74, 0x60),
+        Color32::from_rgb(0x31, 0x46, 0x23),
+        Color32::from_rgb(0xCC, 0x13, 0x54),
+        Color32::from_rgb(0x92, 0x3C, 0x94),
     ]),
     theme: Theme::Light,
 };
@@ -164,12 +173,12 @@ impl Palette {
         }
     }
 
-    /// Text on the heat scale; `bright` where the colour is.
-    pub(crate) fn on_heat(&self, bright: bool) -> Color32 {
-        if (self.theme == Theme::Dark) == bright {
-            self.on_armed
+    /// Text on any colour.
+    pub(crate) fn ink_on(ground: Color32) -> Color32 {
+        if luminance(ground) > HALF_BRIGHT {
+            Color32::BLACK
         } else {
-            self.on_strong
+            Color32::WHITE
         }
     }
 
@@ -182,15 +191,16 @@ impl Palette {
         })
     }
 
-    /// The colour of one of `count` settings. They run from cool to warm, as no set of joints does.
-    pub(crate) fn setting(&self, number: u8, count: u8) -> Color32 {
-        let part = f64::from(number) / f64::from(count.saturating_sub(1).max(1));
+    /// A colour of a scale from cool to warm, as no set of joints is; `part` is 0..=1 and is cut to it. What is drawn with
+    /// it is seen on the ground of a plot wherever it lies; the best of all is [`Self::ok`], which is no part of it.
+    pub(crate) fn scale(&self, part: f64) -> Color32 {
+        let part = part.clamp(0.0, 1.0);
         // The ends that would vanish on the ground are left out.
         let level = match self.theme {
-            Theme::Dark => 0.25 + 0.75 * part,
-            Theme::Light => 0.85 * part,
+            Theme::Dark => 0.42 + 0.58 * part,
+            Theme::Light => 0.58 * part,
         };
-        let color = colorous::PLASMA.eval_continuous(level.min(1.0));
+        let color = colorous::PLASMA.eval_continuous(level);
         Color32::from_rgb(color.r, color.g, color.b)
     }
 
@@ -211,22 +221,119 @@ impl Palette {
 mod tests {
     use super::*;
 
-    /// Relative luminance as WCAG 2 defines it.
-    fn luminance(color: Color32) -> f64 {
-        let linear = |part: u8| {
-            let part = f64::from(part) / 255.0;
-            if part <= 0.039_28 {
-                part / 12.92
-            } else {
-                ((part + 0.055) / 1.055).powf(2.4)
-            }
-        };
-        0.2126 * linear(color.r()) + 0.7152 * linear(color.g()) + 0.0722 * linear(color.b())
-    }
-
-    fn contrast(one: Color32, other: Color32) -> f64 {
+    fn contrast(one: Color32, other: Color32) -> f32 {
         let (one, other) = (luminance(one) + 0.05, luminance(other) + 0.05);
         (one / other).max(other / one)
+    }
+
+    /// What an eye with all its cones sees, and those without the cones for red or for green, in linear red, green and
+    /// blue (Machado, Oliveira and Fernandes 2009, severity 1).
+    const EYES: [(&str, f64, [[f64; 3]; 3]); 3] = [
+        (
+            "all cones",
+            0.13,
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        ),
+        (
+            "no cones for red",
+            0.075,
+            [
+                [0.152_286, 1.052_583, -0.204_868],
+                [0.114_503, 0.786_281, 0.099_216],
+                [-0.003_882, -0.048_116, 1.051_998],
+            ],
+        ),
+        (
+            "no cones for green",
+            0.075,
+            [
+                [0.367_322, 0.860_646, -0.227_968],
+                [0.280_085, 0.672_501, 0.047_413],
+                [-0.011_820, 0.042_940, 0.968_881],
+            ],
+        ),
+    ];
+
+    /// The best of a scale is drawn thicker than the others, too.
+    const BEST_APART: f64 = 0.05;
+
+    fn product(rows: [[f64; 3]; 3], of: [f64; 3]) -> [f64; 3] {
+        rows.map(|row| row.iter().zip(of).map(|(a, b)| a * b).sum())
+    }
+
+    /// Lightness and the two axes of OKLab, in which equal distances look about equal; one of 0.02 is just seen.
+    fn lab(color: Color32, eye: [[f64; 3]; 3]) -> [f64; 3] {
+        let color = Rgba::from(color);
+        let linear = [color.r(), color.g(), color.b()].map(f64::from);
+        let seen = product(eye, linear).map(|part| part.clamp(0.0, 1.0));
+        let cones = product(
+            [
+                [0.412_221, 0.536_333, 0.051_446],
+                [0.211_903, 0.680_700, 0.107_397],
+                [0.088_302, 0.281_719, 0.629_979],
+            ],
+            seen,
+        );
+        product(
+            [
+                [0.210_454, 0.793_618, -0.004_072],
+                [1.977_998, -2.428_592, 0.450_594],
+                [0.025_904, 0.782_772, -0.808_676],
+            ],
+            cones.map(f64::cbrt),
+        )
+    }
+
+    fn distance(one: Color32, other: Color32, eye: [[f64; 3]; 3]) -> f64 {
+        let parts = lab(one, eye).into_iter().zip(lab(other, eye));
+        parts.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn joints_are_told_apart_by_every_common_eye_in_both_themes() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let colors = Palette::of(theme).dof;
+            for (eye, least, matrix) in EYES {
+                for (one, a) in colors.iter() {
+                    for (other, b) in colors.iter().filter(|(other, _)| *other != one) {
+                        let found = distance(*a, *b, matrix);
+                        assert!(
+                            found >= least,
+                            "{theme:?}, {eye}: {one:?} and {other:?} are {found:.3} apart"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn scales_are_seen_on_the_ground_of_a_plot_and_the_best_is_never_the_darkest() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            let steps = (0..=20).map(|step| palette.scale(f64::from(step) / 20.0));
+            let steps: Vec<Color32> = steps.collect();
+            for color in steps.iter().chain([&palette.ok]) {
+                for ground in [palette.sunken, palette.card] {
+                    let found = contrast(*color, ground);
+                    assert!(
+                        found >= 3.0,
+                        "{theme:?} {color:?} on {ground:?}: {found:.2}"
+                    );
+                }
+                let found = contrast(Palette::ink_on(*color), *color);
+                assert!(found >= 4.5, "{theme:?} words on {color:?}: {found:.2}");
+            }
+            let darkest = steps.iter().map(|color| luminance(*color));
+            let darkest = darkest.fold(f32::INFINITY, f32::min);
+            assert!(luminance(palette.ok) > darkest, "{theme:?}");
+            for (eye, _, matrix) in EYES {
+                for color in &steps {
+                    let found = distance(palette.ok, *color, matrix);
+                    assert!(found >= BEST_APART, "{theme:?}, {eye}: best and {color:?}");
+                }
+            }
+        }
     }
 
     #[test]

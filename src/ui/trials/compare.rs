@@ -1,86 +1,149 @@
-//! The view that compares trials: sessions, curves over each other, what was measured, the map of overshoot and the
-//! best. Holds what is chosen, no trial.
+//! The results of trials: how the series goes or ended, curves over each other, what was measured, the map of overshoot
+//! and the best. Holds what is chosen, no trial.
 
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, ButtonRole, Card, Choice, Label, Look, Pane, TextField};
+use crate::ui::kit::{
+    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, TextField, Weight,
+};
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
-use crate::ui::trials::compare_best::BestView;
+use crate::ui::trials::compare_best::{self, BestView};
 use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::SessionSheet;
-use crate::ui::trials::compare_table::TableView;
-use egui::{Color32, Panel, ScrollArea, Ui};
+use crate::ui::trials::compare_table::{self, TableView};
+use crate::ui::trials::tune_live::{self, LiveChart};
+use egui::{Align2, Panel, ScrollArea, Sense, Ui, vec2};
 
 const NOTE_CHARS: usize = 300;
+/// From this width on the best stands beside curves and table, and from that one on beside the curves.
+const WIDE: f32 = 1500.0;
+const BESIDE: f32 = 640.0;
+/// Room that curves, their choices and the map of overshoot get before the table does.
+const CURVES_LEAST: f32 = 272.0;
+/// Most width of where a session lies.
+const PLACE: f32 = 280.0;
 
-/// What the view needs between frames.
+/// What the results need between frames.
 #[derive(Debug, Default)]
-pub(crate) struct CompareView {
+pub(crate) struct ResultsView {
     chosen: ShownSessions,
     comparison: Option<Comparison>,
     curves: CurvesView,
+    live: LiveChart,
     table: TableView,
     /// The trial that stands out.
     strong: Option<TrialKey>,
     best: BestView,
 }
 
-impl CompareView {
-    /// Draws the view.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+impl ResultsView {
+    /// Draws the results; `fold_ui` stands at the left end of their head.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        fold_ui: impl FnOnce(&mut Ui, &mut Pane<'_>),
+    ) {
         let look = pane.look;
         let trials = &pane.state.trials;
         self.chosen.follow(&trials.sessions);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             let focus = self.chosen.focus.and_then(|id| trials.session(id));
-            ui.horizontal(|ui| self.head_ui(ui, pane, focus));
-            let (told, color) = told(pane.state, look, focus);
-            Label::new(&told, color).small().ui(ui);
+            ui.horizontal(|ui| {
+                fold_ui(ui, pane);
+                kit::head_ui(ui, look, look.say(tune::RESULTS), |ui| {
+                    if let Some(session) = focus {
+                        self.files_ui(ui, pane, session);
+                    }
+                });
+            });
+            if let Some(refused) = &trials.refused {
+                kit::say_ui(ui, &notices::notice(look, refused), look.palette.warn);
+            }
             if trials.asks_path
                 && let Some(path) = path_ui(ui, look, "session")
             {
-                pane.actions
-                    .push(Action::Trial(TrialAction::Open(Some(path))));
+                let open = TrialAction::Open(Some(path));
+                pane.actions.push(Action::Trial(open));
             }
-            let Some(focus) = focus else {
-                ui.centered_and_justified(|ui| {
-                    Label::muted(look, tune::COMPARE_EMPTY).ui(ui);
-                });
-                return;
+            let Some(session) = focus else {
+                return empty_ui(ui, pane);
             };
-            compare_list::list_ui(ui, SessionSheet { look, trials }, &mut self.chosen);
-            let focus = self
-                .chosen
-                .focus
-                .and_then(|id| trials.session(id))
-                .unwrap_or(focus);
-            self.sessions_ui(ui, pane, focus);
+            tune_live::progress_ui(ui, pane);
+            if trials.sessions.len() > 1 {
+                compare_list::list_ui(ui, SessionSheet { look, trials }, &mut self.chosen);
+            }
+            let focus = self.chosen.focus.and_then(|id| trials.session(id));
+            let session = focus.unwrap_or(session);
+            if trials.running != Some(session.id) {
+                end_ui(ui, pane, session);
+            }
+            if trials.running != Some(session.id) && ui.available_width() >= BESIDE {
+                ui.horizontal(|ui| words_ui(ui, pane, session));
+            }
+            self.session_ui(ui, pane, session);
         });
     }
 
-    /// Curves and best over the table.
-    fn sessions_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
-        let comparison = self.comparison(pane, focus.id);
+    /// Curves over the table, and the best beside them where there is room.
+    fn session_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
+        let mut comparison = self.comparison(pane, focus.id);
+        comparison.judge(self.best.criterion());
         let room = ui.available_size();
+        let run = pane.state.hand().series.as_ref();
+        let runs = run.is_some_and(|run| run.session == focus.id);
+        let is_empty = comparison.rows.is_empty();
+        if runs && is_empty {
+            tune_live::force_ui(ui, pane, &mut self.live);
+            self.comparison = Some(comparison);
+            return;
+        }
+        // What is armed cannot be given defaults: the best waits for the end.
+        if !runs && room.x >= WIDE {
+            self.best_ui(ui, pane, &comparison, focus);
+        }
+        let height = compare_table::height(comparison.rows.len());
+        let most = (room.y - CURVES_LEAST).max(room.y * 0.4);
         let table = Panel::bottom("trial table");
-        kit::bare(table, room.y * 0.48, theme::GAP_TOP).show(ui, |ui| {
+        let table = kit::bare(table, height.min(most), theme::GAP_TOP);
+        table.show(ui, |ui| {
             let replay = self.table.ui(ui, pane, &comparison, &mut self.strong);
             pane.actions.extend(replay.map(Action::Session));
         });
-        let width = (room.x * 0.36).clamp(256.0, 440.0);
-        kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                self.best.ui(ui, pane, &comparison, focus);
+        if !runs && (BESIDE..WIDE).contains(&room.x) {
+            self.best_ui(ui, pane, &comparison, focus);
+        } else if !runs && room.x < BESIDE {
+            compare_best::best_ui(ui, pane, &comparison);
+        }
+        if runs && ui.available_width() >= BESIDE / 2.0 {
+            let width = ui.available_width() * 0.4;
+            let live = kit::bare(Panel::left("live"), width, theme::GAP_RIGHT);
+            live.show(ui, |ui| {
+                tune_live::force_ui(ui, pane, &mut self.live);
             });
-        });
+        }
         self.curves.ui(ui, pane, &comparison, &mut self.strong);
         self.comparison = Some(comparison);
+    }
+
+    fn best_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        comparison: &Comparison,
+        focus: &TrialSession,
+    ) {
+        let width = (ui.available_width() * 0.36).clamp(288.0, 440.0);
+        kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                self.best.ui(ui, pane, comparison, focus);
+            });
+        });
     }
 
     /// The sessions side by side: reckoned again only when they changed.
@@ -96,72 +159,110 @@ impl CompareView {
         Comparison::of(trials, shown, focus)
     }
 
-    /// Note, tags and files of the session at hand.
-    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, now: Option<&TrialSession>) {
+    /// What is done with the files of the session at hand, from right to left.
+    fn files_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
-        let none = now.is_none().then(|| look.say(tune::COMPARE_EMPTY));
-        let id = now.map(|own| own.id);
-        let runs = id.is_some() && id == pane.state.trials.running;
-        let busy = none.or(runs.then(|| look.say(tune::SAVE_RUNS)));
-        let read = now.filter(|own| matches!(own.origin, SessionOrigin::Folder(_)));
-        let read = read.map(|_| look.say(tune::SAVE_READ));
-        let save = id.map(|id| TrialAction::Save(id, Some(self.best.criterion())));
-        let forget = id.map(TrialAction::Forget);
-        kit::right_ui(ui, |ui| {
-            for (text, disabled, action) in [
-                (tune::FORGET, busy, forget),
-                (tune::SAVE, busy.or(read), save),
-                (tune::OPEN, None, Some(TrialAction::Open(None))),
-            ] {
-                let button = Button::said(look, text).disabled(disabled);
-                if button.ui(ui, look).clicked() {
-                    pane.actions.extend(action.map(Action::Trial));
-                }
-            }
-            if let Some(own) = now {
-                kit::left_ui(ui, |ui| self.words_ui(ui, pane, own));
-            }
-        });
+        let runs = pane.state.trials.running == Some(session.id);
+        let runs = runs.then(|| look.say(tune::SAVE_RUNS));
+        let forget = Button::said(look, tune::FORGET).disabled(runs);
+        let forget = forget.weight(Weight::Quiet);
+        forget.on_click(ui, pane, Action::Trial(TrialAction::Forget(session.id)));
+        self.place_ui(ui, pane, session, runs);
+        let open = Button::said(look, tune::OPEN).weight(Weight::Quiet);
+        open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
     }
 
-    fn words_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
+    /// Where the session lies; a press saves it in a folder that is chosen.
+    fn place_ui(
+        &self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        session: &TrialSession,
+        runs: Option<&str>,
+    ) {
         let look = pane.look;
-        let (id, head) = (session.id, &session.head);
-        let tags = head.tags.join(", ");
-        let half = (ui.available_width() - theme::GAP) / 2.0;
-        let note = TrialAction::Note as fn(SessionId, String) -> TrialAction;
-        for (name, value, action) in [
-            (tune::NOTE, &head.note, note),
-            (tune::TAGS, &tags, TrialAction::Tags),
-        ] {
-            let field = TextField::new(look.say(name), NOTE_CHARS).hint(look.tip(name));
-            ui.push_id((id, name.en), |ui| {
-                ui.set_max_width(half);
-                if let Some(text) = field.ui(ui, pane, value) {
-                    pane.actions.push(Action::Trial(action(id, text)));
-                }
-            });
+        let (words, read) = match &session.origin {
+            SessionOrigin::Unsaved => (look.say(tune::SAVE).to_owned(), None),
+            SessionOrigin::Saved(place) => (look.fill(tune::SAVED_IN, &[&place.display()]), None),
+            SessionOrigin::Folder(place) => {
+                let words = look.fill(tune::READ_FROM, &[&place.display()]);
+                (words, Some(look.say(tune::SAVE_READ)))
+            }
+        };
+        let tip = format!("{words}\n{}", look.tip(tune::SAVE));
+        let is_saved = session.origin.is_in_files();
+        let button = Button::new(&words, if is_saved { &tip } else { look.tip(tune::SAVE) });
+        let button = button.named(look.say(tune::SAVE)).disabled(runs.or(read));
+        let width = kit::text_width(ui, &words, theme::body()) + 2.0 * theme::PAD;
+        let most = (ui.available_width() * 0.5).min(PLACE);
+        let (id, place) = ui.allocate_space(vec2(width.min(most), theme::CONTROL));
+        let response = button.put(ui, look, place, id);
+        ui.ctx()
+            .accesskit_node_builder(response.id, |node| node.set_value(words));
+        if response.clicked() {
+            let save = TrialAction::Save(session.id, Some(self.best.criterion()));
+            pane.actions.push(Action::Trial(save));
         }
     }
 }
 
-/// What became of the last wish about files, else where the session at hand lies.
-pub(crate) fn told(state: &State, look: Look, now: Option<&TrialSession>) -> (String, Color32) {
-    let palette = look.palette;
-    if let Some(refused) = &state.trials.refused {
-        return (notices::notice(look, refused), palette.warn);
+/// How a series ended.
+fn end_ui(ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let (ended, color) = match &session.head.aborted {
+        None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
+        Some(why) => (tune::ended(look, why), palette.warn),
+    };
+    let is_last = pane.state.trials.last == Some(session.id);
+    let words = if is_last {
+        look.fill(tune::LAST, &[&ended])
+    } else {
+        ended
+    };
+    kit::say_ui(ui, &words, color);
+}
+
+/// Note and tags of the session at hand, side by side.
+fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
+    let look = pane.look;
+    let (id, head) = (session.id, &session.head);
+    let tags = head.tags.join(", ");
+    let note = TrialAction::Note as fn(SessionId, String) -> TrialAction;
+    let share = ui.available_width() / 2.0;
+    for (name, value, action) in [
+        (tune::NOTE, &head.note, note),
+        (tune::TAGS, &tags, TrialAction::Tags),
+    ] {
+        let field = TextField::new(look.say(name), NOTE_CHARS).hint(look.tip(name));
+        let size = vec2(share - theme::GAP, theme::CONTROL);
+        ui.push_id((id, name.en), |ui| {
+            kit::cell_ui(ui, size, |ui| {
+                Label::note(look, name).ui(ui);
+                if let Some(text) = field.ui(ui, pane, value) {
+                    pane.actions.push(Action::Trial(action(id, text)));
+                }
+            });
+        });
     }
-    match now.map(|own| &own.origin) {
-        None => (String::new(), palette.muted),
-        Some(SessionOrigin::Unsaved) => (look.say(tune::NOT_SAVED).into(), palette.muted),
-        Some(SessionOrigin::Saved(place)) => {
-            (look.fill(tune::SAVED_IN, &[&place.display()]), palette.ok)
-        }
-        Some(SessionOrigin::Folder(place)) => {
-            let words = look.fill(tune::READ_FROM, &[&place.display()]);
-            (words, palette.muted)
-        }
-    }
+}
+
+/// Nothing to show yet: why, and what to do.
+fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() * 0.24);
+        let size = vec2(ui.available_width(), 64.0);
+        let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+        let (font, center) = (theme::icon_high(place.height()), Align2::CENTER_CENTER);
+        ui.painter()
+            .text(place.center(), center, theme::TUNE, font, palette.faint);
+        let title = Label::said(look, tune::IDLE_TITLE);
+        title.font(theme::title()).ui(ui);
+        Label::muted(look, tune::IDLE_BODY).wrap().ui(ui);
+        ui.add_space(theme::GAP);
+        let open = Button::said(look, tune::OPEN_EARLIER).large();
+        open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
+    });
 }
 
 /// The card of a session that is about to go and lies in no file.

@@ -1,27 +1,29 @@
-//! The map of overshoot over speed and threshold, and the best setting by what a person wants. Writes nothing.
+//! The map of overshoot over speed and threshold, and the best setting by what a person wants, which can be made the
+//! default. Writes nothing: a card asks first.
 
 use crate::app::action::Action;
+use crate::app::params::state::Doing;
+use crate::app::params::{ParamAction, ParamRefusal};
 use crate::app::trials::{Comparison, TrialSession};
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
-use crate::trials::best::{Score, best};
+use crate::params::values::Params;
+use crate::trials::best::{MetricSpread, Score};
 use crate::trials::{Criterion, TrialSetting};
-use crate::ui::kit::{Button, Label, NumberField, Pane};
-use crate::ui::text::tune;
-use crate::ui::theme;
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
+use crate::ui::text::{device, tune};
+use crate::ui::theme::{self, Palette};
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
 use egui::{
-    Align2, CornerRadius, Grid, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
-    vec2,
+    Align2, CornerRadius, Grid, Mesh, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// Overshoot that the fastest may have, g.
 const OVERSHOOT_G: f64 = 100.0;
-/// The overshoot that is as hot as can be, g.
-const HOTTEST_G: f64 = 1000.0;
-/// From this share of the heat on its colour is strong.
-const BRIGHT: f32 = 0.6;
+/// The bar that shows the colours of the map, in so many steps.
+const SCALE: Vec2 = vec2(96.0, 8.0);
+const SCALE_STEPS: u8 = 16;
 /// Room for a speed or a threshold beside the map.
 const HEAD: Vec2 = vec2(44.0, 17.0);
 /// Between its cells.
@@ -64,17 +66,30 @@ impl BestView {
         focus: &TrialSession,
     ) {
         let look = pane.look;
+        self.choice_ui(ui, pane);
+        best_ui(ui, pane, comparison);
+        let own = pane.state.hand().connection.name();
+        if focus.head.hand != own {
+            let words = look.fill(tune::TRIED_ON, &[&focus.head.hand]);
+            kit::say_ui(ui, &words, look.palette.warn);
+        }
+        if comparison.sessions().len() > 1 {
+            of_ui(ui, pane, comparison, focus);
+        }
+        ui.add_space(theme::STEP);
+        Label::note(look, tune::MAP).ui(ui);
+        map_ui(ui, pane, comparison);
+    }
+
+    /// By what the best is chosen.
+    fn choice_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
         ui.horizontal_wrapped(|ui| {
-            for (wanted, text) in [
+            let all = [
                 (Wanted::LeastOvershoot, tune::LEAST_OVER),
                 (Wanted::Fastest, tune::FASTEST),
-            ] {
-                let button = Button::new(look.say(text), look.tip(tune::BEST));
-                let button = button.choice(self.wanted == wanted);
-                if button.ui(ui, look).clicked() {
-                    self.wanted = wanted;
-                }
-            }
+            ];
+            kit::pick_ui(ui, look, (&mut self.wanted, tune::BEST.tip()), all);
         });
         ui.horizontal(|ui| {
             let name = look.say(tune::HOLD_AT_LEAST);
@@ -84,44 +99,87 @@ impl BestView {
                 self.steady_g = steady_g;
             }
         });
-        let best = best(&comparison.scores, self.criterion()).map(|score| score.setting);
-        best_ui(ui, pane, comparison, best);
-        if comparison.sessions().len() > 1 {
-            of_ui(ui, pane, comparison, focus);
-        }
-        Label::note(look, tune::MAP).ui(ui);
-        map_ui(ui, pane, &comparison.scores, best);
     }
 }
 
-fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison, best: Option<TrialSetting>) {
+/// The best, and what makes it the default.
+pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
     let (look, palette) = (pane.look, pane.look.palette);
+    let best = comparison.best.as_ref();
     let none = look.say(tune::BEST_NONE);
     let (text, color) = match best {
-        Some(setting) => (setting_words(setting), palette.ok),
+        Some(best) => (setting_words(best.setting), palette.ok),
         None => (none.to_owned(), palette.muted),
     };
+    let mut values = Params::default();
+    for (dof, best) in comparison
+        .joints
+        .iter()
+        .flat_map(|dof| best.map(|best| (*dof, best)))
+    {
+        for (id, value) in defaults(dof, best.setting) {
+            values.put(id, value);
+        }
+    }
+    let hand = pane.state.hand();
+    let refusal = hand
+        .params
+        .save_refusal_with(&values, &hand.connection.status);
+    // A hand that was just tried is soon seen to rest: only who asks is told.
+    let passes = refusal == Some(ParamRefusal::Moving);
+    let refusal = refusal.map(|why| look.say(device::refusal(why)));
+    let refusal = pane
+        .recorded()
+        .or(best.is_none().then_some(none))
+        .or(refusal);
     ui.horizontal_wrapped(|ui| {
+        if best.is_some() {
+            let star = Label::new(theme::BEST, color).font(theme::icon());
+            star.named(look.say(tune::BEST_SIGN)).ui(ui);
+        }
         let label = Label::new(&text, color).named(look.say(tune::BEST));
         label.font(theme::title()).ui(ui);
-        let button = Button::said(look, tune::PROMOTE);
-        let button = button.disabled(best.is_none().then_some(none));
-        let clicked = button.ui(ui, look).clicked();
-        if let Some(setting) = best.filter(|_| clicked) {
-            let joints = comparison.joints.iter();
-            pane.actions
-                .extend(joints.flat_map(|dof| staging(*dof, setting)));
+        let button = Button::said(look, tune::PROMOTE).weight(Weight::Strong);
+        if button.disabled(refusal).ui(ui, look).clicked() {
+            let staged = values.iter();
+            let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
+            pane.actions.extend(staged);
+            pane.actions.push(Action::Param(ParamAction::Save));
         }
     });
+    if let Some(over) = best.and_then(|best| best.overshoot_g) {
+        let words = look.fill(tune::BEST_OVER, &[&format!("{:.0}", over.max)]);
+        kit::say_ui(ui, &words, palette.text);
+    }
+    kept_ui(ui, pane, &values, refusal.filter(|_| !passes));
 }
 
-/// What stages a setting as the one after power-up.
-pub(crate) fn staging(dof: Dof, setting: TrialSetting) -> [Action; 2] {
+/// Whether the best is kept, and why it cannot be.
+fn kept_ui(ui: &mut Ui, pane: &Pane<'_>, values: &Params, refusal: Option<&str>) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let book = &pane.state.hand().params;
+    let is_held = !values.is_empty() && book.live_params().with(values) == book.live_params();
+    if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
+        kit::say_ui(ui, look.say(doing), palette.accent);
+    } else if let Some((end, _)) = book.save.as_ref().filter(|_| is_held) {
+        let color = if device::is_saved(end) {
+            palette.ok
+        } else {
+            palette.bad
+        };
+        kit::say_ui(ui, &device::save_end(look, end), color);
+    } else if let Some(refusal) = refusal.filter(|_| !values.is_empty()) {
+        kit::say_ui(ui, refusal, palette.muted);
+    }
+}
+
+/// The values after power-up that this setting stands for.
+fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
     let speed = Value::Number(setting.speed.get().into());
     let force = Value::Number(setting.force.get().into());
     [
-        Action::Stage(ParamId::DefaultSpeed(dof), Some(speed)),
-        Action::Stage(ParamId::DefaultForce(dof), Some(force)),
+        (ParamId::DefaultSpeed(dof), speed),
+        (ParamId::DefaultForce(dof), force),
     ]
 }
 
@@ -142,15 +200,20 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     label.ui(ui).on_hover_text(look.tip(tune::ALONE));
 }
 
-/// Overshoot as colours with numbers: speeds below each other, thresholds side by side.
-fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSetting>) {
+/// Overshoot as colours with numbers: speeds below each other, thresholds side by side; the scale below spans what was
+/// measured.
+fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     let muted = pane.look.palette.muted;
+    let scores = &comparison.scores;
     let mut speeds: Vec<i16> = scores.iter().map(|own| own.setting.speed.get()).collect();
     let mut forces: Vec<i16> = scores.iter().map(|own| own.setting.force.get()).collect();
     for list in [&mut speeds, &mut forces] {
         list.sort_unstable();
         list.dedup();
     }
+    let over = scores.iter().filter_map(|score| score.overshoot_g);
+    let over: Vec<f64> = over.map(|spread| spread.max).collect();
+    let span = MetricSpread::of(&over);
     let count = f32::from(u8::try_from(forces.len().max(1)).unwrap_or(u8::MAX));
     let width = (ui.available_width() - HEAD.x) / count - GAP;
     let size = vec2(width.clamp(44.0, 84.0), 24.0);
@@ -176,7 +239,8 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSett
                         setting.speed.get() == *speed && setting.force.get() == *force
                     };
                     if let Some(score) = scores.iter().find(is_own) {
-                        cell_ui(ui, pane, (score, size), Some(score.setting) == best);
+                        let is_best = comparison.is_best(score.setting);
+                        cell_ui(ui, pane, (score, size, span), is_best);
                     } else {
                         ui.allocate_space(size);
                     }
@@ -185,9 +249,27 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, scores: &[Score], best: Option<TrialSett
             }
         });
     });
+    if let Some(span) = span.filter(|span| span.max > span.min) {
+        scale_ui(ui, pane, span);
+    }
 }
 
-fn cell_ui(ui: &mut Ui, pane: &Pane<'_>, (score, size): (&Score, Vec2), best: bool) {
+/// Where a value lies between the least and the greatest that were measured.
+fn part(value: f64, span: MetricSpread) -> f64 {
+    let wide = span.max - span.min;
+    if wide > 0.0 {
+        (value - span.min) / wide
+    } else {
+        0.0
+    }
+}
+
+fn cell_ui(
+    ui: &mut Ui,
+    pane: &Pane<'_>,
+    (score, size, span): (&Score, Vec2, Option<MetricSpread>),
+    is_best: bool,
+) {
     let palette = pane.look.palette;
     let over = score.overshoot_g.map(|spread| spread.max);
     let text = over.map_or_else(|| "-".to_owned(), |over| format!("{over:.0}"));
@@ -195,17 +277,68 @@ fn cell_ui(ui: &mut Ui, pane: &Pane<'_>, (score, size): (&Score, Vec2), best: bo
     let (cell, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
     response.on_hover_text(&name);
-    #[expect(clippy::cast_possible_truncation, reason = "a share of a colour scale")]
-    let level = over.map(|over| (over / HOTTEST_G).clamp(0.0, 1.0) as f32);
+    let level = over.zip(span).map(|(over, span)| part(over, span));
     let (ground, ink) = match level {
-        Some(level) => (palette.heat(level), palette.on_heat(level >= BRIGHT)),
+        _ if is_best => (palette.ok, Palette::ink_on(palette.ok)),
+        Some(level) => {
+            let ground = palette.scale(level);
+            (ground, Palette::ink_on(ground))
+        }
         None => (palette.sunken, palette.muted),
     };
-    let round = CornerRadius::same(theme::ROUND_TINY);
-    let edge = if best { theme::STRONG } else { 0.0 };
-    let edge = Stroke::new(edge, palette.accent);
     ui.painter()
-        .rect(cell, round, ground, edge, StrokeKind::Inside);
+        .rect_filled(cell, CornerRadius::same(theme::ROUND_TINY), ground);
     let (middle, font) = (Align2::CENTER_CENTER, theme::number());
     ui.painter().text(cell.center(), middle, text, font, ink);
+    if is_best {
+        let (at, left) = (
+            cell.left_center() + vec2(theme::STEP, 0.0),
+            Align2::LEFT_CENTER,
+        );
+        let font = theme::icon_high(theme::SIGN_SMALL);
+        ui.painter().text(at, left, theme::BEST, font, ink);
+    }
+}
+
+/// What the colours of the map stand for: the least at the left, the greatest at the right.
+fn scale_ui(ui: &mut Ui, pane: &Pane<'_>, span: MetricSpread) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let [least, most] = [span.min, span.max].map(|grams| format!("{grams:.0} g"));
+    ui.horizontal(|ui| {
+        ui.add_space(HEAD.x + GAP);
+        Label::new(&least, palette.muted).small().ui(ui);
+        let (bar, response) = ui.allocate_exact_size(SCALE, Sense::hover());
+        let name = format!("{}: {least} .. {most}", look.say(tune::MAP));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        let mut mesh = Mesh::default();
+        for step in 0..=SCALE_STEPS {
+            let part = f32::from(step) / f32::from(SCALE_STEPS);
+            let color = palette.scale(part.into());
+            let x = egui::lerp(bar.x_range(), part);
+            mesh.colored_vertex(pos2(x, bar.top()), color);
+            mesh.colored_vertex(pos2(x, bar.bottom()), color);
+            if step > 0 {
+                let at = 2 * u32::from(step);
+                mesh.add_triangle(at - 2, at - 1, at);
+                mesh.add_triangle(at - 1, at, at + 1);
+            }
+        }
+        ui.painter().add(mesh);
+        Label::new(&most, palette.muted).small().ui(ui);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_uses_all_of_its_colours_for_what_was_measured() {
+        let span = MetricSpread::of(&[5.0, 66.0, 637.0]).unwrap();
+        assert_eq!(part(5.0, span), 0.0);
+        assert_eq!(part(637.0, span), 1.0);
+        assert!((0.05..0.2).contains(&part(66.0, span)));
+        let one = MetricSpread::of(&[5.0]).unwrap();
+        assert_eq!(part(5.0, one), 0.0, "one value alone is no range");
+    }
 }

@@ -19,8 +19,8 @@ use egui_plot::LineStyle;
 /// Where the time of the curves begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Align {
-    #[default]
     Command,
+    #[default]
     Contact,
 }
 
@@ -69,7 +69,7 @@ impl CurvesView {
     }
 
     /// Draws what is chosen. A pressed line stands out.
-    pub(crate) fn chart_ui(
+    fn chart_ui(
         &mut self,
         ui: &mut Ui,
         pane: &Pane<'_>,
@@ -111,18 +111,20 @@ impl CurvesView {
     fn curves<'a>(&self, all: DrawnTrials<'a>) -> Vec<(RowKey, ChartCurve<'a>)> {
         let lines = &all.picture.lines;
         let any = lines.iter().any(|own| all.is_strong(own.key));
+        // Without any there is nothing to lay over each other.
+        let has_contact = lines.iter().any(|own| own.contact_s.is_some());
         let styled = lines.iter().filter_map(|own| {
             let mut curve = all.curve(own)?;
             let is_strong = all.is_strong(own.key);
-            if is_strong || self.pointed == Some(own.key) {
+            if is_strong || !any && all.is_best(own.key) || self.pointed == Some(own.key) {
                 curve.stroke.width = theme::STRONG;
             }
             if any && !is_strong {
                 curve.stroke.color = dash::behind(curve.stroke.color);
             }
             curve.zero[0] = match self.align {
-                Align::Command => 0.0,
-                Align::Contact => own.contact_s?,
+                Align::Contact if has_contact => own.contact_s?,
+                Align::Command | Align::Contact => 0.0,
             };
             Some((own.key, curve))
         });
@@ -161,6 +163,15 @@ impl CurvesView {
                 let text = format!("{} {} {}", few.lines.len(), look.say(tune::OF_ALL), few.all);
                 Label::new(&text, look.palette.warn).small().ui(ui);
             }
+            let missed = picture.map_or(0, |picture| {
+                let lines = picture.lines.iter();
+                lines.filter(|own| own.contact_s.is_none()).count()
+            });
+            let has_contact = picture.is_some_and(|picture| missed < picture.lines.len());
+            if self.align == Align::Contact && missed > 0 && has_contact {
+                let text = look.fill(tune::NO_CONTACT_DRAWN, &[&missed]);
+                Label::new(&text, look.palette.warn).small().ui(ui);
+            }
         });
     }
 }
@@ -177,6 +188,11 @@ impl<'a> DrawnTrials<'a> {
 
     fn is_strong(&self, key: RowKey) -> bool {
         self.strong.is_some() && self.trial(key) == self.strong
+    }
+
+    fn is_best(&self, key: RowKey) -> bool {
+        let seen = self.row(key);
+        seen.is_some_and(|seen| self.comparison.is_best(seen.trial.setting))
     }
 
     fn style(&self, seen: ComparedRow<'_>) -> LineStyle {
@@ -263,11 +279,19 @@ fn group_color(pane: &Pane<'_>, comparison: &Comparison, group: LineGroup) -> Co
     let palette = pane.look.palette;
     let (at, count) = match group {
         LineGroup::Joint(dof) => return palette.dof[dof],
+        LineGroup::Setting(at)
+            if comparison
+                .settings
+                .get(at)
+                .is_some_and(|own| comparison.is_best(*own)) =>
+        {
+            return palette.ok;
+        }
         LineGroup::Setting(at) => (at, comparison.settings.len()),
         LineGroup::Session(at) => (at, comparison.sessions().len()),
     };
-    let number = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
-    palette.setting(number(at), number(count))
+    let number = |count: usize| f64::from(u8::try_from(count).unwrap_or(u8::MAX));
+    palette.scale(number(at) / number(count.saturating_sub(1).max(1)))
 }
 
 /// The colour of a line: of its setting, its joint or its session.

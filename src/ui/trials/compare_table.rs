@@ -3,7 +3,7 @@
 use crate::app::sessions::SessionAction;
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey};
-use crate::trials::columns::{COLUMNS, Metric};
+use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
 use crate::ui::kit::{self, Label, Pane, dash};
 use crate::ui::sessions::stretch::ReplayedStretch;
 use crate::ui::text::{Text, tune, words};
@@ -17,8 +17,17 @@ use egui::{
 };
 use egui_extras::{Column, TableBuilder, TableRow};
 
-/// Height of a row.
+/// Height of a row, and of the heads.
 const ROW: f32 = 20.0;
+const HEADS: f32 = 36.0;
+/// Least width of how a trial ended.
+const END: f32 = 88.0;
+
+/// Height of a table of so many rows, with the gap above it.
+pub(crate) fn height(rows: usize) -> f32 {
+    let rows = f32::from(u16::try_from(rows).unwrap_or(u16::MAX));
+    HEADS + rows * ROW + theme::GAP + theme::STEP
+}
 
 /// What rows can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,6 +65,8 @@ struct Pressed<'a> {
 struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
     comparison: &'a Comparison,
+    /// Columns of figures that there is room for.
+    columns: usize,
 }
 
 impl TableView {
@@ -72,7 +83,17 @@ impl TableView {
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
     ) -> Option<SessionAction> {
-        let sheet = TrialSheet { pane, comparison };
+        let width = ui.available_width();
+        let first = (width * 0.2).clamp(184.0, 320.0);
+        let number = (width * 0.063).clamp(52.0, 104.0);
+        let fits = |columns: &usize| {
+            first + END + number * f32::from(u8::try_from(*columns).unwrap_or(u8::MAX)) <= width
+        };
+        let sheet = TrialSheet {
+            pane,
+            comparison,
+            columns: (1..=shown().count()).rfind(fits).unwrap_or(1),
+        };
         let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
         self.sort(&sheet, is_pointed);
         let order = self.laid.as_ref().map_or(&[][..], |(.., order)| order);
@@ -81,23 +102,21 @@ impl TableView {
         let palette = pane.look.palette;
         ui.visuals_mut().selection.bg_fill = palette.wash(palette.accent);
         ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
-        let width = ui.available_width();
         let mut pressed = Pressed {
             strong,
             replay: None,
         };
         ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-            let number = Column::exact((width * 0.063).clamp(52.0, 84.0));
             let table = TableBuilder::new(ui)
                 .id_salt(("trials", several))
                 .sense(Sense::click())
                 .cell_layout(Layout::left_to_right(Align::Center))
                 .min_scrolled_height(0.0)
                 .auto_shrink(false)
-                .column(Column::exact((width * 0.21).clamp(176.0, 260.0)))
-                .columns(number, shown().count())
-                .column(Column::remainder().at_least(88.0).clip(true))
-                .header(36.0, |mut row| sheet.head_ui(&mut row, sorting));
+                .column(Column::exact(first))
+                .columns(Column::exact(number), sheet.columns)
+                .column(Column::remainder().at_least(END).clip(true))
+                .header(HEADS, |mut row| sheet.head_ui(&mut row, sorting));
             table.body(|body| {
                 body.rows(ROW, order.len(), |mut row| {
                     if let Some(key) = order.get(row.index()) {
@@ -179,8 +198,17 @@ impl<'a> TrialSheet<'a, '_> {
         }
     }
 
+    /// All figures of a row, those without room too.
+    fn figures(&self, seen: ComparedRow<'_>) -> String {
+        let figure = |(column, title): (&TrialColumn, Text)| {
+            format!("{}: {}", self.pane.look.say(title), column.text(seen.joint))
+        };
+        shown().map(figure).collect::<Vec<_>>().join("\n")
+    }
+
     fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
-        let numbers = shown().map(|(column, title)| (By::Number(column.metric), title));
+        let numbers = shown().take(self.columns);
+        let numbers = numbers.map(|(column, title)| (By::Number(column.metric), title));
         let heads = [(By::Trial, tune::COLUMN_TRIAL)].into_iter().chain(numbers);
         for (by, title) in heads.chain([(By::End, tune::COLUMN_END)]) {
             row.col(|ui| self.head_cell_ui(ui, by, title, sorting));
@@ -207,7 +235,8 @@ impl<'a> TrialSheet<'a, '_> {
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_own, text));
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_value(way));
-        let response = response.on_hover_text(look.say(tune::COLUMN_TIP));
+        let tip = format!("{}\n{}", look.tip(title), look.say(tune::COLUMN_TIP));
+        let response = response.on_hover_text(tip.trim());
         if response.clicked() {
             *sorting = Sorting {
                 by,
@@ -243,9 +272,15 @@ impl<'a> TrialSheet<'a, '_> {
             let style = compare_list::style(self.comparison.sessions(), session);
             dash::sample(ui.painter(), swatch, style, Stroke::new(theme::BAR, color));
             ui.add_space(theme::STEP);
-            Label::new(&whole, text).small().ui(ui);
+            if self.comparison.is_best(tried.setting) && !tried.is_probe() {
+                let star = Label::new(theme::BEST, look.palette.ok);
+                let star = star.font(theme::icon_high(theme::SIGN_SMALL));
+                star.named(look.say(tune::BEST_SIGN)).ui(ui);
+            }
+            let label = Label::new(&whole, text).small().ui(ui);
+            label.on_hover_text(self.figures(seen));
         });
-        for (column, title) in shown() {
+        for (column, title) in shown().take(self.columns) {
             let label = format!("{short} {}", look.say(title));
             row.col(|ui| number_ui(ui, &label, &column.text(seen.joint), text));
         }

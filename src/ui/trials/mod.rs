@@ -1,4 +1,4 @@
-//! Grasp trials: plan, running series, comparison.
+//! Grasp trials: plan, running series, results.
 
 pub(crate) mod compare;
 pub(crate) mod compare_best;
@@ -10,10 +10,7 @@ pub(crate) mod compare_table;
 #[cfg(test)]
 pub(crate) mod compare_tests;
 pub(crate) mod plot;
+pub(crate) mod start;
 pub(crate) mod tune;
 pub(crate) mod tune_form;
 pub(crate) mod tune_live;
-pub(crate) mod tune_result;
-
-/// Least height of curves.
-pub(crate) const PLOT_LEAST: f32 = 96.0;

@@ -8,6 +8,9 @@ use egui::Ui;
 /// The shortest time that is shown, s.
 pub(crate) const LEAST_S: f64 = 0.1;
 
+/// Time before the common moment that is shown at first, s.
+const LEAD_S: f64 = 0.5;
+
 /// Draws a chart over all the time of its lines; what was drawn, and the line at the pointer by its place in the list.
 pub(crate) fn trial_chart_ui(
     ui: &mut Ui,
@@ -22,7 +25,9 @@ pub(crate) fn trial_chart_ui(
     });
     let (from_s, to_s) = spans.fold(None, scales::joined).unwrap_or_default();
     let to_s = to_s.max(from_s + LEAST_S);
-    view.time.advance((from_s, to_s), to_s - from_s);
+    // What comes long before a common contact is a flat line.
+    let width = (to_s - from_s).min(to_s + LEAD_S);
+    view.time.advance((from_s, to_s), width);
     let chart = Chart {
         times: Times::From(0.0, "0 s"),
         ..chart

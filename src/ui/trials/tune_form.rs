@@ -1,4 +1,5 @@
-//! The plan of a series as fields, each with what is wrong below it. Every change is one action with the whole plan.
+//! The plan of a series as a sentence, line by line, whose figures are fields, each with what is wrong below it. Every
+//! change is one action with the whole plan.
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
@@ -6,18 +7,18 @@ use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, tak
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, Weight, format};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, vec2};
+use egui::{CollapsingHeader, ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Characters of a list or all tags, and of a note.
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
-/// Width of a joint's button, of what stands before each other field, and of a head over a field.
-const JOINT: f32 = 104.0;
+/// Width of the words before a field: all fields begin at one edge.
+const CAPTION: f32 = 112.0;
 /// Speed of a fast part unless a person says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
@@ -66,7 +67,8 @@ impl TuneForm {
         self.remember(&plan);
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
-        let runs = pane.state.hand().series.is_some();
+        let hand = pane.state.hand();
+        let runs = hand.series.is_some() || hand.arms_for_series();
         let mut pass = Pass {
             wrong,
             pane,
@@ -91,32 +93,53 @@ impl TuneForm {
 
 impl Pass<'_, '_> {
     fn all_ui(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            self.caption_ui(ui, tune::JOINTS, JOINT);
-            for text in [tune::START, tune::CLOSE] {
-                self.caption_ui(ui, text, theme::FIELD);
-            }
+        self.joints_ui(ui);
+        self.ways_ui(ui);
+        self.row_ui(ui, "", |pass, ui| {
+            ui.vertical(|ui| pass.poses_ui(ui));
         });
-        for dof in Dof::ALL {
-            ui.horizontal(|ui| self.joint_ui(ui, dof));
-            self.trouble_ui(ui, PlanField::Way(dof));
-        }
-        self.trouble_ui(ui, PlanField::Joints);
-        ui.horizontal_wrapped(|ui| self.poses_ui(ui));
-        self.title_ui(ui, tune::SETTINGS);
         self.lists_ui(ui);
-        self.approach_ui(ui);
-        self.times_ui(ui);
-        self.title_ui(ui, tune::LIMITS);
-        self.limits_ui(ui);
-        self.title_ui(ui, tune::KEEP_WITH);
+        let fold = CollapsingHeader::new(self.pane.look.say(tune::DETAILS)).id_salt("details");
+        let is_wrong = matches!(
+            self.wrong,
+            Some((
+                PlanField::Fast
+                    | PlanField::Until
+                    | PlanField::Dwell
+                    | PlanField::Rest
+                    | PlanField::Ceiling
+                    | PlanField::Heat,
+                _
+            ))
+        );
+        let shown = fold
+            .open(is_wrong.then_some(true))
+            .show_unindented(ui, |ui| {
+                self.approach_ui(ui);
+                self.times_ui(ui);
+                self.limits_ui(ui);
+            });
+        if shown.body_response.is_none() {
+            let words = self.details();
+            kit::say_ui(ui, &words, self.pane.look.palette.muted);
+        }
         self.words_ui(ui);
     }
 
-    fn title_ui(&self, ui: &mut Ui, text: Text) {
-        let look = self.pane.look;
-        ui.add_space(theme::STEP);
-        Label::said(look, text).ui(ui);
+    /// What is folded away, as sentences.
+    fn details(&self) -> String {
+        let (look, plan) = (self.pane.look, &self.plan);
+        let limits = plan.limits;
+        let [dwell, rest] = [plan.dwell, plan.grid.rest].map(format::duration);
+        let parts: [&dyn std::fmt::Display; 6] = [
+            &look.say(tune::approach(plan.approach)),
+            &dwell,
+            &rest,
+            &limits.ceiling_g,
+            &limits.start_c,
+            &limits.stop_c,
+        ];
+        look.fill(tune::DETAILS_SHORT, &parts)
     }
 
     /// What is wrong here, once.
@@ -126,36 +149,97 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn caption_ui(&self, ui: &mut Ui, text: Text, width: f32) {
-        let look = self.pane.look;
-        kit::cell_ui(ui, vec2(width, theme::CONTROL), |ui| {
-            Label::note(look, text).ui(ui);
+    /// A field beside the words before it.
+    fn row_ui<R>(
+        &mut self,
+        ui: &mut Ui,
+        caption: &str,
+        field: impl FnOnce(&mut Self, &mut Ui) -> R,
+    ) -> R {
+        let muted = self.pane.look.palette.muted;
+        let row = ui.horizontal_top(|ui| {
+            kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
+                Label::new(caption, muted).small().ui(ui);
+            });
+            field(self, ui)
         });
+        row.inner
     }
 
-    fn joint_ui(&mut self, ui: &mut Ui, dof: Dof) {
+    /// Who closes.
+    fn joints_ui(&mut self, ui: &mut Ui) {
+        let caption = self.pane.look.say(tune::JOINTS);
+        self.row_ui(ui, caption, |pass, ui| {
+            let width = (ui.available_width() - theme::STEP) / 2.0;
+            ui.vertical(|ui| {
+                for pair in Dof::ALL.chunks(2) {
+                    ui.horizontal(|ui| {
+                        ui.spacing_mut().item_spacing.x = theme::STEP;
+                        for dof in pair {
+                            pass.joint_ui(ui, *dof, width);
+                        }
+                    });
+                }
+            });
+        });
+        self.trouble_ui(ui, PlanField::Joints);
+    }
+
+    fn joint_ui(&mut self, ui: &mut Ui, dof: Dof, width: f32) {
         let look = self.pane.look;
-        let target = self.plan.close[dof];
-        let takes_part = target.is_some();
+        let takes_part = self.plan.close[dof].is_some();
         let joint = look.say(words::dof(dof));
         let name = look.fill(tune::JOINT_NAME, &[&joint]);
         let button = Button::new(joint, look.say(tune::JOINT_TIP))
             .named(&name)
             .disabled(self.disabled)
-            .choice(takes_part);
-        let wide = Layout::top_down_justified(Align::Center);
-        let size = vec2(JOINT, theme::CONTROL);
-        let pressed = ui.allocate_ui_with_layout(size, wide, |ui| button.ui(ui, look).clicked());
-        if pressed.inner {
+            .switch(takes_part);
+        let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+        if button.put(ui, look, place, id).clicked() {
             let angle = self.form.targets[dof];
             set_target(&mut self.plan, dof, (!takes_part).then_some(angle));
         }
+    }
+
+    /// From where to where each of them goes, and where others stand.
+    fn ways_ui(&mut self, ui: &mut Ui) {
+        for dof in Dof::ALL {
+            let (start, close) = (self.plan.start[dof], self.plan.close[dof]);
+            if start.is_none() && close.is_none() {
+                continue;
+            }
+            let look = self.pane.look;
+            let caption = if close.is_some() {
+                tune::START_NAME
+            } else {
+                tune::STANDS
+            };
+            let caption = look.fill(caption, &[&look.say(words::dof(dof))]);
+            self.row_ui(ui, &caption, |pass, ui| {
+                ui.horizontal(|ui| pass.way_ui(ui, dof));
+            });
+            self.trouble_ui(ui, PlanField::Way(dof));
+        }
+    }
+
+    fn way_ui(&mut self, ui: &mut Ui, dof: Dof) {
+        let look = self.pane.look;
         let start = (tune::START_NAME, tune::START.tip());
-        if let Some(angle) = self.angle_ui(ui, dof, start, self.plan.start[dof]) {
+        if let Some(angle) = self.angle_ui(ui, (dof, start), self.plan.start[dof]) {
             self.plan.start[dof] = Some(angle);
         }
+        let Some(target) = self.plan.close[dof] else {
+            let name = look.fill(tune::LEAVE, &[&look.say(words::dof(dof))]);
+            let button = Button::new(&name, look.tip(tune::LEAVE)).icon(theme::CLOSE);
+            let button = button.weight(Weight::Quiet).disabled(self.disabled);
+            if button.ui(ui, look).clicked() {
+                self.plan.start[dof] = None;
+            }
+            return;
+        };
+        Label::note(look, tune::CLOSE).ui(ui);
         let close = (tune::CLOSE_NAME, tune::CLOSE.tip());
-        if takes_part && let Some(angle) = self.angle_ui(ui, dof, close, target) {
+        if let Some(angle) = self.angle_ui(ui, (dof, close), Some(target)) {
             self.plan.close[dof] = Some(angle);
         }
     }
@@ -163,8 +247,7 @@ impl Pass<'_, '_> {
     fn angle_ui(
         &mut self,
         ui: &mut Ui,
-        dof: Dof,
-        (name, tip): (Text, Text),
+        (dof, (name, tip)): (Dof, (Text, Text)),
         angle: Option<Angle>,
     ) -> Option<Angle> {
         let look = self.pane.look;
@@ -236,36 +319,20 @@ impl Pass<'_, '_> {
         let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
         let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
         let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
-        let read = self.row_ui(ui, caption, |ui, pane| {
-            text.read_ui(ui, pane, &numbers.join(", "), read)
+        let read = self.row_ui(ui, look.say(caption), |pass, ui| {
+            text.read_ui(ui, pass.pane, &numbers.join(", "), read)
         });
         self.trouble_ui(ui, field);
         read
     }
 
-    /// A field beside its caption.
-    fn row_ui<R>(
-        &mut self,
-        ui: &mut Ui,
-        caption: Text,
-        field: impl FnOnce(&mut Ui, &mut Pane<'_>) -> R,
-    ) -> R {
-        let row = ui.horizontal(|ui| {
-            self.caption_ui(ui, caption, 156.0);
-            field(ui, self.pane)
-        });
-        row.inner
-    }
-
-    fn text_ui(
-        &mut self,
-        ui: &mut Ui,
-        (caption, name): (Text, Text),
-        (value, max): (&str, usize),
-    ) -> Option<String> {
+    /// A line of text in a row of its own.
+    fn text_ui(&mut self, ui: &mut Ui, name: Text, (value, max): (&str, usize)) -> Option<String> {
         let look = self.pane.look;
         let field = TextField::new(look.say(name), max).hint(look.tip(name));
-        self.row_ui(ui, caption, |ui, pane| field.ui(ui, pane, value))
+        self.row_ui(ui, look.say(name), |pass, ui| {
+            field.ui(ui, pass.pane, value)
+        })
     }
 
     /// A whole number in a row of its own, over what is wrong with it.
@@ -280,7 +347,9 @@ impl Pass<'_, '_> {
         let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
         let number = NumberField::new(look.say(text), look.tip(text), from..=to);
         let number = number.disabled(self.disabled);
-        let typed = self.row_ui(ui, text, |ui, pane| number.whole_ui(ui, pane, Some(value)));
+        let typed = self.row_ui(ui, look.say(text), |pass, ui| {
+            number.whole_ui(ui, pass.pane, Some(value))
+        });
         self.trouble_ui(ui, field);
         typed
     }
@@ -291,7 +360,9 @@ impl Pass<'_, '_> {
         let number = NumberField::new(look.say(text), look.tip(text), 0.0..=600.0);
         let number = number.decimals(1).disabled(self.disabled);
         let seconds = Some(time.as_secs_f64());
-        let typed = self.row_ui(ui, text, |ui, pane| number.ui(ui, pane, seconds));
+        let typed = self.row_ui(ui, look.say(text), |pass, ui| {
+            number.ui(ui, pass.pane, seconds)
+        });
         self.trouble_ui(ui, field);
         let typed = typed.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         typed.unwrap_or(time)
@@ -308,10 +379,10 @@ impl Pass<'_, '_> {
                 (usual, look.say(tune::approach(usual)))
             }
         });
-        ui.horizontal(|ui| {
-            self.caption_ui(ui, tune::APPROACH, 64.0);
+        let name = look.say(tune::APPROACH);
+        self.row_ui(ui, name, |pass, ui| {
             ui.spacing_mut().combo_width = ui.available_width();
-            kit::choose_ui(ui, look.say(tune::APPROACH), &mut self.plan.approach, &all);
+            kit::choose_ui(ui, name, &mut pass.plan.approach, &all);
         });
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;
@@ -356,12 +427,11 @@ impl Pass<'_, '_> {
 
     fn words_ui(&mut self, ui: &mut Ui) {
         let note = self.plan.note.clone();
-        let (of_note, of_tags) = ((tune::NOTE, tune::NOTE), (tune::TAGS, tune::TAGS));
-        if let Some(note) = self.text_ui(ui, of_note, (&note, NOTE_CHARS)) {
+        if let Some(note) = self.text_ui(ui, tune::NOTE, (&note, NOTE_CHARS)) {
             self.plan.note = note;
         }
         let own = self.plan.tags.join(", ");
-        if let Some(words) = self.text_ui(ui, of_tags, (&own, LIST_CHARS)) {
+        if let Some(words) = self.text_ui(ui, tune::TAGS, (&own, LIST_CHARS)) {
             self.plan.tags = tags(&words);
         }
     }

@@ -9,7 +9,6 @@ use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
-use crate::ui::trials::PLOT_LEAST;
 use crate::ui::trials::plot::LEAST_S;
 use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
@@ -20,56 +19,52 @@ pub(crate) struct LiveChart {
     view: ChartView,
 }
 
-/// Draws it.
-pub(crate) fn live_ui(ui: &mut Ui, pane: &mut Pane<'_>, chart: &mut LiveChart) {
+/// How far the series is, with what ends it; nothing without one.
+pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
     let Some(run) = &pane.state.hand().series else {
         return;
     };
-    let look = pane.look;
-    let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
-    kit::wide_ui(ui, |ui| {
-        ui.set_max_height(theme::CONTROL_LARGE);
-        let response = button.large().ui(ui, look);
-        if kit::pressed(ui, &response) {
-            pane.actions.push(Action::Stop);
-        }
-    });
-    head_ui(ui, pane, run);
-    if ui.available_height() >= PLOT_LEAST {
-        force_ui(ui, pane, run, chart);
-    }
-}
-
-fn head_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
-    let (look, palette) = (pane.look, pane.look.palette);
     let (number, total) = (run.view.number, run.view.total);
     let stage = look.say(tune::stage(run.view.stage));
     let trial = look.fill(tune::TRIAL, &[&number, &total, &stage]);
     let name = look.say(tune::PROGRESS);
-    let label = Label::new(&trial, palette.text).font(theme::title());
-    label.named(name).ui(ui);
+    ui.horizontal(|ui| {
+        let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
+        let response = button.large().ui(ui, look);
+        if kit::pressed(ui, &response) {
+            pane.actions.push(Action::Stop);
+        }
+        ui.vertical(|ui| {
+            let label = Label::new(&trial, palette.text).font(theme::title());
+            label.named(name).ui(ui);
+            let left = format::duration(run.left(pane.state.now));
+            let left = look.fill(tune::LEFT, &[&left]);
+            let setting = match run.view.setting {
+                Some(_) if run.view.is_probing => look.say(tune::PROBE).to_owned(),
+                Some(own) => look.fill(tune::SETTING, &[&own.speed.get(), &own.force.get()]),
+                None => String::new(),
+            };
+            ui.horizontal(|ui| {
+                for text in [setting.as_str(), &left, look.say(tune::ANY_KEY)] {
+                    Label::new(text, palette.muted).small().ui(ui);
+                }
+            });
+        });
+    });
     let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
     let share = count(number.saturating_sub(1)) / count(total.max(1));
     let bar = ProgressBar::new(share).desired_height(6.0);
     let bar = ui.add(bar.fill(palette.accent));
     bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
-    let left = format::duration(run.left(pane.state.now));
-    let left = look.fill(tune::LEFT, &[&left]);
-    let setting = match run.view.setting {
-        Some(_) if run.view.is_probing => look.say(tune::PROBE).to_owned(),
-        Some(own) => look.fill(tune::SETTING, &[&own.speed.get(), &own.force.get()]),
-        None => String::new(),
-    };
-    ui.horizontal(|ui| {
-        for text in [setting, left] {
-            Label::new(&text, palette.muted).small().ui(ui);
-        }
-    });
-    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
 }
 
-fn force_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun, chart: &mut LiveChart) {
+/// The force as it comes.
+pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
     let look = pane.look;
+    let Some(run) = &pane.state.hand().series else {
+        return;
+    };
     if chart.trial != run.view.number {
         chart.view.time.follow();
         chart.trial = run.view.number;

@@ -19,7 +19,6 @@ use crate::ui::text::window;
 use crate::ui::theme;
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
-use crate::ui::trials::compare::CompareView;
 use crate::ui::trials::tune::TuneView;
 use crate::ui::view::{Place, View};
 use crate::ui::window::rooms::{RoomSize, Rooms};
@@ -60,7 +59,6 @@ pub(super) struct Body {
     rooms: Rooms,
     poses: PoseView,
     tune: TuneView,
-    compare: CompareView,
     sessions: SessionsView,
 }
 
@@ -180,7 +178,7 @@ impl Body {
             }
             View::Live | View::Touch | View::Poses | View::Faults => self.live_ui(ui, rect, pane),
             View::Tune => self.tune.ui(ui, pane),
-            View::Compare => self.compare.ui(ui, pane),
+            View::Compare => self.tune.results_ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
             View::Connection => self.own.connection.ui(ui, pane),
             View::Inputs => self.own.inputs.ui(ui, pane),

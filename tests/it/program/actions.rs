@@ -98,6 +98,7 @@ fn trials() -> Vec<TrialAction> {
     vec![
         TrialAction::Plan(Box::default()),
         TrialAction::Start,
+        TrialAction::ArmAndStart,
         TrialAction::Note(id, "note".into()),
         TrialAction::Tags(id, "tag".into()),
         TrialAction::Forget(id),

@@ -2,10 +2,11 @@
 
 use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
+use crate::setup::window::{FORCE_SET, SPEED_SET};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
-use handscope::hand::{Angle, Dof, Speed};
+use handscope::hand::{Angle, Dof, Force, Speed};
 use handscope::poses::Preset;
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
@@ -53,6 +54,76 @@ async fn a_series_needs_an_arming_and_free_joints() {
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
+fn arm_and_start(bench: &mut Bench) {
+    bench.act(Action::Trial(TrialAction::ArmAndStart));
+}
+
+#[tokio::test(start_paused = true)]
+async fn one_act_arms_and_starts_once_the_arming_holds() {
+    let mut bench = Bench::live().await;
+    bench.act(Action::Speed(None, Speed::GENTLE));
+    bench.act(Action::Force(None, Force::GENTLE));
+    arm_and_start(&mut bench);
+    assert!(bench.hand().series.is_none() && bench.hand().arms_for_series());
+    bench.run(300).await;
+    assert!(bench.hand().series.is_some() && !bench.hand().arms_for_series());
+    let addresses = bench.addresses();
+    let limits = addresses.iter().take(2).copied().collect::<Vec<u16>>();
+    assert_eq!(
+        limits,
+        [SPEED_SET, FORCE_SET],
+        "arming goes first: {addresses:?}"
+    );
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_ends_the_wish_to_start_leaves_the_hand_at_rest() {
+    type End = fn(&mut Bench);
+    let ends: [(&str, End); 3] = [
+        ("stop", |bench| bench.act(Action::Stop)),
+        ("disarm", |bench| bench.act(Action::Disarm)),
+        ("other plan", |bench| {
+            let mut other = TrialPlan::default();
+            other.grid.repeats = 3;
+            bench.act(Action::Trial(TrialAction::Plan(Box::new(other))));
+        }),
+    ];
+    for (why, end) in ends {
+        let mut bench = Bench::live().await;
+        arm_and_start(&mut bench);
+        end(&mut bench);
+        bench.run(3000).await;
+        assert!(bench.hand().series.is_none(), "{why}");
+        assert!(!bench.hand().arms_for_series(), "{why}");
+        assert!(bench.state().trials.sessions.is_empty(), "{why}");
+        let is_told = bench.told().contains(&NoticeKind::SeriesNotBegun);
+        assert_eq!(is_told, why == "other plan", "{why}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_cannot_be_armed_begins_nothing_and_says_why() {
+    let mut bench = Bench::live().await;
+    bench.act(Action::Lock(Dof::Index, true));
+    bench.forget();
+    arm_and_start(&mut bench);
+    bench.run(3000).await;
+    assert!(
+        !bench.hand().connection.is_armed(),
+        "a locked joint would move"
+    );
+    let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
+    spoil(&line, Trouble::Gone(Duration::from_secs(5)));
+    bench.run(300).await;
+    arm_and_start(&mut bench);
+    bench.run(8000).await;
+    assert!(bench.hand().series.is_none() && !bench.hand().connection.is_armed());
+    assert!(!bench.hand().arms_for_series());
+    let why = |told: &NoticeKind| matches!(told, NoticeKind::ArmRefused(_));
+    let told = bench.told();
+    assert!(told.iter().any(why) || told.contains(&NoticeKind::SeriesNotBegun));
+}
+
 #[tokio::test(start_paused = true)]
 async fn a_plan_that_makes_no_sense_sends_nothing() {
     let mut bench = Bench::armed().await;
@@ -60,8 +131,9 @@ async fn a_plan_that_makes_no_sense_sends_nothing() {
     senseless.grid.speeds = vec![Speed::MIN];
     bench.act(Action::Trial(TrialAction::Plan(Box::new(senseless))));
     start(&mut bench);
+    arm_and_start(&mut bench);
     bench.run(300).await;
-    assert!(bench.hand().series.is_none());
+    assert!(bench.hand().series.is_none() && !bench.hand().arms_for_series());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 

@@ -109,6 +109,12 @@ impl Person {
         self.look();
     }
 
+    fn unfold(&mut self, name: &str) {
+        let fold = Role::DisclosureTriangle;
+        self.harness.get_by_role_and_label(fold, name).click();
+        (0..30).for_each(|_| self.look());
+    }
+
     fn open(&mut self, tab: &str, view: View) {
         self.press(tab);
         assert_eq!(self.harness.state().desktop_app.view(), view);
@@ -145,6 +151,7 @@ impl Person {
 /// Writes the plan: the index closes onto the cup at two speeds.
 fn plan(person: &mut Person) {
     person.open("Tune", View::Tune);
+    person.unfold("Approach, times and limits");
     for (field, text) in [
         ("Index from", "600"),
         ("Index to", "300"),
@@ -174,7 +181,7 @@ fn tried(person: &mut Person) -> bool {
 
 /// The quickest setting that spares the cup, as the window names it, and its overshoot.
 fn chosen(person: &mut Person) -> (i32, i32) {
-    person.open("Compare", View::Compare);
+    person.open("Hide the plan", View::Compare);
     person.press("Fastest within 100 g");
     person.enter("Holds at least, g", &format!("{HOLD_G}"));
     let best = person.reading("Best");
@@ -198,13 +205,9 @@ fn check_gentle(state: &State, speed: i32) {
     }
 }
 
-/// Stages the best as defaults, applies and saves it in one step.
+/// Makes the best the default: two presses.
 fn keep(person: &mut Person) {
-    person.press("Stage as defaults");
-    person.open("Hand", View::Connection);
-    person.open("Device", View::Device);
-    person.until("the rows", |state| state.hand().params.read_at.is_some());
-    person.press("Save to flash");
+    person.press("Make it the default");
     person.until("the question", |state| {
         state.hand().params.question.is_some()
     });

@@ -645,6 +645,14 @@ impl Bench {
         assert!(field.is_focused(), "{name}");
     }
 
+    /// Gives a button the keyboard.
+    pub(crate) fn focus_button(&mut self, name: &str) {
+        self.harness
+            .get_by_role_and_label(Role::Button, name)
+            .focus();
+        self.run(40);
+    }
+
     /// Replaces what stands in a text field, without Enter.
     pub(crate) fn type_into(&mut self, name: &str, text: &str) {
         self.focus(name);

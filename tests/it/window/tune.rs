@@ -1,17 +1,28 @@
 //! Claims about grasp trials in the window: planned, armed by a person, run on the simulated hand, ended by what is wrong.
 
-use crate::setup::window::{Bench, Role};
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
 use egui::Key;
-use handscope::app::trials::TrialSession;
+use handscope::app::action::Action;
+use handscope::app::trials::{TrialAction, TrialSession};
 use handscope::hand::{Dof, Fault};
+use handscope::params::rows::{ParamId, Value};
 use handscope::record::Rest;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::trials::{Abort, EarlyEnd, TrialPlan};
 use handscope::ui::View;
 use std::time::Duration;
 
+/// The button that is held.
+const GUARDED: &str = "Arm and start";
+
+/// Shows approach, times and limits of the plan.
+pub(crate) fn unfold(bench: &mut Bench) {
+    bench.open_drawer("Approach, times and limits");
+}
+
 /// A short way onto the object, held shortly.
 pub(crate) fn short(bench: &mut Bench) {
+    unfold(bench);
     for (field, text) in [
         ("Index from", "620"),
         ("Index to", "300"),
@@ -89,41 +100,142 @@ pub(crate) fn finish(bench: &mut Bench, within_ms: u64) {
     }
 }
 
+/// Presses the guarded button and holds it for so long.
+fn hold(bench: &mut Bench, millis: u64) {
+    bench.press(GUARDED);
+    bench.run(millis);
+}
+
+/// Nothing was armed, begun or written.
+fn check_nothing(bench: &Bench, why: &str) {
+    assert!(!runs(bench), "{why}");
+    assert!(!bench.state().hand().connection.is_armed(), "{why}");
+    let arms = |write: &Write| [SPEED_SET, FORCE_SET].contains(&write.address);
+    assert!(!bench.writes().iter().any(arms), "{why}");
+    assert_eq!(bench.angle(Dof::Index), 1000, "{why}");
+}
+
 #[test]
-fn starting_needs_an_armed_hand_and_says_so() {
+fn held_for_a_second_the_button_arms_the_hand_and_then_starts() {
     let mut bench = on_block();
-    assert!(bench.is_disabled(Role::Button, "Start trials"));
-    assert!(bench.shows("Press Arm first: each series needs a person who arms it."));
-    assert!(bench.writes().is_empty());
-    arm(&mut bench);
-    assert!(!bench.is_disabled(Role::Button, "Start trials"));
+    short(&mut bench);
+    assert!(bench.shows("Hold for 1 s, by mouse or Enter: then the hand moves."));
+    hold(&mut bench, 900);
+    check_nothing(&bench, "not yet");
+    bench.until(1000, runs);
+    let is_angle = |write: &Write| write.address == ANGLE_SET;
+    let writes = bench.writes();
+    let limits = |address| writes.iter().position(|write| write.address == address);
+    let first_angle = writes.iter().position(is_angle);
+    for address in [SPEED_SET, FORCE_SET] {
+        let limit = limits(address);
+        assert!(limit.is_some() && first_angle.is_none_or(|angle| limit < Some(angle)));
+    }
+    let at = bench.rect(Role::Button, "End with a stop").center();
+    bench.release_at(at + egui::vec2(0.0, 300.0));
+    bench.run(300);
+    assert!(runs(&bench), "letting go afterwards ends nothing");
+    finish(&mut bench, 60_000);
+    assert_eq!(last(&bench).head.aborted, None);
+    bench.run(2000);
+    assert!(!runs(&bench), "once is once");
+}
+
+#[test]
+fn the_enter_key_held_on_the_button_does_the_same() {
+    let mut bench = on_block();
+    short(&mut bench);
+    bench.focus_button(GUARDED);
+    bench.key_down(Key::Enter);
+    bench.run(500);
+    bench.key_up(Key::Enter);
+    bench.run(1000);
+    check_nothing(&bench, "let go too early");
+    bench.focus_button(GUARDED);
+    bench.key_down(Key::Enter);
+    bench.until(1500, runs);
+}
+
+#[test]
+fn a_hold_that_is_let_go_left_or_stopped_does_nothing() {
+    let early = "Let go too early: hold for 1 s. Nothing was started.";
+    for why in ["let go", "left", "stopped", "clicked"] {
+        let mut bench = on_block();
+        let at = bench.rect(Role::Button, GUARDED).center();
+        match why {
+            "clicked" => bench.click_button(GUARDED),
+            _ => hold(&mut bench, 800),
+        }
+        match why {
+            "let go" => bench.release_at(at),
+            "left" => bench.point(at - egui::vec2(0.0, 200.0)),
+            "stopped" => bench.key(Key::Space),
+            _ => {}
+        }
+        bench.run(60);
+        assert_eq!(bench.shows(early), why != "stopped", "{why}");
+        bench.point(at);
+        bench.run(2000);
+        check_nothing(&bench, why);
+    }
+}
+
+#[test]
+fn what_forbids_arming_or_the_series_forbids_the_hold() {
+    let mut bench = on_block();
     bench.click("Index lock");
     bench.run(60);
-    assert!(bench.is_disabled(Role::Button, "Start trials"));
+    assert!(bench.is_disabled(Role::Button, GUARDED));
     assert!(bench.shows("Index is locked and would have to move."));
+    bench.click("Index lock");
+    bench.run(60);
+    assert!(!bench.is_disabled(Role::Button, GUARDED));
+    hold(&mut bench, 800);
+    bench.unplug();
+    bench.run(2000);
+    assert!(bench.is_disabled(Role::Button, GUARDED), "feedback is old");
+    check_nothing(&bench, "the cable was pulled in the hold");
+}
+
+#[test]
+fn an_armed_hand_starts_by_a_click() {
+    let mut bench = on_block();
+    arm(&mut bench);
+    assert!(!bench.is_disabled(Role::Button, "Start trials"));
+    bench.click("Start trials");
+    bench.run(60);
+    assert!(runs(&bench));
 }
 
 #[test]
 fn a_plan_says_what_it_will_do_and_how_hard_it_may_hit() {
     let mut bench = on_block();
-    assert!(bench.shows("Closes Index. Trials: 1, at most about 20 s."));
+    assert!(bench.shows("Trials: 1, at most about 20 s."));
     enter(&mut bench, "Speeds to try", "25, 250");
     enter(&mut bench, "Force thresholds to try", "250, 500");
-    enter(&mut bench, "Repeats", "3");
+    enter(&mut bench, "times each", "3");
     assert_eq!(plan(&bench).grid.settings().len(), 12);
     assert_eq!(bench.texts_with("Trials: 12, at most about").len(), 1);
     assert_eq!(
-        bench.texts_with("637 g (speed 250, threshold 500 g)").len(),
+        bench
+            .texts_with("637 g over the threshold (speed 250, threshold 500 g)")
+            .len(),
         1
     );
+    let limits = "Stop at 2000 g; begin below 50 \u{b0}C, stop at 60 \u{b0}C.";
+    assert_eq!(bench.texts_with(limits).len(), 1, "the fold tells them");
+    unfold(&mut bench);
+    assert!(bench.texts_with(limits).is_empty());
     bench.choose("Approach", "Fast to the measured contact");
-    assert!(bench.shows("The first, slow one measures the contact."));
+    let probe = "The first, slow one measures the contact.";
+    assert_eq!(bench.texts_with(probe).len(), 1);
     assert!(bench.writes().is_empty(), "planning sends nothing");
 }
 
 #[test]
 fn what_makes_no_sense_is_said_at_its_field() {
     let mut bench = on_block();
+    unfold(&mut bench);
     arm(&mut bench);
     for (field, bad, why, good) in [
         (
@@ -175,6 +287,22 @@ fn joints_and_poses_make_the_way() {
         plan(&bench).start[Dof::ThumbRotate].map(|at| at.get()),
         Some(open)
     );
+    assert_eq!(bench.typed("Thumb rotate from"), open.to_string());
+    bench.click("Thumb rotate: leave it alone");
+    bench.run(60);
+    assert_eq!(plan(&bench).start[Dof::ThumbRotate], None);
+}
+
+#[test]
+fn what_is_wrong_is_seen_though_it_was_folded_away() {
+    let mut bench = on_block();
+    let mut wrong = plan(&bench).clone();
+    wrong.limits.ceiling_g = 100;
+    let plan = TrialAction::Plan(Box::new(wrong));
+    bench.act(Action::Trial(plan));
+    bench.run(400);
+    assert!(bench.shows("Choose between 500 and 4000."));
+    assert_eq!(bench.typed("Force limit, g"), "100");
 }
 
 #[test]
@@ -217,9 +345,27 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
         (bench.angle(Dof::Index) - 620).abs() < 25,
         "back at its start"
     );
-    bench.click("Opens what was measured.");
+    bench.click("Hide the plan");
     bench.run(60);
     assert_eq!(bench.view(), View::Compare);
+    bench.click("Show the plan");
+    bench.run(60);
+    assert_eq!(bench.view(), View::Tune);
+}
+
+#[test]
+fn what_was_measured_stands_below_the_series_that_runs() {
+    let mut bench = on_block();
+    short(&mut bench);
+    enter(&mut bench, "Speeds to try", "200, 250");
+    arm(&mut bench);
+    bench.click("Start trials");
+    let rows = |bench: &Bench| bench.all(Role::Row).len();
+    assert_eq!(rows(&bench), 0);
+    bench.until(60_000, |bench| rows(bench) == 1);
+    assert!(runs(&bench) && bench.shows("Force now, g"));
+    finish(&mut bench, 60_000);
+    assert_eq!(rows(&bench), 2);
 }
 
 #[test]
@@ -257,32 +403,64 @@ fn what_was_tried_is_saved_by_itself_and_the_views_say_where() {
     bench.until(10_000, |bench| last(bench).origin.is_in_files());
     for view in [View::Tune, View::Compare] {
         bench.show(view);
-        let said = bench.texts_with("Saved in ");
-        assert!(
-            said.iter()
-                .any(|text| text.contains("documents/Handscope/")),
-            "{said:?}"
-        );
+        let said = bench.value(Role::Button, "Save session");
+        let is_told = said.starts_with("Saved in ") && said.contains("documents/Handscope/");
+        assert!(is_told, "{said:?}");
     }
 }
 
 #[test]
-fn what_came_out_is_staged_and_leads_to_the_parameters_and_nothing_is_written() {
-    let mut bench = on_block();
+fn the_best_is_made_the_default_by_a_click_and_the_yes_of_its_card() {
+    let mut bench = Bench::keeping(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    bench.show(View::Tune);
     short(&mut bench);
     enter(&mut bench, "Speeds to try", "50, 250");
     arm(&mut bench);
     bench.click("Start trials");
     finish(&mut bench, 60_000);
-    assert_eq!(bench.texts_with("Least overshoot: 50 / 500 g").len(), 1);
+    assert_eq!(bench.reading("Best"), "50 / 500 g");
+    let stars = bench.all(Role::Label).into_iter();
+    let stars = stars.filter(|(name, _)| name == "Best setting").count();
+    assert_eq!(stars, 2, "beside the best, and in its row");
+    let button = "Make it the default";
+    bench.until(5000, |bench| !bench.is_disabled(Role::Button, button));
     let writes = bench.writes().len();
-    bench.click("Stages speed and threshold of the best as those after power-up, for the joints tried. Nothing is written.");
+    bench.click(button);
     bench.run(100);
-    assert_eq!(bench.texts_with("Staged, nothing is written yet.").len(), 1);
-    bench.click("Opens the parameters, where what is staged is checked, applied and saved.");
-    bench.run(60);
-    assert_eq!(bench.view(), View::Device);
-    assert_eq!(bench.writes().len(), writes);
+    assert!(bench.shows("Save these changes to flash?"));
+    assert_eq!(bench.writes().len(), writes, "it was only asked");
+    bench.click("Apply and save");
+    bench.until(10_000, |bench| {
+        let params = &bench.state().hand().params;
+        !params.is_busy() && params.save.is_some()
+    });
+    bench.run(100);
+    let live = |id| bench.state().hand().params.live(id).map(|(value, _)| value);
+    let number = |number| Some(Value::Number(number));
+    assert_eq!(live(ParamId::DefaultSpeed(Dof::Index)), number(50));
+    assert_eq!(live(ParamId::DefaultForce(Dof::Index)), number(500));
+    assert_eq!(bench.view(), View::Tune);
+    assert!(bench.is_disabled(Role::Button, button), "it is already");
+}
+
+#[test]
+fn nothing_is_made_the_default_of_an_armed_hand() {
+    let mut bench = Bench::keeping(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    bench.show(View::Tune);
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    let button = "Make it the default";
+    bench.until(5000, |bench| !bench.is_disabled(Role::Button, button));
+    arm(&mut bench);
+    assert!(bench.is_disabled(Role::Button, button));
 }
 
 #[test]
@@ -341,7 +519,7 @@ fn a_lost_link_ends_it() {
         matches!(why, Abort::LinkLost | Abort::NotRead { .. }),
         "{why:?}"
     );
-    assert!(bench.is_disabled(Role::Button, "Start trials"));
+    assert!(bench.is_disabled(Role::Button, GUARDED));
 }
 
 #[test]

@@ -1,0 +1,141 @@
+//! The button that begins a series: a click where the hand is armed; held for a second where it is not, which arms it too.
+//! A stop, and whatever forbids the start, takes the hold back.
+
+use crate::app::action::Action;
+use crate::app::trials::{StartRefusal, TrialAction};
+use crate::hand::Moment;
+use crate::ui::kit::{self, Button, Pane, Weight};
+use crate::ui::text::{main, tune, words};
+use crate::ui::theme;
+use egui::{CornerRadius, Key, Response, Ui};
+use std::time::Duration;
+
+/// So long the button is held: longer than any click.
+const HELD_FOR: Duration = Duration::from_secs(1);
+
+/// What is kept of the hold between frames.
+#[derive(Debug, Default)]
+pub(crate) struct StartButton {
+    since: Option<Moment>,
+    /// It was let go too early.
+    is_short: bool,
+}
+
+impl StartButton {
+    /// Draws the button over what it needs.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let (look, palette) = (pane.look, pane.look.palette);
+        let is_armed = pane.state.hand().connection.is_armed();
+        let reason = refusal(pane);
+        let text = if is_armed {
+            tune::START_BUTTON
+        } else {
+            tune::ARM_AND_START
+        };
+        let button = Button::said(look, text).large().weight(Weight::Strong);
+        let button = button.disabled(reason.as_deref());
+        let response = kit::wide_ui(ui, |ui| {
+            ui.set_max_height(theme::CONTROL_LARGE);
+            button.ui(ui, look)
+        });
+        if is_armed {
+            *self = Self::default();
+            let start = Action::Trial(TrialAction::Start);
+            pane.actions.extend(
+                response
+                    .clicked()
+                    .then_some(start)
+                    .filter(|_| reason.is_none()),
+            );
+        } else if self.is_held(ui, pane, &response) {
+            pane.actions.push(Action::Trial(TrialAction::ArmAndStart));
+        }
+        let (words, color) = match (&reason, is_armed) {
+            (Some(reason), _) => (reason.as_str(), palette.warn),
+            (None, false) if self.is_short => (look.say(tune::HOLD_LONGER), palette.warn),
+            (None, false) => (look.say(tune::HOLD_TO_START), palette.muted),
+            (None, true) => (look.say(tune::ANY_KEY), palette.muted),
+        };
+        kit::say_ui(ui, words, color);
+    }
+
+    /// True once it was held long enough, by the pointer on it or by Enter.
+    fn is_held(&mut self, ui: &Ui, pane: &Pane<'_>, response: &Response) -> bool {
+        let has_pointer = response.contains_pointer();
+        let has_keyboard = response.has_focus();
+        // Not the response's own press: that is over once it is too long for a click.
+        let (begins, is_down) = ui.input(|input| {
+            let pointer = &input.pointer;
+            let begins = has_pointer && pointer.primary_pressed()
+                || has_keyboard && input.key_pressed(Key::Enter);
+            let by_key = has_keyboard && input.key_down(Key::Enter);
+            (begins, has_pointer && pointer.primary_down() || by_key)
+        });
+        let now = pane.state.now;
+        let connection = &pane.state.hand().connection;
+        let is_stopped = self
+            .since
+            .is_some_and(|at| connection.is_disarmed_since(at));
+        if is_stopped || !response.sense.senses_click() {
+            *self = Self::default();
+        } else if is_down && begins {
+            (self.since, self.is_short) = (Some(now), false);
+        } else if !is_down {
+            self.is_short |= self.since.take().is_some() || response.clicked();
+        }
+        let Some(since) = self.since else {
+            return false;
+        };
+        let held = now.since(since);
+        bar(ui, pane, response, held);
+        ui.ctx().request_repaint();
+        let is_long = held >= HELD_FOR;
+        if is_long {
+            *self = Self::default();
+        }
+        is_long
+    }
+}
+
+/// How much of the hold is done, along the lower edge.
+fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
+    let share = held.as_secs_f32() / HELD_FOR.as_secs_f32();
+    let place = response.rect.shrink(2.0);
+    let place = place.with_min_y(place.bottom() - theme::STEP);
+    let place = place.with_max_x(egui::lerp(place.x_range(), share.min(1.0)));
+    let (round, ink) = (theme::ROUND_TINY, pane.look.palette.on_accent);
+    ui.painter()
+        .rect_filled(place, CornerRadius::same(round), ink);
+}
+
+/// Why the series cannot begin, in words.
+fn refusal(pane: &Pane<'_>) -> Option<String> {
+    let (look, state) = (pane.look, pane.state);
+    let (hand, plan) = (state.hand(), &state.trials.plan);
+    if let Some(recorded) = pane.recorded() {
+        return Some(recorded.into());
+    }
+    if !hand.connection.status.state.is_live() {
+        return Some(look.say(main::REFUSED_OFFLINE).into());
+    }
+    if hand.arms_for_series() {
+        return Some(look.say(tune::ARMING).into());
+    }
+    if state.trials.running.is_some() {
+        return Some(look.say(main::SERIES_RUNS).into());
+    }
+    if plan.check().is_err() {
+        return Some(look.say(tune::PLAN_WRONG).into());
+    }
+    match hand.series_refusal(plan) {
+        Some(StartRefusal::Runs) => Some(look.say(main::SERIES_RUNS).into()),
+        Some(StartRefusal::Locked(dof)) => {
+            Some(look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]))
+        }
+        Some(StartRefusal::NotArmed) => {
+            let refusal = hand.arm_refusal(state.now);
+            refusal.map(|reason| words::refusal(look, reason))
+        }
+        None => None,
+    }
+}
