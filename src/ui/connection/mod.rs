@@ -9,7 +9,7 @@ mod shared;
 use crate::app::action::Action;
 use crate::app::hands::action::HandsAction;
 use crate::app::scan::ScanTarget;
-use crate::link::scan::Hosts;
+use crate::link::scan::{Hosts, HostsError};
 use crate::poses::library::NAME_CHARS_MAX;
 use crate::transport::Endpoint;
 use crate::transport::endpoint::typed::{TypedError, other_kind, recognise, shortest, spell};
@@ -17,10 +17,11 @@ use crate::ui::connection::detail::{KINDS, LinkFields, row_ui};
 use crate::ui::connection::hand_tiles::tiles_ui;
 use crate::ui::connection::scan::ScanPanel;
 use crate::ui::connection::shared::SharedPanel;
-use crate::ui::kit::{self, Button, CardGrid, Label, Pane, TextField, Weight};
+use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, TextField, Weight};
 use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
 use egui::{Key, ScrollArea, Ui};
+use std::net::Ipv4Addr;
 
 /// What a text that was typed means.
 type Meaning = Result<Endpoint, TypedError>;
@@ -50,7 +51,8 @@ impl ConnectionForm {
             self.filled_from = Some(endpoint.clone());
             self.typed = shortest(endpoint, ports);
         }
-        if !std::mem::replace(&mut self.has_looked, true) && ports.is_empty() {
+        let may_look = pane.recorded().is_none() && pane.state.hand().series.is_none();
+        if may_look && !std::mem::replace(&mut self.has_looked, true) && ports.is_empty() {
             pane.actions.push(Action::FindPorts);
         }
         let look = pane.look;
@@ -66,7 +68,7 @@ impl ConnectionForm {
                 ui.spacing_mut().item_spacing.y = theme::STEP;
                 match nth {
                     0 => self.address_ui(ui, pane),
-                    _ => link_ui(ui, pane),
+                    _ => figures::link_ui(ui, pane),
                 }
             });
             if let Some(address) = self.scan.ui(ui, pane) {
@@ -79,7 +81,8 @@ impl ConnectionForm {
 
     fn address_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(main::TAB_CONNECTION), |_| ());
+        let title = look.say(main::TAB_CONNECTION);
+        kit::head_ui(ui, look, title, |ui| slots_ui(ui, pane));
         let name = look.say(scan_text::ADDRESS);
         let field = kit::edit_ui(ui, (name, look.say(scan_text::EXAMPLES)), &mut self.typed);
         if std::mem::take(&mut self.wants_focus) {
@@ -89,10 +92,24 @@ impl ConnectionForm {
         let mut entered = enter && field.lost_focus();
         let ports = &pane.state.ports;
         let meaning = recognise(&self.typed, ports);
-        self.meaning_ui(ui, pane, &meaning, field.has_focus());
+        let is_typed = field.has_focus() || self.typed.trim().is_empty();
+        let wrong = self.wrong(look, &meaning).filter(|_| !is_typed);
+        self.meaning_ui(ui, look, (&meaning, wrong.as_deref()));
         let fields = spell(&self.typed, ports).ok();
         let fields = fields.and_then(|spelled| LinkFields::of(&spelled));
-        self.buttons_ui(ui, pane, &meaning, fields.is_some());
+        ui.horizontal_wrapped(|ui| {
+            self.buttons_ui(ui, pane, &meaning);
+            let change = Button::said(look, scan_text::CHANGE).large();
+            let change = change.switch(self.is_unfolded && fields.is_some());
+            let none = look.say(scan_text::CHANGE_NONE);
+            if change
+                .disabled_if(fields.is_none(), none)
+                .ui(ui, look)
+                .clicked()
+            {
+                self.is_unfolded ^= true;
+            }
+        });
         if let Some(mut fields) = fields.filter(|_| self.is_unfolded) {
             ui.add_space(theme::STEP);
             let before = fields.spelled();
@@ -111,87 +128,74 @@ impl ConnectionForm {
         let wanted = wanted.filter(|_| entered && pane.recorded().is_none());
         let connect = wanted.cloned().map(Action::Connect);
         pane.actions.extend(connect);
+        name_ui(ui, pane);
     }
 
-    /// What the text was recognised as, or what is wrong with it once it is not typed any more.
-    fn meaning_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, meaning: &Meaning, is_typed: bool) {
-        let (look, palette) = (pane.look, pane.look.palette);
+    /// What the text was recognised as, or once it is not typed any more what is wrong with it; for a port, the other kind.
+    fn meaning_ui(&mut self, ui: &mut Ui, look: Look, (meaning, wrong): (&Meaning, Option<&str>)) {
+        let palette = look.palette;
+        let (words, color) = match (meaning, wrong) {
+            (Ok(endpoint), _) => (&*scan_text::recognised(look, endpoint), palette.text),
+            (Err(_), None) => (look.say(scan_text::EXAMPLES), palette.muted),
+            (Err(_), Some(wrong)) if matches!(self.range(), Some(Ok(_))) => (wrong, palette.text),
+            (Err(_), Some(wrong)) => (wrong, palette.warn),
+        };
         ui.horizontal_wrapped(|ui| {
             ui.set_min_height(theme::CONTROL);
-            let (words, color) = match (meaning, self.range()) {
-                (Ok(endpoint), _) => (scan_text::recognised(look, endpoint), palette.text),
-                (Err(_), Some(Ok(hosts))) => {
-                    let words = look.fill(scan_text::RANGE, &[&hosts.count()]);
-                    (words, palette.text)
-                }
-                (Err(_), _) if is_typed || self.typed.trim().is_empty() => {
-                    (look.say(scan_text::EXAMPLES).to_owned(), palette.muted)
-                }
-                (Err(_), Some(Err(error))) => (errors::hosts(look, &error), palette.warn),
-                (Err(error), None) => (errors::typed(look, error), palette.warn),
+            Label::new(words, color).wrap().ui(ui);
+            let Ok(endpoint) = meaning else { return };
+            let Some(other) = other_kind(endpoint) else {
+                return;
             };
-            Label::new(&words, color).wrap().ui(ui);
-            let other = meaning.as_ref().ok().and_then(other_kind);
-            if let Some((other, endpoint)) = other.zip(meaning.as_ref().ok()) {
-                let words = look.fill(scan_text::INSTEAD, &[&look.say(panels::kind(other))]);
-                let button = Button::new(&words, look.tip(scan_text::INSTEAD));
+            let words = look.fill(scan_text::INSTEAD, &[&look.say(panels::kind(other))]);
+            let button = Button::new(&words, look.tip(scan_text::INSTEAD));
+            if button.ui(ui, look).clicked() {
                 let fields = LinkFields::of(&endpoint.to_string());
-                if button.ui(ui, look).clicked()
-                    && let Some(fields) = fields
-                {
-                    self.typed = fields.over(other).spelled();
-                }
+                self.typed = fields.map_or_else(String::new, |fields| fields.over(other).spelled());
             }
         });
+    }
+
+    /// Why the text is nothing to connect to.
+    fn wrong(&self, look: Look, meaning: &Meaning) -> Option<String> {
+        let error = meaning.as_ref().err()?;
+        Some(match self.range() {
+            Some(Ok(_)) => look.say(scan_text::RANGE).to_owned(),
+            Some(Err(error)) => errors::hosts(look, &error),
+            None => errors::typed(look, error),
+        })
     }
 
     /// The addresses that a range names, if one was typed.
-    fn range(&self) -> Option<Result<Hosts, crate::link::scan::HostsError>> {
+    fn range(&self) -> Option<Result<Hosts, HostsError>> {
         let (first, _) = self.typed.trim().split_once('/')?;
-        first.parse::<std::net::Ipv4Addr>().ok()?;
+        first.parse::<Ipv4Addr>().ok()?;
         Some(self.typed.parse())
     }
 
-    fn buttons_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        meaning: &Meaning,
-        has_fields: bool,
-    ) {
+    fn buttons_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, meaning: &Meaning) {
         let look = pane.look;
-        ui.horizontal_wrapped(|ui| {
-            let endpoint = meaning.as_ref().ok();
-            if !endpoint.is_some_and(|endpoint| is_connected_to(pane, endpoint)) {
-                let wrong = match (meaning, self.range()) {
-                    (Ok(_), _) => None,
-                    (Err(_), Some(_)) => Some(look.say(scan_text::RANGE_CONNECT).to_owned()),
-                    (Err(error), None) => Some(errors::typed(look, error)),
-                };
-                let reason = pane.recorded().or(wrong.as_deref());
-                let connect = Button::said(look, panels::CONNECT).large();
-                let connect = connect.weight(Weight::Strong).disabled(reason);
-                if let (true, Some(endpoint)) = (connect.ui(ui, look).clicked(), endpoint) {
-                    pane.actions.push(Action::Connect(endpoint.clone()));
-                }
+        let endpoint = meaning.as_ref().ok();
+        let to_it = endpoint.filter(|endpoint| is_connected_to(pane, endpoint));
+        if to_it.is_none() {
+            let wrong = self.wrong(look, meaning);
+            let connect = Button::said(look, panels::CONNECT).large();
+            let connect = connect.weight(Weight::Strong);
+            let connect = connect.disabled(pane.recorded().or(wrong.as_deref()));
+            let pressed = connect.ui(ui, look).clicked();
+            let connect = endpoint.filter(|_| pressed).cloned();
+            pane.actions.extend(connect.map(Action::Connect));
+        }
+        if pane.state.hand().connection.endpoint.is_some() {
+            let disconnect = Button::said(look, panels::DISCONNECT).large();
+            disconnect.on_click(ui, pane, Action::Disconnect);
+        }
+        if let Some(target) = self.scan_target(endpoint) {
+            let button = Button::said(look, panels::SCAN_HERE).large();
+            if scan::start_ui(ui, pane, button) {
+                pane.actions.push(Action::Scan(target));
             }
-            if pane.state.hand().connection.endpoint.is_some() {
-                let disconnect = Button::said(look, panels::DISCONNECT).large();
-                disconnect.on_click(ui, pane, Action::Disconnect);
-            }
-            if let Some(target) = self.scan_target(endpoint) {
-                let button = Button::said(look, panels::SCAN_HERE).large();
-                if scan::start_ui(ui, pane, button) {
-                    pane.actions.push(Action::Scan(target));
-                }
-            }
-            let change = Button::said(look, scan_text::CHANGE).large();
-            let change = change.switch(self.is_unfolded && has_fields);
-            let change = change.disabled_if(!has_fields, look.say(scan_text::CHANGE_NONE));
-            if change.ui(ui, look).clicked() {
-                self.is_unfolded ^= true;
-            }
-        });
+        }
     }
 
     /// What a scan of the place that was typed looks at.
@@ -244,43 +248,34 @@ fn is_connected_to(pane: &Pane<'_>, endpoint: &Endpoint) -> bool {
     pane.state.hand().connection.endpoint.as_ref() == Some(endpoint)
 }
 
-/// How the link goes in a few lines, all figures of it in a drawer, and the place of the hand among others.
-fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    figures::link_ui(ui, pane);
-    ui.add_space(theme::STEP);
-    hands_ui(ui, pane);
+/// Another hand in the window, and away with this one of several.
+fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, hands) = (pane.look, &pane.state.hands);
+    let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
+    let add = Button::said(look, window::ADD_HAND).disabled(full);
+    add.on_click(ui, pane, Action::Hands(HandsAction::Add));
+    if hands.is_several() {
+        let remove = HandsAction::Remove(pane.state.hand().label.slot);
+        let button = Button::said(look, window::REMOVE_HAND);
+        button.on_click(ui, pane, Action::Hands(remove));
+    }
 }
 
-/// Another hand in the window; of several, the name of this one, and away with it.
-fn hands_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// Of several hands, the name of this one.
+fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
-    let (hands, hand) = (&state.hands, state.hand());
-    let slot = hand.label.slot;
-    if let Some(endpoint) = hand
-        .connection
-        .endpoint
-        .as_ref()
-        .filter(|_| hands.is_several())
-    {
-        let caption = look.say(window::HAND_NAME);
-        row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
-            let name = state.settings.hand_name(endpoint).unwrap_or_default();
-            let field = TextField::new(caption, NAME_CHARS_MAX).hint(&hand.label.name);
-            if let Some(name) = field.ui(ui, pane, name) {
-                let named = HandsAction::Name(slot, name);
-                pane.actions.push(Action::Hands(named));
-            }
-        });
-    }
-    ui.horizontal_wrapped(|ui| {
-        let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
-        let add = Button::said(look, window::ADD_HAND).disabled(full);
-        add.large()
-            .on_click(ui, pane, Action::Hands(HandsAction::Add));
-        if hands.is_several() {
-            let remove = Button::said(look, window::REMOVE_HAND).large();
-            let action = Action::Hands(HandsAction::Remove(slot));
-            remove.on_click(ui, pane, action);
+    let hand = state.hand();
+    let endpoint = hand.connection.endpoint.as_ref();
+    let Some(endpoint) = endpoint.filter(|_| state.hands.is_several()) else {
+        return;
+    };
+    let caption = look.say(window::HAND_NAME);
+    row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
+        let name = state.settings.hand_name(endpoint).unwrap_or_default();
+        let field = TextField::new(caption, NAME_CHARS_MAX).hint(&hand.label.name);
+        if let Some(name) = field.ui(ui, pane, name) {
+            let named = HandsAction::Name(hand.label.slot, name);
+            pane.actions.push(Action::Hands(named));
         }
     });
 }

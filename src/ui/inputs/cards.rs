@@ -240,7 +240,7 @@ impl SourceCards {
 fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::head_ui(ui, look, look.say(exhibit::ENTER), |_| ());
-    kit::say_ui(ui, look.tip(exhibit::ENTER), look.palette.muted);
+    about_ui(ui, pane, exhibit::ENTER);
     ui.horizontal_wrapped(|ui| {
         for (text, tip, action) in [
             (exhibit::START, exhibit::ENTER, ExhibitAction::Enter),
@@ -288,7 +288,16 @@ pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: Switch) {
     if pressed {
         pane.actions.push(Action::Input(switch.action));
     }
-    kit::say_ui(ui, look.tip(switch.title), look.palette.muted);
+    about_ui(ui, pane, switch.title);
+}
+
+/// What a card is about, in the room of two lines, so that what is below stands in one row with that of its neighbours.
+fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
+    let look = pane.look;
+    ui.scope(|ui| {
+        ui.set_min_height(2.0 * theme::TEXT_LINE);
+        kit::say_ui(ui, look.tip(title), look.palette.muted);
+    });
 }
 
 /// Where something is open, or is to be.

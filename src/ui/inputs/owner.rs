@@ -40,8 +40,9 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                     .on_click(ui, pane, Action::Input(InputAction::TakeBack));
             }
         });
-        limits_ui(ui, pane);
         ui.horizontal_wrapped(|ui| {
+            limits_ui(ui, pane);
+            ui.add_space(theme::PAD);
             let settings = &pane.state.settings;
             let (mut held, mut idle) = (settings.hold_to_run, settings.disarm_idle);
             if switch_ui(ui, pane, inputs::HOLD_TO_RUN, &mut held) {
@@ -67,24 +68,22 @@ fn switch_ui(ui: &mut Ui, pane: &Pane<'_>, text: Text, on: &mut bool) -> bool {
 fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let limits = pane.state.settings.follow;
-    ui.horizontal_wrapped(|ui| {
-        Label::muted(look, inputs::LIMITS).ui(ui);
-        let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
-            Label::muted(look, text).ui(ui);
-            let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
-            let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
-            u16::try_from(typed).ok()
+    Label::muted(look, inputs::LIMITS).ui(ui);
+    let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
+        Label::muted(look, text).ui(ui);
+        let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
+        let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
+        u16::try_from(typed).ok()
+    };
+    let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
+    let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
+    if lead.or(rate).is_some() {
+        let limits = FollowLimits {
+            lead: lead.unwrap_or(limits.lead),
+            rate: rate.unwrap_or(limits.rate),
         };
-        let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
-        let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
-        if lead.or(rate).is_some() {
-            let limits = FollowLimits {
-                lead: lead.unwrap_or(limits.lead),
-                rate: rate.unwrap_or(limits.rate),
-            };
-            pane.actions.push(Action::Input(InputAction::Limit(limits)));
-        }
-    });
+        pane.actions.push(Action::Input(InputAction::Limit(limits)));
+    }
 }
 
 const fn phase(phase: FollowPhase) -> Text {

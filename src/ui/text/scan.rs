@@ -18,8 +18,7 @@ texts! {
     CHANGE: "Change", "更改", "Shows speed, id, unit and the like.", "显示波特率、ID、单元等设置。";
     CHANGE_NONE: "Type an address first.", "请先输入地址。";
     INSTEAD: "{} instead", "改用 {}", "A port does not tell which protocol is spoken on it.", "端口不会说明使用哪种协议。";
-    RANGE: "{} addresses, to be scanned", "{} 个地址，可扫描";
-    RANGE_CONNECT: "A range of addresses can be scanned, not connected to.", "网段只能扫描，不能连接。";
+    RANGE: "A range of addresses can be scanned, not connected to.", "网段只能扫描，不能连接。";
     WITH_BAUD: "{}, {} baud, id {}", "{}，波特率 {}，ID {}";
     WITH_BITRATE: "{}, {} bit/s, id {}", "{}，{} bit/s，ID {}";
     WITH_UNIT: "{}, port {}, unit {}", "{}，端口 {}，单元 {}";
