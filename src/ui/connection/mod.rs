@@ -74,8 +74,8 @@ impl ConnectionForm {
             if let Some(address) = self.scan.ui(ui, pane) {
                 self.typed = address;
             }
-            self.kinds_ui(ui, pane);
             self.shared.ui(ui, pane);
+            self.kinds_ui(ui, pane);
         });
     }
 
@@ -221,7 +221,7 @@ impl ConnectionForm {
         let spelled = spell(&self.typed, ports).unwrap_or_default();
         kit::card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.say(scan_text::WAYS), |_| ());
-            tiles_ui(ui, (392.0, 112.0), &KINDS, |ui, (id, place), (first, _)| {
+            tiles_ui(ui, (296.0, 128.0), &KINDS, |ui, (id, place), (first, _)| {
                 let kind = first.split(':').next().unwrap_or_default();
                 let text = panels::kind(kind);
                 let name = look.pair(look.say(panels::CONNECTION_KIND), look.say(text));

@@ -17,9 +17,9 @@ const ADDRESS_MAX: usize = 15;
 /// Height of a row, and of one that has a button below its field.
 const ROW: f32 = 28.0;
 /// Widths of name, live, staged and saved; narrower where there is no room for all. The range has the rest.
-const COLUMNS: [f32; 4] = [240.0, 168.0, 192.0, 144.0];
+const COLUMNS: [f32; 4] = [240.0, 152.0, 176.0, 128.0];
 /// Width that all columns need.
-const WIDTH: f32 = 880.0;
+const WIDTH: f32 = 800.0;
 /// Which rows are in a group, its title, and what they are.
 type ParamGroup = (fn(ParamId) -> bool, Text, Text);
 /// The groups in their order.

@@ -128,7 +128,7 @@ fn without_a_pin_staff_choose_one_by_typing_it_twice() {
     ] {
         bench.key(key);
     }
-    bench.run(60);
+    bench.run(600);
     assert!(
         matches!(staff(&bench), StaffPanel::Open { .. }),
         "{:?}",
