@@ -141,7 +141,9 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &Han
     words.spacing_mut().item_spacing.y = 2.0;
     Label::new(&tile.title, look.palette.text).ui(&mut words);
     let small = |text, color| Label::new(text, color).small();
-    small(&tile.place, look.palette.muted).ui(&mut words);
+    if !tile.place.is_empty() {
+        small(&tile.place, look.palette.muted).ui(&mut words);
+    }
     let (state, color) = match is_now {
         true => (look.say(scan::CONNECTED), look.palette.accent),
         false => (tile.state.0.as_str(), tile.state.1),

@@ -84,7 +84,7 @@ impl ConnectionForm {
         let title = look.say(main::TAB_CONNECTION);
         kit::head_ui(ui, look, title, |ui| slots_ui(ui, pane));
         let name = look.say(scan_text::ADDRESS);
-        let field = kit::edit_ui(ui, (name, look.say(scan_text::EXAMPLES)), &mut self.typed);
+        let field = kit::edit_ui(ui, (name, name), &mut self.typed);
         if std::mem::take(&mut self.wants_focus) {
             field.request_focus();
         }
