@@ -288,6 +288,9 @@ pub struct KnownHand {
     /// Left or right; `None` = as [`Settings::side`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
+    /// The day on which a person connected to it last, such as `2026-11-24`; empty if that is not known.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub last_day: String,
     /// Keys of a newer version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,
@@ -419,6 +422,17 @@ impl Settings {
         self.endpoint = Some(text);
     }
 
+    /// The day on which a person connected to this hand last.
+    pub fn last_day(&self, endpoint: &Endpoint) -> Option<&str> {
+        let day = &self.hands.get(&endpoint.to_string())?.last_day;
+        (!day.is_empty()).then_some(day)
+    }
+
+    /// Says on which day a person connected to a hand.
+    pub(crate) fn used_on(&mut self, endpoint: &Endpoint, day: String) {
+        self.know_hand(endpoint, |known| known.last_day = day);
+    }
+
     /// Left or right, as the person said of this hand, or last of any.
     pub fn side_of(&self, endpoint: Option<&Endpoint>) -> Side {
         let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
@@ -518,6 +532,9 @@ mod tests {
         assert_eq!(settings.side_of(Some(&endpoint(60))), Side::Right);
         settings.name_hand(&last, "");
         assert_eq!(settings.hand_name(&last), None);
+        settings.used_on(&last, "2026-11-24".into());
+        assert_eq!(settings.last_day(&last), Some("2026-11-24"));
+        assert_eq!(settings.last_day(&endpoint(60)), None);
     }
 
     #[test]

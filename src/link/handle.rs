@@ -74,7 +74,10 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
     let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests, asked) = mpsc::channel(REQUESTS_MAX);
     let (told, records) = broadcast::channel(RECORDS_MAX);
-    let (status_in, status) = watch::channel(LinkStatus::default());
+    let (status_in, status) = watch::channel(LinkStatus {
+        since: config.clock.now(),
+        ..LinkStatus::default()
+    });
     let (stats_in, stats) = watch::channel(LinkStats::default());
     let (image_in, image) = watch::channel(RegisterImage::default());
     let tap = WireTap::default();

@@ -9,6 +9,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Moment};
 use crate::history::{Mark, MarkKind};
 use crate::record::EventKind;
+use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 
 /// Leaves the shown hand for another, or for none.
@@ -21,6 +22,7 @@ pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
         // A scan may still ask further ids on the port that is wanted.
         state.scan.cancel();
         state.settings.remember(endpoint);
+        state.settings.used_on(endpoint, day(since_1970()));
     }
     hands::with_shown(state, env, |hand, settings, ctx| {
         hand.is_removed = false;

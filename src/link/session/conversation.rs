@@ -94,7 +94,10 @@ impl Session {
             dialled: config.endpoint.clone(),
             config,
             ends,
-            status: LinkStatus::default(),
+            status: LinkStatus {
+                since: now,
+                ..LinkStatus::default()
+            },
             counters: Counters::default(),
             sample: HandSample::default(),
             motion: Motion::default(),

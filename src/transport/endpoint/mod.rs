@@ -2,6 +2,7 @@
 pub(crate) mod error;
 mod parse;
 pub mod route;
+pub mod typed;
 
 use crate::hand::register::BytePacking;
 pub use crate::transport::endpoint::error::EndpointError;

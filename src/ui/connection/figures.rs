@@ -9,54 +9,87 @@ use crate::ui::connection::link_words::link_words;
 use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, errors, notices, panels, scan};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Ui, vec2};
+use egui::{Align, CollapsingHeader, Color32, Layout, Ui, vec2};
 
-/// What the line's time is told in, from the right, and how wide it is.
+/// What the use of the line is told in, from the right, and how wide it is.
 const BUDGET: [(Text, f32); 3] = [
-    (panels::BUDGET_COULD, 56.0),
-    (panels::BUDGET_SHARE, 46.0),
-    (notices::NOW, 52.0),
+    (panels::BUDGET_COULD, 80.0),
+    (panels::BUDGET_SHARE, 80.0),
+    (notices::NOW, 72.0),
 ];
 
-/// Draws the card of the link.
-pub(crate) fn link_ui(ui: &mut Ui, pane: &Pane<'_>) {
+/// Draws where the link stands and how fast it goes, and a drawer with every figure.
+pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let link = &pane.state.hand().connection.status;
-    kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
-        let (word, color) = link_words(pane);
-        let since = format::age(pane.state.now.since(link.since));
-        let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
-        ui.horizontal(|ui| {
-            kit::lamp_ui(ui, Some(color));
-            Label::new(&since, look.palette.text).wrap().ui(ui);
-        });
-        let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
-        if let Some(endpoint) = &pane.state.hand().connection.endpoint {
-            let endpoint = endpoint.to_string();
-            let label = Label::new(&endpoint, look.palette.muted).number();
-            label.wrap().ui(ui);
-        }
-        if let Some(port) = &link.moved_to {
-            let text = look.told(panels::MOVED_TO, port);
-            say(ui, &text, look.palette.warn);
-        }
-        if link.echoes {
-            say(ui, look.say(panels::ECHOES), look.palette.muted);
-        }
-        if let Some(trouble) = &link.trouble {
-            say(ui, &errors::trouble(look, trouble), look.palette.bad);
-        }
-        for group in figures(pane) {
-            ui.separator();
-            for (caption, value, color) in group {
-                let caption = look.say(caption);
-                figure_ui(ui, pane, caption, |ui| {
-                    Label::new(&value, color).number().named(caption).ui(ui);
+    kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
+    state_ui(ui, pane);
+    let details = CollapsingHeader::new(look.say(panels::DETAILS));
+    details.show_unindented(ui, |ui| {
+        let [hand, rates, counts, troubles] = figures(pane);
+        let groups = [vec![hand, rates, counts], vec![troubles]];
+        ui.columns(2, |columns| {
+            for (column, groups) in columns.iter_mut().zip(groups) {
+                // The columns of egui are justified, which spreads the words of a text.
+                column.vertical(|ui| {
+                    for group in groups {
+                        group_ui(ui, pane, group);
+                    }
                 });
             }
+        });
+        ui.add_space(theme::STEP);
+        budget_ui(ui, pane);
+    });
+}
+
+/// Where the link stands, since when, and what was read of it lately.
+fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    let connection = &pane.state.hand().connection;
+    let (link, stats) = (&connection.status, &connection.stats);
+    let (word, color) = link_words(pane);
+    let since = format::age(pane.state.now.since(link.since));
+    let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
+    ui.horizontal_wrapped(|ui| {
+        kit::lamp_ui(ui, Some(color));
+        Label::new(&since, look.palette.text).ui(ui);
+        if link.state.is_live() {
+            let rate = |text, hz| format!("{} {}", look.say(text), format::hertz(hz));
+            let trip = format::millis(stats.rtt_p50);
+            let rates = [
+                rate(panels::STATE_RATE, stats.state_hz),
+                rate(panels::group(RateClass::Tactile), stats.tactile_hz),
+                look.fill(panels::ROUND_TRIP, &[&trip]),
+            ];
+            Label::new(&rates.join("  ·  "), look.palette.muted).ui(ui);
         }
     });
+    let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
+    if let Some(endpoint) = &connection.endpoint {
+        let endpoint = endpoint.to_string();
+        let label = Label::new(&endpoint, look.palette.muted).number();
+        label.wrap().ui(ui);
+    }
+    if let Some(port) = &link.moved_to {
+        let text = look.told(panels::MOVED_TO, port);
+        say(ui, &text, look.palette.warn);
+    }
+    if link.echoes {
+        say(ui, look.say(panels::ECHOES), look.palette.muted);
+    }
+    if let Some(trouble) = &link.trouble {
+        say(ui, &errors::trouble(look, trouble), look.palette.bad);
+    }
+}
+
+fn group_ui(ui: &mut Ui, pane: &Pane<'_>, group: Figures) {
+    ui.separator();
+    for (caption, value, color) in group {
+        let caption = pane.look.say(caption);
+        figure_ui(ui, pane, caption, |ui| {
+            Label::new(&value, color).number().named(caption).ui(ui);
+        });
+    }
 }
 
 type Figures = Vec<(Text, String, Color32)>;
@@ -121,8 +154,8 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     ]
 }
 
-/// Draws the card of the line's time: each group of reads, what it gets and what the wire could give.
-pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// Draws what the line is used for: each group of reads, what it gets and what the wire could give.
+fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let line = &pane.state.hand().connection.stats.line;
     let live = pane.state.hand().connection.status.state.is_live();
@@ -144,24 +177,25 @@ pub(crate) fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
     };
-    let first = kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
-        figure_ui(ui, pane, "", |ui| {
-            for (head, width) in BUDGET {
-                let head = Label::note(look, head);
-                cell_ui(ui, width, |ui| drop(head.ui(ui)));
+    kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
+    figure_ui(ui, pane, "", |ui| {
+        for (head, width) in BUDGET {
+            let label = Label::note(look, head);
+            let place = cell_ui(ui, width, |ui| label.ui(ui));
+            if !look.tip(head).is_empty() {
+                place.on_hover_text(look.tip(head));
             }
-        });
-        for (group, used) in RateClass::ALL.into_iter().zip(&line.groups) {
-            let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
-            row(ui, panels::group(group), values);
         }
-        let share = |share| [String::new(), percent(share), String::new()];
-        row(ui, panels::BUDGET_WRITES, share(line.writes));
-        ui.separator();
-        row(ui, panels::LINE_USED, share(line.utilisation));
-        first_ui(ui, pane)
     });
+    for (group, used) in RateClass::ALL.into_iter().zip(&line.groups) {
+        let values = [rate(used.could_hz), percent(used.share), rate(used.hz)];
+        row(ui, panels::group(group), values);
+    }
+    let share = |share| [String::new(), percent(share), String::new()];
+    row(ui, panels::BUDGET_WRITES, share(line.writes));
+    ui.separator();
+    row(ui, panels::LINE_USED, share(line.utilisation));
+    let first = first_ui(ui, pane);
     pane.actions.extend(first.map(Action::ReadFirst));
 }
 
@@ -198,12 +232,14 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, caption: &str, add: impl FnOnce(&mut 
     });
 }
 
-fn cell_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+fn cell_ui<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
     let size = vec2(width, theme::FIGURE_ROW);
-    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+    let right = Layout::right_to_left(Align::Center);
+    let cell = ui.allocate_ui_with_layout(size, right, |ui| {
         ui.set_min_width(width);
-        add(ui);
+        add(ui)
     });
+    cell.inner
 }
 
 /// A rate, with a digit more where it is slow, and as wide as its column where a built-in hand answers at once.

@@ -1,14 +1,12 @@
-//! Hands that other Handscopes share: where to look for them, which are there, and the button that watches one.
+//! Hands that other Handscopes share: where to look for them, which are there, and the tile that watches one.
 
 use crate::app::action::Action;
-use crate::hand::kinematics::Side;
 use crate::share::fleet::{FleetHand, reachable};
+use crate::ui::connection::hand_tiles::{HandTile, hand_tiles_ui, side_words};
 use crate::ui::connection::link_words::state_color;
-use crate::ui::connection::scan::connect_ui;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
-use crate::ui::text::{Text, errors, inputs, main, panels, scan};
-use crate::ui::theme;
-use egui::{Ui, vec2};
+use crate::ui::text::{Text, errors, inputs, main, scan};
+use egui::Ui;
 
 /// What was typed.
 #[derive(Debug)]
@@ -40,9 +38,9 @@ impl SharedPanel {
             if pane.state.fleet.interface().is_some() && pane.state.fleet.hands.is_empty() {
                 Label::muted(look, scan::SHARED_NONE).wrap().ui(ui);
             }
-            for hand in &pane.state.fleet.hands {
-                hand_ui(ui, pane, hand);
-            }
+            let hands = pane.state.fleet.hands.iter();
+            let tiles: Vec<HandTile> = hands.map(|hand| tile(pane, hand)).collect();
+            hand_tiles_ui(ui, pane, &tiles);
         });
     }
 
@@ -55,13 +53,10 @@ impl SharedPanel {
             scan::SHARED_FIND
         };
         ui.horizontal(|ui| {
-            let width = kit::text_width(ui, look.say(text), theme::body()) + 2.0 * theme::PAD;
-            let width = ui.available_width() - width - theme::GAP;
             ui.add_enabled_ui(!is_on, |ui| {
-                ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
-                    let name = look.say(inputs::DDS_AT);
-                    kit::edit_ui(ui, (name, name), &mut self.interface)
-                });
+                ui.set_max_width(240.0);
+                let name = look.say(inputs::DDS_AT);
+                kit::edit_ui(ui, (name, name), &mut self.interface);
             });
             let interface = self.interface.trim().to_owned();
             let missing = interface.is_empty() && !is_on;
@@ -73,34 +68,24 @@ impl SharedPanel {
     }
 }
 
-/// A hand with the button that connects to its gateway.
-fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>, hand: &FleetHand) {
-    let look = pane.look;
-    let card = &hand.card;
-    let endpoint = hand.endpoint();
-    let connect = (endpoint.as_ref(), card.name.as_str(), refusal(pane, hand));
-    connect_ui(ui, pane, connect, |ui| {
-        let title = format!("{} · {}", card.name, card.host);
-        Label::new(&title, look.palette.text).wrap().ui(ui);
-        ui.horizontal_wrapped(|ui| {
-            let state = Label::new(
-                look.say(main::link_state(hand.state)),
-                state_color(look, hand.state),
-            );
-            state.small().ui(ui);
-            let about = about(look, hand).join(" · ");
-            Label::new(&about, look.palette.muted).small().wrap().ui(ui);
-        });
-    });
+/// A hand that leads to its gateway.
+fn tile(pane: &Pane<'_>, hand: &FleetHand) -> HandTile {
+    let (look, card) = (pane.look, &hand.card);
+    let state = look.say(main::link_state(hand.state)).to_owned();
+    HandTile {
+        endpoint: hand.endpoint(),
+        name: card.name.clone(),
+        side: card.side,
+        title: format!("{} · {}", card.name, card.host),
+        place: about(look, hand).join(" · "),
+        state: (state, state_color(look, hand.state)),
+        refusal: refusal(pane, hand),
+    }
 }
 
 /// Which hand it is, who moves it or may, and where.
 fn about(look: Look, hand: &FleetHand) -> Vec<String> {
     let card = &hand.card;
-    let side = match card.side {
-        Side::Left => panels::LEFT_HAND,
-        Side::Right => panels::RIGHT_HAND,
-    };
     let owner = match hand.owner {
         Some(owner) => scan::mover(look, owner),
         None => look.say(scan::NOBODY_MOVES).to_owned(),
@@ -108,7 +93,7 @@ fn about(look: Look, hand: &FleetHand) -> Vec<String> {
     let first = card.first_may_move.then(|| look.say(scan::FIRST_MOVES));
     let at = card.at.map(|at| at.to_string());
     let all = [
-        Some(look.say(side).to_owned()),
+        Some(look.say(side_words(card.side)).to_owned()),
         Some(owner),
         first.map(str::to_owned),
         at,

@@ -15,11 +15,16 @@ use std::mem::Discriminant;
 /// How much of the page is seen through the veil.
 const VEIL: f32 = 0.86;
 
+/// What opens under a finger that types takes no press before the finger was away for so long, seconds.
+const AWAY_S: f64 = 0.5;
+
 /// What was typed by staff.
 #[derive(Debug, Default)]
 pub(crate) struct StaffView {
     keypad: Keypad,
     shown: Option<Discriminant<StaffPanel>>,
+    /// From this moment on the panel that the PIN opened takes presses.
+    takes_from: f64,
 }
 
 /// What stands above the keys of the pad.
@@ -40,9 +45,11 @@ impl StaffView {
         (places, keys): (&PagePlaces, &[Key]),
     ) {
         let kind = std::mem::discriminant(&exhibit.staff);
-        if self.shown.replace(kind) != Some(kind) {
+        let is_new = self.shown.replace(kind) != Some(kind);
+        if is_new {
             self.keypad.clear();
         }
+        let takes = self.takes_presses(ui, is_new);
         if exhibit.staff == StaffPanel::Closed {
             return;
         }
@@ -58,13 +65,28 @@ impl StaffView {
                 let enter = |typed| Action::Exhibit(ExhibitAction::Pin(typed));
                 pane.actions.extend(typed.map(enter));
             }
-            None => open_ui(
-                ui,
-                page,
-                pane,
-                (exhibit, card_rect(places, vec2(1100.0, 760.0))),
-            ),
+            None => drop(ui.scope(|ui| {
+                if !takes {
+                    ui.visuals_mut().disabled_alpha = 1.0;
+                    ui.disable();
+                }
+                let rect = card_rect(places, vec2(1100.0, 760.0));
+                open_ui(ui, page, pane, (exhibit, rect));
+            })),
         }
+    }
+
+    /// False until nothing was pressed for a while since something new is shown: who types a digit too many presses nothing.
+    fn takes_presses(&mut self, ui: &Ui, is_new: bool) -> bool {
+        let (now, is_down) = ui.input(|input| {
+            let pointer = &input.pointer;
+            let is_down = pointer.any_down() || pointer.any_pressed() || input.any_touches();
+            (input.time, is_down)
+        });
+        if is_new || is_down && now < self.takes_from {
+            self.takes_from = now + AWAY_S;
+        }
+        now >= self.takes_from
     }
 
     fn pad_ui(

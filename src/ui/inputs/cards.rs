@@ -1,18 +1,22 @@
-//! Each way in and out besides the window: where it is, whether it is open, who is there.
+//! Each way in and out besides the window, a card each: its switch, where it is, how it goes, and whether it may move the hand.
 
 use crate::app::action::Action;
+use crate::app::exhibit::ExhibitAction;
 use crate::app::inputs::{InputAction, InputKind, InputSource};
 use crate::inputs::stream::StreamPlace;
 use crate::link::Owner;
-use crate::record::ArmRefusal;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
-use crate::ui::inputs::owner::figures_ui;
-use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
-use crate::ui::text::{Text, errors, inputs, words};
+use crate::ui::inputs::pad_card::pad_source_ui;
+use crate::ui::inputs::source::{Switch, about_ui, grant_ui, state_ui, switch_ui};
+use crate::ui::kit::{self, Button, CardGrid, Label, Pane};
+use crate::ui::text::{Text, errors, exhibit, inputs};
 use crate::ui::theme;
-use egui::{Ui, vec2};
+use egui::Ui;
 use std::net::{IpAddr, SocketAddr};
+
+/// No card is narrower, but where the window is.
+const CARD_LEAST: f32 = 320.0;
 
 /// What was typed.
 #[derive(Debug)]
@@ -37,47 +41,46 @@ impl Default for SourceCards {
     }
 }
 
-/// What a switch opens, its words, and what a press does.
-type Switch = (InputKind, Text, InputAction);
-/// Where something is open, and what is wrong with the place that was typed.
-type Place = (Option<(IpAddr, String)>, Option<Text>);
+/// What a card is about.
+#[derive(Debug, Clone, Copy)]
+enum SourceCard {
+    Stream,
+    Dds,
+    Gateway,
+    Viewers,
+    Mirror,
+    Pad,
+    Exhibition,
+}
 
 impl SourceCards {
     /// Draws all.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let look = pane.look;
-        if pane.state.hands.is_several() {
-            card_ui(ui, pane, inputs::MIRROR, |ui, pane| {
-                let missing = mirror_ui(ui, pane);
-                let source = (
-                    look.say(inputs::MIRROR),
-                    InputAction::Grant(InputSource::Mirror),
-                );
-                grant_ui(ui, pane, source, missing);
-            });
-        }
-        card_ui(ui, pane, inputs::STREAM, |ui, pane| {
-            self.stream_ui(ui, pane)
-        });
-        card_ui(ui, pane, inputs::DDS, |ui, pane| self.dds_ui(ui, pane));
-        card_ui(ui, pane, inputs::GATEWAY, |ui, pane| {
-            self.gateway_ui(ui, pane)
-        });
-        card_ui(ui, pane, inputs::VIEWERS, |ui, pane| {
-            self.viewers_ui(ui, pane)
+        use SourceCard::{Dds, Exhibition, Gateway, Mirror, Pad, Stream, Viewers};
+        let mirror = pane.state.hands.is_several().then_some(Mirror);
+        let cards = [Stream, Dds, Gateway, Viewers].into_iter().chain(mirror);
+        let cards: Vec<SourceCard> = cards.chain([Pad, Exhibition]).collect();
+        let grid = CardGrid {
+            salt: "share",
+            least: CARD_LEAST,
+            most: 3,
+            count: cards.len(),
+        };
+        grid.ui(ui, pane.look, |ui, nth| match cards.get(nth) {
+            Some(Stream) => self.stream_ui(ui, pane),
+            Some(Dds) => self.dds_ui(ui, pane),
+            Some(Gateway) => self.gateway_ui(ui, pane),
+            Some(Viewers) => self.viewers_ui(ui, pane),
+            Some(Mirror) => mirror_ui(ui, pane),
+            Some(Pad) => pad_source_ui(ui, pane),
+            Some(Exhibition) => exhibition_ui(ui, pane),
+            None => {}
         });
     }
 
     fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let at = pane.state.hand().inputs.stream_at;
-        ui.add_enabled_ui(at.is_none(), |ui| {
-            ui.horizontal(|ui| {
-                let both = [(false, inputs::UDP), (true, inputs::TCP)];
-                kit::pick_ui(ui, look, (&mut self.is_tcp, inputs::STREAM), both);
-                address_ui(ui, look.say(inputs::STREAM_AT), &mut self.stream);
-            });
-        });
         let wanted = place(&self.stream).map(|at| {
             if self.is_tcp {
                 StreamPlace::Tcp(at)
@@ -85,89 +88,115 @@ impl SourceCards {
                 StreamPlace::Udp(at)
             }
         });
-        let action = InputAction::Listen(wanted.filter(|_| at.is_none()));
-        ui.horizontal_wrapped(|ui| {
-            let switch = (InputKind::Stream, inputs::LISTEN, action);
-            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
-            let view = &pane.state.hand().inputs.stream_view;
-            let missing = silence(pane, view.owner(pane.state.now).filter(|_| at.is_some()));
-            let source = (
-                look.say(inputs::STREAM),
-                InputAction::Grant(InputSource::Stream),
-            );
-            grant_ui(ui, pane, source, missing);
+        let switch = Switch {
+            title: inputs::STREAM,
+            turns_on: inputs::LISTEN,
+            is_on: at.is_some(),
+            action: InputAction::Listen(wanted.filter(|_| at.is_none())),
+            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+        };
+        switch_ui(ui, pane, switch);
+        ui.horizontal(|ui| {
+            ui.add_enabled_ui(at.is_none(), |ui| {
+                let both = [(false, inputs::UDP), (true, inputs::TCP)];
+                kit::pick_ui(ui, look, (&mut self.is_tcp, inputs::STREAM), both);
+            });
+            let name = look.say(inputs::STREAM_AT);
+            place_ui(ui, pane, (name, &mut self.stream), at.map(socket));
         });
+        let hand = pane.state.hand();
+        let view = &hand.inputs.stream_view;
+        let owner = view.owner(pane.state.now).filter(|_| at.is_some());
+        let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
+        let words = match (at, owner.and(sender)) {
+            (None, _) => look.say(inputs::OFF).to_owned(),
+            (Some(_), None) => look.say(inputs::NOBODY_SENDS).to_owned(),
+            (Some(_), Some(sender)) => {
+                let rate = format!("{:.0}", view.intake.rate_hz);
+                look.fill(inputs::HZ_FROM, &[&rate, &sender])
+            }
+        };
+        state_ui(ui, pane, Some(InputKind::Stream), &words);
         if at.is_some() {
-            stream_figures_ui(ui, pane);
+            let refused = view.intake.refused.iter();
+            let refused = refused.map(|(fault, count)| (inputs::fault(*fault), *count));
+            let counts = [
+                (inputs::TAKEN_LINES, view.intake.taken),
+                (inputs::NOT_GRANTED, view.not_granted),
+            ];
+            counts_ui(ui, pane, counts.into_iter().chain(refused));
         }
+        let missing = silence(pane, owner);
+        let source = InputAction::Grant(InputSource::Stream);
+        grant_ui(ui, pane, (look.say(inputs::STREAM), source), missing);
     }
 
     fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let view = pane.state.hand().inputs.dds_view.clone();
-        ui.add_enabled_ui(view.is_none(), |ui| {
-            address_ui(ui, look.say(inputs::DDS_AT), &mut self.dds);
-        });
+        let view = pane.state.hand().inputs.dds_view.as_ref();
         let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
-        let action = InputAction::JoinDds(wanted.clone().filter(|_| view.is_none()));
-        let at = view
-            .as_ref()
-            .map(|view| (view.at.into(), view.at.to_string()));
-        let wrong = wanted.is_none().then_some(inputs::INTERFACE_WRONG);
-        ui.horizontal_wrapped(|ui| {
-            let switch = (InputKind::Dds, inputs::JOIN, action);
-            switch_ui(ui, pane, switch, (at, wrong));
-            let owner = view.as_ref();
-            let owner = owner.and_then(|view| view.view.owner(pane.state.now));
-            let missing = silence(pane, owner);
-            let other = view.as_ref().and_then(|view| view.other.as_ref());
-            let other =
-                other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
-            let source = (look.say(inputs::DDS), InputAction::Grant(InputSource::Dds));
-            grant_ui(ui, pane, source, other.as_deref().or(missing));
-        });
-        let Some(view) = view else { return };
-        let refused: u64 = view.view.refused.values().sum();
-        let rows = [
-            (look.say(inputs::STATES), view.told.states.to_string()),
-            (
-                look.say(inputs::RATE),
-                format!("{:.0} Hz", view.view.rate_hz),
-            ),
-            (look.say(inputs::COMMANDS), view.view.taken.to_string()),
-            (look.say(inputs::REFUSED), refused.to_string()),
-            (
-                look.say(inputs::NOT_GRANTED),
-                view.view.not_granted.to_string(),
-            ),
-        ];
-        figures_ui(ui, look, "dds figures", &rows);
-        if let Some(newest) = view.view.refused.keys().next_back() {
-            kit::say_ui(ui, look.say(inputs::ctrl_fault(*newest)), look.palette.warn);
+        let switch = Switch {
+            title: inputs::DDS,
+            turns_on: inputs::JOIN,
+            is_on: view.is_some(),
+            wrong: wanted.is_none().then_some(inputs::INTERFACE_WRONG),
+            action: InputAction::JoinDds(wanted.filter(|_| view.is_none())),
+        };
+        switch_ui(ui, pane, switch);
+        let at = view.map(|view| (view.at.into(), view.at.to_string()));
+        place_ui(ui, pane, (look.say(inputs::DDS_AT), &mut self.dds), at);
+        let owner = view.and_then(|view| view.view.owner(pane.state.now));
+        let words = match (view, owner) {
+            (None, _) => look.say(inputs::OFF).to_owned(),
+            (Some(_), None) => look.say(inputs::NOBODY_SENDS).to_owned(),
+            (Some(view), Some(_)) => format!("{:.0} Hz", view.view.rate_hz),
+        };
+        state_ui(ui, pane, Some(InputKind::Dds), &words);
+        if let Some(view) = view {
+            let counts = [
+                (inputs::STATES, view.told.states),
+                (inputs::COMMANDS, view.view.taken),
+                (inputs::REFUSED, view.view.refused.values().sum()),
+                (inputs::NOT_GRANTED, view.view.not_granted),
+            ];
+            counts_ui(ui, pane, counts);
+            if let Some(newest) = view.view.refused.keys().next_back() {
+                kit::say_ui(ui, look.say(inputs::ctrl_fault(*newest)), look.palette.warn);
+            }
         }
+        let other = view.and_then(|view| view.other.as_ref());
+        let other =
+            other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
+        let missing = other.as_deref().or(silence(pane, owner));
+        let source = InputAction::Grant(InputSource::Dds);
+        grant_ui(ui, pane, (look.say(inputs::DDS), source), missing);
     }
 
     fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let at = pane.state.hand().inputs.gateway_at;
-        ui.add_enabled_ui(at.is_none(), |ui| {
-            address_ui(ui, look.say(inputs::GATEWAY_AT), &mut self.share);
-        });
         let wanted = place(&self.share);
-        let action = InputAction::Share(wanted.filter(|_| at.is_none()));
-        ui.horizontal_wrapped(|ui| {
-            let switch = (InputKind::Gateway, inputs::SHARE, action);
-            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
-        });
+        let switch = Switch {
+            title: inputs::GATEWAY,
+            turns_on: inputs::OPEN_GATEWAY,
+            is_on: at.is_some(),
+            action: InputAction::Share(wanted.filter(|_| at.is_none())),
+            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+        };
+        switch_ui(ui, pane, switch);
+        let name = look.say(inputs::GATEWAY_AT);
+        place_ui(ui, pane, (name, &mut self.share), at.map(socket));
+        let clients = &pane.state.hand().inputs.clients;
+        let words = match (at, clients.len()) {
+            (None, _) => look.say(inputs::OFF).to_owned(),
+            (Some(_), 0) => look.say(inputs::NO_CLIENTS).to_owned(),
+            (Some(_), count) => look.fill(inputs::CLIENTS, &[&count]),
+        };
+        state_ui(ui, pane, Some(InputKind::Gateway), &words);
         if pane.state.settings.first_client_moves {
-            let label = Label::new(look.say(inputs::FIRST_CLIENT), look.palette.warn);
-            label.wrap().ui(ui);
+            kit::say_ui(ui, look.say(inputs::FIRST_CLIENT), look.palette.warn);
         }
-        let clients = pane.state.hand().inputs.clients.clone();
-        if at.is_some() && clients.is_empty() {
-            Label::muted(look, inputs::NO_CLIENTS).ui(ui);
-        }
-        for client in &clients {
+        for client in clients {
             client_ui(ui, pane, client);
         }
     }
@@ -175,41 +204,43 @@ impl SourceCards {
     fn viewers_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let served = pane.state.hand().inputs.foxglove_at;
-        ui.add_enabled_ui(served.is_none(), |ui| {
-            address_ui(ui, look.say(inputs::VIEWERS_AT), &mut self.viewers);
-        });
         let wanted = place(&self.viewers);
-        let action = InputAction::Show(wanted.filter(|_| served.is_none()));
-        let at = served.map(|(at, _)| at);
-        ui.horizontal_wrapped(|ui| {
-            let switch = (InputKind::Viewers, inputs::SHOW, action);
-            switch_ui(ui, pane, switch, socket(at, wanted.is_none()));
-        });
-        if let Some((_, count)) = served {
-            let rows = [(look.say(inputs::VIEWERS_NOW), count.to_string())];
-            figures_ui(ui, look, "viewers", &rows);
-        }
+        let switch = Switch {
+            title: inputs::VIEWERS,
+            turns_on: inputs::SHOW,
+            is_on: served.is_some(),
+            action: InputAction::Show(wanted.filter(|_| served.is_none())),
+            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+        };
+        switch_ui(ui, pane, switch);
+        let name = look.say(inputs::VIEWERS_AT);
+        let at = served.map(|(at, _)| socket(at));
+        place_ui(ui, pane, (name, &mut self.viewers), at);
+        let words = match served {
+            None => look.say(inputs::OFF).to_owned(),
+            Some((_, count)) => look.fill(inputs::VIEWERS_NOW, &[&count]),
+        };
+        state_ui(ui, pane, Some(InputKind::Viewers), &words);
     }
 }
 
-fn card_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    title: Text,
-    add: impl FnOnce(&mut Ui, &mut Pane<'_>),
-) {
+/// The page for visitors, and how it is begun.
+fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(title), |_| ());
-        kit::say_ui(ui, look.tip(title), look.palette.muted);
-        add(ui, pane);
-    });
-}
-
-fn address_ui(ui: &mut Ui, name: &str, text: &mut String) {
-    let width = ui.available_width();
-    ui.allocate_ui(vec2(width, theme::CONTROL), |ui| {
-        kit::edit_ui(ui, (name, name), text)
+    kit::head_ui(ui, look, look.say(exhibit::ENTER), |_| ());
+    about_ui(ui, pane, exhibit::ENTER);
+    ui.horizontal_wrapped(|ui| {
+        for (text, tip, action) in [
+            (exhibit::START, exhibit::ENTER, ExhibitAction::Enter),
+            (
+                exhibit::ENTER_FILE,
+                exhibit::ENTER_FILE,
+                ExhibitAction::EnterFile,
+            ),
+        ] {
+            let button = Button::new(look.say(text), look.tip(tip)).large();
+            button.on_click(ui, pane, Action::Exhibit(action));
+        }
     });
 }
 
@@ -217,101 +248,44 @@ fn place(text: &str) -> Option<SocketAddr> {
     text.trim().parse().ok()
 }
 
-/// Why nothing can be opened without a hand.
-pub(crate) fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
-    let is_live = pane.state.hand().connection.status.state.is_live();
-    (!is_live).then(|| pane.look.say(inputs::NO_HAND))
+fn socket(at: SocketAddr) -> (IpAddr, String) {
+    (at.ip(), at.to_string())
 }
 
-fn socket(at: Option<SocketAddr>, is_wrong: bool) -> Place {
-    let wrong = is_wrong.then_some(inputs::ADDRESS_WRONG);
-    (at.map(|at| (at.ip(), at.to_string())), wrong)
-}
-
-/// A switch: while it is on it says so, and how it ends. Its name stays.
-pub(crate) fn on_off(look: Look, text: Text, on: bool) -> Button<'static> {
-    let shown = if on { inputs::ON } else { text };
-    Button::new(look.say(shown), look.tip(shown))
-        .named(look.say(text))
-        .switch(on)
-}
-
-/// Opens something or closes it, and says where it is, or why it is not.
-fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, (kind, text, action): Switch, (at, wrong): Place) {
-    let look = pane.look;
-    let wrong = wrong.filter(|_| at.is_none()).map(|wrong| look.say(wrong));
-    let button = on_off(look, text, at.is_some()).large();
-    let button = button.disabled(no_hand(pane).or(wrong));
-    button.on_click(ui, pane, Action::Input(action));
-    let refused = pane.state.hand().inputs.refused.as_ref();
-    match (at, refused.filter(|(refused, _)| *refused == kind)) {
-        (Some((ip, at)), _) if !ip.is_loopback() => {
-            let label = Label::new(&at, look.palette.warn).number().ui(ui);
-            label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
-        }
-        (Some((_, at)), _) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
-        (None, Some((_, why))) => {
-            let why = errors::not_opened(look, why);
-            Label::new(&why, look.palette.warn).wrap().ui(ui);
-        }
-        (None, None) => {}
-    }
-}
-
-/// Lets a source move the hand.
-pub(crate) fn grant_ui(
+/// Where something is open, or is to be.
+fn place_ui(
     ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (source, action): (&str, InputAction),
-    missing: Option<&str>,
+    pane: &Pane<'_>,
+    (name, typed): (&str, &mut String),
+    at: Option<(IpAddr, String)>,
 ) {
     let look = pane.look;
-    let hand = pane.state.hand();
-    // What has to be held can still be held once it may.
-    let refusal = hand.arm_refusal(pane.state.now);
-    let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
-    let refusal = refusal.map(|reason| words::refusal(look, reason));
-    let taken = hand
-        .connection
-        .outside_owner()
-        .map(|_| look.say(inputs::TAKEN));
-    let reason = no_hand(pane).or(taken).or(missing);
-    let reason = reason.map(ToOwned::to_owned).or(refusal);
-    let name = look.pair(look.say(inputs::GRANT), source);
-    let button = Button::said(look, inputs::GRANT)
-        .named(&name)
-        .weight(Weight::Strong)
-        .large();
-    let button = button.disabled(reason.as_deref());
-    button.on_click(ui, pane, Action::Input(action));
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::CONTROL);
+        match at {
+            Some((ip, at)) if !ip.is_loopback() => {
+                let label = Label::new(&at, look.palette.warn).number().ui(ui);
+                label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+            }
+            Some((_, at)) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
+            None => drop(kit::edit_ui(ui, (name, name), typed)),
+        }
+    });
+}
+
+/// How often something happened, in small words.
+fn counts_ui(ui: &mut Ui, pane: &Pane<'_>, counts: impl IntoIterator<Item = (Text, u64)>) {
+    let look = pane.look;
+    let counts = counts.into_iter();
+    let counts = counts.map(|(text, count)| look.pair(look.say(text), &count.to_string()));
+    let counts: Vec<String> = counts.collect();
+    kit::say_ui(ui, &counts.join("  ·  "), look.palette.muted);
 }
 
 /// Why nobody can be followed now, if nobody sends.
 fn silence(pane: &Pane<'_>, owner: Option<Owner>) -> Option<&'static str> {
     let is_silent = owner.is_none();
     is_silent.then(|| pane.look.say(inputs::NOBODY_SENDS))
-}
-
-fn stream_figures_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let look = pane.look;
-    let view = &pane.state.hand().inputs.stream_view;
-    let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
-    let mut rows = vec![
-        (
-            look.say(inputs::SENDER),
-            sender.unwrap_or_else(|| "-".into()),
-        ),
-        (
-            look.say(inputs::RATE),
-            format!("{:.0} Hz", view.intake.rate_hz),
-        ),
-        (look.say(inputs::TAKEN_LINES), view.intake.taken.to_string()),
-        (look.say(inputs::NOT_GRANTED), view.not_granted.to_string()),
-    ];
-    for (fault, count) in &view.intake.refused {
-        rows.push((look.say(inputs::fault(*fault)), count.to_string()));
-    }
-    figures_ui(ui, look, "stream figures", &rows);
 }
 
 fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {

@@ -1,12 +1,13 @@
 //! Another hand of this window that can lead the shown one: which one, how much of it is followed, and whether it may.
 
 use crate::app::action::Action;
-use crate::app::inputs::InputAction;
 use crate::app::inputs::mirror::HandMirror;
+use crate::app::inputs::{InputAction, InputSource};
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
-use crate::ui::inputs::owner::{figures_ui, leader_name};
+use crate::ui::inputs::owner::leader_name;
+use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
 use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
 use crate::ui::theme;
@@ -14,50 +15,63 @@ use egui::{Ui, vec2};
 
 /// Width of the names.
 const NAME: f32 = 100.0;
-/// Width of the choice of the hand that leads.
-const LEADER: f32 = 220.0;
 
-/// Draws the choice, how the other hand answers, and gives why it may not lead now, if it may not.
-pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<&'static str> {
+/// Draws the switch, the choice, how the other hand answers, and whether it may lead.
+pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let mirror = state.hand().inputs.mirror.as_ref();
     let is_led = state.hand().inputs.leader().is_some();
+    let first = others(state).into_iter().next();
+    let first = first.map(|(leader, _)| (leader, MirrorScale::WHOLE));
+    let switch = Switch {
+        title: inputs::MIRROR,
+        turns_on: inputs::WATCH,
+        is_on: mirror.is_some(),
+        action: InputAction::Mirror(first.filter(|_| mirror.is_none())),
+        wrong: first.is_none().then_some(inputs::NO_OTHER_HAND),
+    };
+    switch_ui(ui, pane, switch);
     let choice = ui.add_enabled_ui(!is_led, |ui| {
         choice_ui(ui, pane, mirror);
     });
     let taken = look.say(inputs::TAKEN);
     choice.response.on_disabled_hover_text(taken);
-    if let Some(mirror) = mirror {
-        let answers = mirror.view.owner(state.now).is_some();
-        let (answers, rate) = if answers {
-            (inputs::ANSWERS, format!("{:.0} Hz", mirror.view.rate_hz))
-        } else {
-            (inputs::ANSWERS_NOT, "-".to_owned())
-        };
-        let rows = [
-            (look.say(inputs::PHASE), look.say(answers).to_owned()),
-            (look.say(inputs::RATE), rate),
-        ];
-        figures_ui(ui, look, "mirror figures", &rows);
-    }
-    missing(state, mirror).map(|text| look.say(text))
+    let words = match mirror {
+        None => look.say(inputs::OFF).to_owned(),
+        Some(mirror) if mirror.view.owner(state.now).is_some() => {
+            let rate = format!("{:.0}", mirror.view.rate_hz);
+            look.fill(inputs::ANSWERS, &[&rate])
+        }
+        Some(_) => look.say(inputs::LEADER_SILENT).to_owned(),
+    };
+    state_ui(ui, pane, None, &words);
+    let missing = missing(state, mirror).map(|text| look.say(text));
+    let source = InputAction::Grant(InputSource::Mirror);
+    grant_ui(ui, pane, (look.say(inputs::MIRROR), source), missing);
+}
+
+/// The other hands of the window, each with its name.
+fn others(state: &State) -> Vec<(SlotId, String)> {
+    let own = state.hand().label.slot;
+    let slots = state.hands.iter().map(|hand| hand.label.slot);
+    let slots = slots.filter(|slot| *slot != own);
+    slots
+        .filter_map(|slot| Some((slot, leader_name(state, slot)?)))
+        .collect()
 }
 
 /// Which hand leads, and which share of its bends is followed.
 fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     let (look, state) = (pane.look, pane.state);
-    let own = state.hand().label.slot;
-    let slots = state.hands.iter().map(|hand| hand.label.slot);
-    let slots = slots.filter(|slot| *slot != own);
-    let named: Vec<(Option<SlotId>, String)> = slots
-        .filter_map(|slot| Some((Some(slot), leader_name(state, slot)?)))
+    let named = others(state);
+    let named = named.iter();
+    let all: Vec<(Option<SlotId>, &str)> = named
+        .map(|(slot, name)| (Some(*slot), name.as_str()))
         .collect();
-    let mut all = vec![(None, look.say(inputs::NO_LEADER))];
-    all.extend(named.iter().map(|(slot, name)| (*slot, name.as_str())));
     let mut leader = mirror.map(|mirror| mirror.leader);
     let mut scale = mirror.map_or(MirrorScale::WHOLE, |mirror| mirror.scale);
     let mut is_new = row_ui(ui, pane, inputs::LEADER, |ui, _| {
-        ui.spacing_mut().combo_width = LEADER;
+        ui.spacing_mut().combo_width = ui.available_width();
         kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all)
     });
     let typed = row_ui(ui, pane, inputs::MIRROR_SCALE, |ui, pane| {
@@ -90,10 +104,8 @@ fn row_ui<T>(
     add: impl FnOnce(&mut Ui, &mut Pane<'_>) -> T,
 ) -> T {
     let row = ui.horizontal(|ui| {
-        let name = Label::muted(pane.look, name);
-        ui.allocate_ui(vec2(NAME, theme::CONTROL), |ui| {
-            ui.set_min_width(NAME);
-            name.ui(ui);
+        kit::cell_ui(ui, vec2(NAME, theme::CONTROL), |ui| {
+            Label::muted(pane.look, name).ui(ui);
         });
         add(ui, pane)
     });

@@ -7,6 +7,7 @@ mod pad_card;
 mod pad_picture;
 mod pad_places;
 mod pad_table;
+mod source;
 #[cfg(test)]
 mod tests;
 mod view;

@@ -6,93 +6,84 @@ use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
-use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
 use crate::ui::text::{Text, inputs, words};
 use crate::ui::theme;
-use egui::{Grid, Ui};
+use egui::Ui;
 
-/// Who may move the hand now, how it goes, and its end.
+/// Who may move the hand now with its end in one line, and what holds for whoever moves it.
 pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(inputs::OWNER), |_| ());
-        let owner = pane.state.hand().connection.outside_owner();
-        let words = match owner {
-            Some(owner) => owner_words(pane, owner),
-            None => look.say(inputs::NOBODY_OUTSIDE).to_owned(),
-        };
-        let color = match owner {
-            Some(_) => look.palette.accent,
-            None => look.palette.text,
-        };
-        Label::new(&words, color).wrap().ui(ui);
-        if owner.is_some() {
-            let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
-            button
-                .large()
-                .on_click(ui, pane, Action::Input(InputAction::TakeBack));
-        }
-        let run = pane.state.hand().inputs.follow.as_ref();
-        if let Some(view) = run.and_then(|run| run.view) {
-            let rows = [
-                (
-                    look.say(inputs::PHASE),
-                    look.say(phase(view.phase)).to_owned(),
-                ),
-                (look.say(inputs::LEAD_NOW), view.lead.to_string()),
-                (look.say(inputs::DELAY), format::millis(view.delay_p99)),
-            ];
-            figures_ui(ui, look, "follow figures", &rows);
-        }
-        limits_ui(ui, pane);
-        hold_ui(ui, pane);
-        let mut idle = pane.state.settings.disarm_idle;
-        let switch = ui.checkbox(&mut idle, look.say(inputs::DISARM_IDLE));
-        if switch
-            .on_hover_text(look.tip(inputs::DISARM_IDLE))
-            .changed()
-        {
-            pane.actions.push(Action::DisarmIdle(idle));
+        ui.horizontal_wrapped(|ui| {
+            ui.set_min_height(theme::CONTROL_LARGE);
+            Label::muted(look, inputs::OWNER).ui(ui);
+            let owner = pane.state.hand().connection.outside_owner();
+            let (words, color) = match owner {
+                Some(owner) => (owner_words(pane, owner), look.palette.accent),
+                None => {
+                    let nobody = look.say(inputs::NOBODY_OUTSIDE);
+                    (nobody.to_owned(), look.palette.text)
+                }
+            };
+            Label::new(&words, color).ui(ui);
+            let run = pane.state.hand().inputs.follow.as_ref();
+            if let Some(view) = run.and_then(|run| run.view) {
+                let delay = format::millis(view.delay_p99);
+                let words = look.fill(inputs::FOLLOW_NOW, &[&view.lead, &delay]);
+                Label::new(&words, look.palette.muted).small().ui(ui);
+            }
+            if owner.is_some() {
+                let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
+                button
+                    .large()
+                    .on_click(ui, pane, Action::Input(InputAction::TakeBack));
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            limits_ui(ui, pane);
+            ui.add_space(theme::PAD);
+            let settings = &pane.state.settings;
+            let (mut held, mut idle) = (settings.hold_to_run, settings.disarm_idle);
+            if switch_ui(ui, pane, inputs::HOLD_TO_RUN, &mut held) {
+                pane.actions.push(Action::HoldToRun(held));
+            }
+            if switch_ui(ui, pane, inputs::DISARM_IDLE, &mut idle) {
+                pane.actions.push(Action::DisarmIdle(idle));
+            }
+        });
+        if pane.state.settings.hold_to_run {
+            kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
         }
     });
 }
 
-/// Whether a key has to be held while the hand moves.
-fn hold_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// A setting that is on or off; true if it was changed.
+fn switch_ui(ui: &mut Ui, pane: &Pane<'_>, text: Text, on: &mut bool) -> bool {
     let look = pane.look;
-    let mut on = pane.state.settings.hold_to_run;
-    let switch = ui.checkbox(&mut on, look.say(inputs::HOLD_TO_RUN));
-    if switch
-        .on_hover_text(look.tip(inputs::HOLD_TO_RUN))
-        .changed()
-    {
-        pane.actions.push(Action::HoldToRun(on));
-    }
-    if on {
-        kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
-    }
+    let switch = ui.checkbox(on, look.say(text));
+    switch.on_hover_text(look.tip(text)).changed()
 }
 
 fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let limits = pane.state.settings.follow;
-    ui.horizontal_wrapped(|ui| {
-        let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
-            Label::muted(look, text).ui(ui);
-            let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
-            let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
-            u16::try_from(typed).ok()
+    Label::muted(look, inputs::LIMITS).ui(ui);
+    let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
+        Label::muted(look, text).ui(ui);
+        let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
+        let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
+        u16::try_from(typed).ok()
+    };
+    let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
+    let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
+    if lead.or(rate).is_some() {
+        let limits = FollowLimits {
+            lead: lead.unwrap_or(limits.lead),
+            rate: rate.unwrap_or(limits.rate),
         };
-        let lead = field(ui, inputs::LEAD, FollowLimits::LEAD, limits.lead);
-        let rate = field(ui, inputs::FOLLOW_RATE, FollowLimits::RATE, limits.rate);
-        if lead.or(rate).is_some() {
-            let limits = FollowLimits {
-                lead: lead.unwrap_or(limits.lead),
-                rate: rate.unwrap_or(limits.rate),
-            };
-            pane.actions.push(Action::Input(InputAction::Limit(limits)));
-        }
-    });
+        pane.actions.push(Action::Input(InputAction::Limit(limits)));
+    }
 }
 
 const fn phase(phase: FollowPhase) -> Text {
@@ -151,24 +142,4 @@ pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
     let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;
     hand.connection.endpoint.as_ref()?;
     Some(format!("{} · {}", at + 1, hand.label.name))
-}
-
-/// Figures with their names, a row each.
-pub(crate) fn figures_ui(ui: &mut Ui, look: Look, salt: &str, rows: &[(&str, String)]) {
-    // A grid learns its widths from the frame before, and would cut names off for good.
-    let widths = rows
-        .iter()
-        .map(|(name, _)| kit::text_width(ui, name, theme::body()));
-    let names = widths.fold(0.0, f32::max).ceil() + 1.0;
-    let grid = Grid::new(salt).num_columns(2).min_col_width(names);
-    grid.show(ui, |ui| {
-        for (name, value) in rows {
-            Label::new(name, look.palette.muted).ui(ui);
-            Label::new(value, look.palette.text)
-                .number()
-                .named(name)
-                .ui(ui);
-            ui.end_row();
-        }
-    });
 }

@@ -8,10 +8,10 @@ use crate::hand::{Angle, PerDof};
 use crate::inputs::pad::PadControl;
 use crate::inputs::pad::source::PadView;
 use crate::ui::hand::panel::pose_ui;
-use crate::ui::inputs::cards::{grant_ui, no_hand, on_off};
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
-use crate::ui::kit::{self, Label, Look, Pane};
+use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
+use crate::ui::kit::{self, Look, Pane};
 use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
 use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
@@ -27,21 +27,23 @@ pub(crate) struct PadCard {
 }
 
 impl PadCard {
-    /// Draws it.
+    /// Draws it, once there is a gamepad.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
+        let view = pane.state.hand().inputs.pad_view.as_ref();
+        let Some(view) = view.filter(|view| view.name.is_some()) else {
+            return;
+        };
         kit::card_ui(ui, look, |ui| {
-            let view = pane.state.hand().inputs.pad_view.clone();
-            kit::head_ui(ui, look, look.say(inputs::PAD), |_| ());
-            kit::say_ui(ui, look.tip(inputs::PAD), look.palette.muted);
-            pad_switch_ui(ui, pane, view.as_ref());
+            let name = view.name.as_deref().unwrap_or_default();
+            kit::head_ui(ui, look, name, |_| ());
+            kit::say_ui(ui, look.say(inputs::PAD_CHANGE), look.palette.muted);
             let (map, poses) = (pane.state.settings.pad_map(), pose_names(pane.state, look));
-            let there = view.as_ref().filter(|view| view.name.is_some());
             let shown = PadShown {
-                state: there.map(|view| &view.state),
+                state: Some(&view.state),
                 map: &map,
                 chosen: self.chosen,
-                fingers: there.map(|view| view.fingers).unwrap_or_default(),
+                fingers: view.fingers,
                 poses: &poses,
             };
             let picture = ScrollArea::horizontal().id_salt("pad picture");
@@ -52,10 +54,37 @@ impl PadCard {
                 let changed = ui.vertical(|ui| pad_table_ui(ui, look, &shown)).inner;
                 let map = changed.map(|map| Action::Input(InputAction::Map(map)));
                 pane.actions.extend(map);
-                dry_run_ui(ui, pane, there);
+                dry_run_ui(ui, pane, view);
             });
         });
     }
+}
+
+/// Draws whether gamepads are looked for, which one is there, and whether it may move the hand.
+pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let view = pane.state.hand().inputs.pad_view.as_ref();
+    let switch = Switch {
+        title: inputs::PAD,
+        turns_on: inputs::READ_PAD,
+        is_on: view.is_some(),
+        action: InputAction::ReadPad(view.is_none()),
+        wrong: None,
+    };
+    switch_ui(ui, pane, switch);
+    let name = view.and_then(|view| view.name.as_ref());
+    let words = match (view, name) {
+        (None, _) => look.say(inputs::PAD_OFF).to_owned(),
+        (Some(_), Some(name)) => name.clone(),
+        (Some(view), None) => match &view.trouble {
+            Some(trouble) => errors::pad(look, trouble),
+            None => look.say(inputs::PLUG_IN).to_owned(),
+        },
+    };
+    state_ui(ui, pane, Some(InputKind::Pad), &words);
+    let missing = name.is_none().then(|| look.say(inputs::NONE));
+    let source = InputAction::Grant(InputSource::Pad);
+    grant_ui(ui, pane, (look.say(inputs::PAD), source), missing);
 }
 
 /// The poses that a button can have.
@@ -71,41 +100,8 @@ fn pose_names(state: &State, look: Look) -> Vec<PoseName> {
     named.collect()
 }
 
-/// Whether gamepads are looked for, which one is there, and whether it may move the hand.
-fn pad_switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: Option<&PadView>) {
-    let look = pane.look;
-    ui.horizontal_wrapped(|ui| {
-        let button = on_off(look, inputs::READ_PAD, view.is_some());
-        let button = button.disabled(no_hand(pane)).large();
-        let action = InputAction::ReadPad(view.is_none());
-        button.on_click(ui, pane, Action::Input(action));
-        let is_there = view.is_some_and(|view| view.name.is_some());
-        let missing = (!is_there).then_some(look.say(inputs::NONE));
-        grant_ui(
-            ui,
-            pane,
-            (look.say(inputs::PAD), InputAction::Grant(InputSource::Pad)),
-            missing,
-        );
-    });
-    let Some(view) = view else {
-        let refused = pane.state.hand().inputs.refused.as_ref();
-        if let Some((_, why)) = refused.filter(|(kind, _)| *kind == InputKind::Pad) {
-            let why = errors::not_opened(look, why);
-            Label::new(&why, look.palette.warn).wrap().ui(ui);
-        }
-        return;
-    };
-    let (text, color) = match (&view.name, &view.trouble) {
-        (Some(name), _) => (name.clone(), look.palette.text),
-        (None, Some(trouble)) => (errors::pad(look, trouble), look.palette.warn),
-        (None, None) => (look.say(inputs::PLUG_IN).to_owned(), look.palette.muted),
-    };
-    Label::new(&text, color).wrap().ui(ui);
-}
-
 /// Where the gamepad wants the hand, drawn, whether it may move it or not; joints that it leaves alone are where they are.
-fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: Option<&PadView>) {
+fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: &PadView) {
     let room = ui.available_width();
     if room < HAND_LEAST {
         return;
@@ -113,8 +109,9 @@ fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: Option<&PadView>) {
     let look = pane.look;
     let angle = pane.state.hand().readings.sample.angle;
     let shares = PerDof::from_fn(|dof| {
-        let wanted = view.and_then(|view| view.aims[dof]);
-        let raw = wanted.map(Angle::get).or(angle?.value[dof].documented())?;
+        let raw = view.aims[dof]
+            .map(Angle::get)
+            .or(angle?.value[dof].documented())?;
         Some(f32::from(raw) / f32::from(Angle::MAX.get()))
     });
     ui.vertical(|ui| {

@@ -3,14 +3,9 @@
 use crate::ui::inputs::cards::SourceCards;
 use crate::ui::inputs::owner::owner_ui;
 use crate::ui::inputs::pad_card::PadCard;
-use crate::ui::kit::{self, Pane};
+use crate::ui::kit::Pane;
 use crate::ui::theme;
-use egui::{Panel, ScrollArea, Ui};
-
-/// A view as wide as this has the gamepad beside the rest.
-const WIDE: f32 = 1160.0;
-/// Width of what is beside the gamepad.
-const SOURCES: f32 = 420.0;
+use egui::{ScrollArea, Ui};
 
 /// What was typed and chosen.
 #[derive(Debug, Default)]
@@ -22,28 +17,11 @@ pub(crate) struct InputsView {
 impl InputsView {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        if ui.available_width() < WIDE {
-            scroll_ui(ui, "inputs", |ui| {
-                owner_ui(ui, pane);
-                self.cards.ui(ui, pane);
-                self.pad.ui(ui, pane);
-            });
-            return;
-        }
-        let sources = Panel::left("sources");
-        kit::bare(sources, SOURCES, theme::GAP_RIGHT).show(ui, |ui| {
-            scroll_ui(ui, "inputs", |ui| {
-                owner_ui(ui, pane);
-                self.cards.ui(ui, pane);
-            });
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = theme::GAP;
+            owner_ui(ui, pane);
+            self.cards.ui(ui, pane);
+            self.pad.ui(ui, pane);
         });
-        scroll_ui(ui, "pad", |ui| self.pad.ui(ui, pane));
     }
-}
-
-fn scroll_ui(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical()
-        .id_salt(salt)
-        .auto_shrink(false)
-        .show(ui, add);
 }

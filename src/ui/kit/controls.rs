@@ -298,6 +298,28 @@ impl<'a> Button<'a> {
         }
     }
 
+    /// Draws it as a knob on a track: at the right end it is on.
+    pub(crate) fn toggle_ui(self, ui: &mut Ui, look: Look) -> Response {
+        let (id, place) = ui.allocate_space(vec2(40.0, theme::CONTROL));
+        let response = self.weight(Weight::Quiet).ground(ui, look, place, id);
+        let is_on = self.selected == Some(true);
+        let share = ui.ctx().animate_bool_responsive(id, is_on);
+        let palette = look.palette;
+        let (track, knob) = match (self.disabled, is_on) {
+            (Some(_), _) => (palette.sunken, palette.faint),
+            (None, true) => (palette.accent, palette.on_accent),
+            (None, false) => (palette.sunken, palette.muted),
+        };
+        let rect = Rect::from_center_size(place.center(), vec2(32.0, 18.0));
+        let (half, edge) = (rect.height() / 2.0, Stroke::new(1.0, palette.faint));
+        let painter = ui.painter();
+        painter.rect(rect, half, track, edge, StrokeKind::Inside);
+        let ends = rect.shrink2(vec2(half, 0.0)).x_range();
+        let at = egui::pos2(egui::lerp(ends.min..=ends.max, share), rect.center().y);
+        painter.circle_filled(at, half - 4.0, knob);
+        response
+    }
+
     /// Draws it and says whether it was pressed.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let response = self.ground(ui, look, rect, id);
@@ -438,6 +460,56 @@ pub(crate) fn card_ui<R>(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui) -> R
         add(ui)
     });
     shown.inner
+}
+
+/// Cards of one width side by side, as many as have room, each as high as the highest of its row.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CardGrid {
+    /// What it is, for what is remembered of it.
+    pub(crate) salt: &'static str,
+    /// No card is narrower, but where not even one has room.
+    pub(crate) least: f32,
+    /// No row has more cards.
+    pub(crate) most: u8,
+    /// How many cards there are.
+    pub(crate) count: usize,
+}
+
+impl CardGrid {
+    /// Draws it; `add` draws what is in the card of a number.
+    pub(crate) fn ui(self, ui: &mut Ui, look: Look, mut add: impl FnMut(&mut Ui, usize)) {
+        let width = ui.available_width();
+        let gaps = |columns: u8| theme::GAP * (f32::from(columns) - 1.0);
+        let fits = |columns: &u8| f32::from(*columns) * self.least + gaps(*columns) <= width;
+        let columns = (1..=self.most).rev().find(fits).unwrap_or(1);
+        let card = ((width - gaps(columns)) / f32::from(columns)).floor();
+        let id = ui.scope_id().with(self.salt);
+        let before: Vec<f32> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+        let mut heights = Vec::with_capacity(self.count);
+        let all: Vec<usize> = (0..self.count).collect();
+        for row in all.chunks(columns.into()) {
+            let known = row.iter().filter_map(|nth| before.get(*nth));
+            let high = known.copied().fold(0.0, f32::max);
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = theme::GAP;
+                for nth in row {
+                    let top = Layout::top_down(Align::Min);
+                    ui.allocate_ui_with_layout(vec2(card, 0.0), top, |ui| {
+                        ui.set_width(card);
+                        card_ui(ui, look, |ui| {
+                            ui.set_min_height(high);
+                            let own = ui.vertical(|ui| add(ui, *nth));
+                            heights.push(own.response.rect.height());
+                        });
+                    });
+                }
+            });
+        }
+        if heights != before {
+            ui.data_mut(|data| data.insert_temp(id, heights));
+            ui.ctx().request_discard("cards of a row are equally high");
+        }
+    }
 }
 
 /// A card over all the room there is.

@@ -281,7 +281,7 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
 }
 
 /// Why what stands in a field was not taken, over what is below it, so that nothing moves under the pointer.
-pub(crate) fn refused_ui(ui: &Ui, look: Look, (id, rect): (Id, Rect), words: &str) {
+fn refused_ui(ui: &Ui, look: Look, (id, rect): (Id, Rect), words: &str) {
     let id = id.with("refused");
     let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, rect);
     tooltip.show(|ui| ui.colored_label(look.palette.bad, words));

@@ -13,9 +13,9 @@ pub(crate) mod reorder;
 pub(crate) use crate::ui::style::{Look, format};
 pub(crate) use card::{ButtonRole, Card, CardView, Choice};
 pub(crate) use controls::{
-    Button, Label, Weight, bare, card_ui, cell_ui, choose_ui, edit_ui, focus_ring, full_card_ui,
-    head_ui, lamp, lamp_ui, left_ui, named_field, pick_ui, pressed, right_ui, say_ui, sign,
-    text_width, warning_ui, wide_ui,
+    Button, CardGrid, Label, Weight, bare, card_ui, cell_ui, choose_ui, edit_ui, focus_ring,
+    full_card_ui, head_ui, lamp, lamp_ui, left_ui, named_field, pick_ui, pressed, right_ui, say_ui,
+    sign, text_width, warning_ui, wide_ui,
 };
-pub(crate) use field::{NumberField, TextField, refused_ui};
+pub(crate) use field::{NumberField, TextField};
 pub(crate) use pane::{Pane, Typing, ViewRequest};

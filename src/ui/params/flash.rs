@@ -10,7 +10,7 @@ use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{cards, device, errors, main, notices};
 use crate::ui::theme;
-use egui::{Color32, ScrollArea, Ui};
+use egui::{Color32, ScrollArea, Ui, vec2};
 
 /// Draws the card: beside the table its parts under each other, below it side by side.
 pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -169,8 +169,11 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
             )
         }
     };
-    let button = Button::new(&words, look.say(device::BACKUP_TIP)).disabled(unreadable.as_deref());
-    if button.ui(ui, look).clicked() {
+    let tip = format!("{words}\n{}", look.say(device::BACKUP_TIP));
+    let button = Button::new(&words, &tip).disabled(unreadable.as_deref());
+    // As wide as the list: a name that is longer is cut.
+    let (id, place) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
+    if button.put(ui, look, place, id).clicked() {
         let wish = ParamAction::Open(Some(backup.path.clone()));
         pane.actions.push(Action::Param(wish));
     }

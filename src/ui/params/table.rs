@@ -16,8 +16,10 @@ use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 const ADDRESS_MAX: usize = 15;
 /// Height of a row, and of one that has a button below its field.
 const ROW: f32 = 28.0;
-/// Parts of the width for live, staged, saved and range; the name has the rest.
-const COLUMNS: [f32; 4] = [0.16, 0.23, 0.16, 0.16];
+/// Widths of name, live, staged and saved; narrower where there is no room for all. The range has the rest.
+const COLUMNS: [f32; 4] = [240.0, 152.0, 176.0, 128.0];
+/// Width that all columns need.
+const WIDTH: f32 = 800.0;
 /// Which rows are in a group, its title, and what they are.
 type ParamGroup = (fn(ParamId) -> bool, Text, Text);
 /// The groups in their order.
@@ -78,11 +80,11 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let mut table = TableBuilder::new(ui)
         .cell_layout(Layout::left_to_right(Align::Center))
         .auto_shrink(false)
-        .min_scrolled_height(SCROLLED_LEAST)
-        .column(Column::remainder());
-    for part in COLUMNS {
-        table = table.column(Column::exact(width * part));
+        .min_scrolled_height(SCROLLED_LEAST);
+    for column in COLUMNS {
+        table = table.column(Column::exact(column * (width / WIDTH).min(1.0)));
     }
+    let table = table.column(Column::remainder());
     let heads = [
         poses::NAME,
         device::LIVE,
@@ -127,7 +129,9 @@ fn line_ui(body: &mut TableBody<'_>, height: f32, line: impl FnOnce(&mut Ui)) {
             let layout = Layout::left_to_right(Align::Center);
             let builder = UiBuilder::new().max_rect(place).layout(layout);
             // Not allocated: the column stays as wide as it is.
-            line(&mut ui.new_child(builder));
+            let mut whole = ui.new_child(builder);
+            whole.set_clip_rect(ui.clip_rect().with_max_x(right));
+            line(&mut whole);
         });
     });
 }

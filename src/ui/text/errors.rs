@@ -15,6 +15,7 @@ use crate::system::SystemError;
 use crate::tasks::{BackupError, TaskError};
 use crate::transport::dds::DdsError;
 use crate::transport::endpoint::error::{EndpointError, Want};
+use crate::transport::endpoint::typed::TypedError;
 use crate::transport::{Remedy, TransportError, WireFailure};
 use crate::trials::plan_settings::PlanReadError;
 use crate::ui::style::{Look, format};
@@ -149,6 +150,12 @@ chinese! {
         ExportError::ReaderGone => "输出的读取方已离开。";
     }
 
+    fn typed_zh(&TypedError) {
+        TypedError::Ip { text } => "{text} 不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210。";
+        TypedError::Unknown { text } => "{text} 不是地址：请输入例如 192.168.11.210、/dev/ttyUSB0、COM3 或 can0。";
+        TypedError::Endpoint(error) => "{}", endpoint_zh(error);
+    }
+
     fn want_zh(&Want) {
         Want::Whole => "整数";
         Want::Between(from, to) => " {from} 至 {to} 的整数";
@@ -275,6 +282,14 @@ pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
             format!("The port or address is missing: type for example {example}.")
         }
         (_, error) => told(look, error, endpoint_zh),
+    }
+}
+
+/// Why a typed address leads to no hand.
+pub(crate) fn typed(look: Look, error: &TypedError) -> String {
+    match error {
+        TypedError::Endpoint(error) => endpoint(look, error),
+        error => told(look, error, typed_zh),
     }
 }
 

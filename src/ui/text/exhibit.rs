@@ -5,6 +5,7 @@ use crate::ui::style::phrase::texts;
 
 texts! {
     ENTER: "Exhibition", "展览模式", "Shows the page for visitors over the whole screen. Nothing moves before you arm on it; leaving needs a PIN.", "全屏显示观众页面。在该页面上使能之前不会有任何动作；退出需要 PIN 码。";
+    START: "Start the exhibition", "开始展览";
     ENTER_FILE: "Exhibition from a file...", "从文件打开展览...", "The same with the tiles, limits and times of a file.", "使用文件中的图块、限制和时间。";
 
     TITLE: "Touch a tile: the hand does it", "点一下，灵巧手就动";

@@ -11,19 +11,31 @@ use crate::ui::style::{Look, format};
 use crate::ui::text::{errors, panels, words};
 
 texts! {
-    FIND: "Find hands", "查找灵巧手";
+    HANDS: "Hands", "灵巧手";
+    WAYS: "Ways to connect", "连接方式";
+    ADDRESS: "Address, port or name", "地址、端口或名称";
+    EXAMPLES: "For example 192.168.11.210, /dev/ttyUSB0, COM3, can0 or sim:", "例如 192.168.11.210、/dev/ttyUSB0、COM3、can0 或 sim:";
+    CHANGE: "Change", "更改", "Shows speed, id, unit and the like.", "显示波特率、ID、单元等设置。";
+    CHANGE_NONE: "Type an address first.", "请先输入地址。";
+    INSTEAD: "{} instead", "改用 {}", "A port does not tell which protocol is spoken on it.", "端口不会说明使用哪种协议。";
+    RANGE: "A range of addresses can be scanned, not connected to.", "网段只能扫描，不能连接。";
+    WITH_BAUD: "{}, {} baud, id {}", "{}，波特率 {}，ID {}";
+    WITH_BITRATE: "{}, {} bit/s, id {}", "{}，{} bit/s，ID {}";
+    WITH_UNIT: "{}, port {}, unit {}", "{}，端口 {}，单元 {}";
+    WITH_ID: "{}, id {}", "{}，ID {}";
+    PLUGGED_IN: "now plugged in", "已插入";
+    ANSWERED: "answered the scan", "扫描时有应答";
+    LAST_USED: "last used {}", "上次使用：{}";
     SCAN_PORTS: "Scan all ports", "扫描全部端口", "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
-    SCAN_HOST: "Scan address", "扫描地址", "Asks at this address, or at all of a range such as 192.168.11.0/24, and nowhere else. It only reads.", "仅查询此地址，或一个网段（例如 192.168.11.0/24）。只读取，不写入。";
     CANCEL: "Cancel", "取消", "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
     RUNNING: "A scan is under way.", "正在扫描。";
     IDS: "Ids", "ID", "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
     IDS_FEW: "1 to 10", "1 至 10";
     IDS_ALL: "1 to 254", "1 至 254";
-    ADDRESS: "Address or range", "地址或网段";
-    ADDRESS_EMPTY: "Type an address first.", "请先输入地址。";
+    PRESETS: "Hands on the network often have", "网络灵巧手常用地址：";
     PRESET_MAKER: "As delivered", "出厂地址";
     PRESET_FIELD: "Seen on some hands", "部分灵巧手使用";
-    PRESET_TIP: "Puts this address into the field. Nothing is asked before you press the button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
+    PRESET_TIP: "Puts this address into the field. Nothing is asked before you press a button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
     NEVER: "Nothing was scanned yet. A scan reads one register, the id, and writes nothing. No address in the network is tried that you do not name.", "尚未扫描。扫描只读取 ID 寄存器，不写入任何内容，也不会尝试未指定的网络地址。";
     PROGRESS: "Scan progress", "扫描进度";
     ASKED: "questions", "次查询";
@@ -41,7 +53,7 @@ texts! {
     MORE: "more", "更多";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
-    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, in Inputs, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, a person there has to let you.", "其他 Handscope 共享的灵巧手：需在对方的“输入”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
+    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, under Share, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, a person there has to let you.", "其他 Handscope 共享的灵巧手：需在对方的“共享”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
     SHARED_FIND: "Look for them", "查找", "Joins DDS at this interface and listens. Nothing is connected to.", "在此接口加入 DDS 并监听，不会连接任何灵巧手。";
     SHARED_STOP: "Look no more", "停止查找", "Leaves DDS; the list is cleared.", "退出 DDS，并清空列表。";
     SHARED_NONE: "No hand is shared at this interface.", "此接口上没有共享的灵巧手。";
@@ -142,6 +154,24 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         }
         Some(_) | None => NOTHING,
     })
+}
+
+/// What a typed address was recognised as, with what it says and what it leaves as delivered.
+pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
+    let kind = look.say(panels::kind(endpoint.kind()));
+    match endpoint {
+        Endpoint::Sim { scenario, .. } => match scenario.parse() {
+            Ok(scenario) => format!("{kind}, {}", look.say(panels::scenario(scenario))),
+            Err(_) => kind.to_owned(),
+        },
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
+            look.fill(WITH_BAUD, &[&kind, &line.baud, &line.id])
+        }
+        Endpoint::Tcp { port, unit, .. } => look.fill(WITH_UNIT, &[&kind, port, unit]),
+        Endpoint::Can { id, .. } => look.fill(WITH_ID, &[&kind, id]),
+        Endpoint::Slcan { bitrate, id, .. } => look.fill(WITH_BITRATE, &[&kind, bitrate, id]),
+        Endpoint::UsbCan { baud, id, .. } => look.fill(WITH_BAUD, &[&kind, baud, id]),
+    }
 }
 
 /// The id where it is known, the way of speaking, and its speed.

@@ -8,9 +8,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use handscope::app::action::Action;
 use handscope::app::scan::{IdRange, ScanTarget};
-use handscope::app::settings::{Language, Theme};
+use handscope::app::settings::{KnownHand, Language, Theme};
 use handscope::app::state::State;
+use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof, Force, Gesture, Speed};
+use handscope::inputs::pad::source::PadView;
 use handscope::record::{Hold, LinkState};
 use handscope::ui::View;
 
@@ -82,13 +84,13 @@ fn space_on_a_button_that_has_the_keyboard_stops_and_does_not_press_it() {
 fn escape_stops_while_typing_and_space_types() {
     let mut harness = open_at(states::armed(), View::Connection, LARGE);
     harness
-        .get_by_role_and_label(Role::TextInput, "Address or range")
+        .get_by_role_and_label(Role::TextInput, ADDRESS)
         .focus();
     harness.run_steps(2);
     harness.key_press(Key::Space);
     assert_eq!(actions(&mut harness), []);
     harness
-        .get_by_role_and_label(Role::TextInput, "Address or range")
+        .get_by_role_and_label(Role::TextInput, ADDRESS)
         .focus();
     harness.run_steps(2);
     harness.key_press(Key::Escape);
@@ -402,53 +404,145 @@ fn gestures_start_by_number_and_take_names() {
     );
 }
 
-#[test]
-fn the_connection_is_spelled_as_everywhere() {
-    let mut harness = open_at(states::empty(), View::Connection, LARGE);
-    harness.get_by_label("Kind of link: Modbus TCP").click();
+const ADDRESS: &str = "Address, port or name";
+
+fn at_connection(state: State) -> Harness<'static, Shown> {
+    open_at(state, View::Connection, LARGE)
+}
+
+/// Types this in place of what stands in the field of the address.
+fn type_address(harness: &mut Harness<'static, Shown>, name: &str, text: &str) {
+    let field = (Role::TextInput, name);
+    harness.get_by_role_and_label(field.0, field.1).focus();
     harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.run_steps(1);
+    let edit = harness.get_by_role_and_label(field.0, field.1);
+    edit.type_text(text);
+    harness.run_steps(2);
+}
+
+#[test]
+fn serial_ports_are_looked_for_once_when_the_connection_is_shown() {
+    let mut state = states::empty();
+    state.ports.clear();
+    let mut harness = open_at(state, View::Live, LARGE);
+    harness.state_mut().window.set_view(View::Connection);
+    assert_eq!(actions(&mut harness), [Action::FindPorts]);
+    harness.run_steps(5);
+    assert_eq!(actions(&mut harness), []);
+}
+
+#[test]
+fn a_click_on_a_way_to_connect_begins_an_address_of_it() {
+    let mut harness = at_connection(states::empty());
+    harness.get_by_label("Kind of link: Modbus TCP").click();
+    harness.run_steps(3);
     harness.get_by_label("Connect").click();
     let endpoint = "tcp:192.168.11.210:6000?unit=255".parse().unwrap();
     assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
     harness.get_by_label("Kind of link: RS485").click();
-    harness.run_steps(2);
+    harness.run_steps(3);
     let missing = "The port or address is missing";
     assert!(harness.query_by_label_contains(missing).is_none());
     harness.get_by_label("Connect").click();
+    harness.run_steps(2);
     assert_eq!(actions(&mut harness), [], "no port yet");
-    harness.get_by_label_contains(missing);
+    assert!(harness.query_all_by_label_contains(missing).count() > 0);
     harness.get_by_label("Refresh").click();
     assert_eq!(actions(&mut harness), [Action::FindPorts]);
 }
 
 #[test]
-fn host_and_port_are_one_field() {
-    for (typed, endpoint) in [
-        ("127.0.0.1:7650", "tcp:127.0.0.1:7650?unit=255"),
-        ("10.0.0.7", "tcp:10.0.0.7:6000?unit=255"),
-        ("[::1]:7650", "tcp:[::1]:7650?unit=255"),
-        ("::1", "tcp:[::1]:6000?unit=255"),
+fn an_address_is_recognised_while_it_is_typed_and_enter_connects() {
+    for (typed, words, endpoint) in [
+        (
+            "127.0.0.1:7650",
+            "Modbus TCP, port 7650, unit 255",
+            "tcp:127.0.0.1:7650?unit=255",
+        ),
+        (
+            "10.0.0.7",
+            "Modbus TCP, port 6000, unit 255",
+            "tcp:10.0.0.7:6000?unit=255",
+        ),
+        (
+            "[::1]:7650",
+            "Modbus TCP, port 7650, unit 255",
+            "tcp:[::1]:7650?unit=255",
+        ),
+        (
+            "/dev/ttyUSB0",
+            "RS485, 115200 baud, id 1",
+            "rs485:/dev/ttyUSB0?baud=115200&id=1",
+        ),
+        (
+            "COM3",
+            "RS485, 115200 baud, id 1",
+            "rs485:COM3?baud=115200&id=1",
+        ),
+        ("can0", "CAN, id 1", "can:can0?id=1"),
+        (
+            "usbcan:COM4?id=7",
+            "Maker's CAN, 115200 baud, id 7",
+            "usbcan:COM4?baud=115200&id=7",
+        ),
+        (
+            "slcan:COM4",
+            "CAN adapter, 1000000 bit/s, id 1",
+            "slcan:COM4?bitrate=1000000&id=1",
+        ),
+        ("sim:", "Simulated, Soft ball", "sim:?seed=1&scenario=idle"),
     ] {
-        let mut harness = open_at(states::empty(), View::Connection, LARGE);
-        harness.get_by_label("Kind of link: Modbus TCP").click();
+        let mut harness = at_connection(states::empty());
+        type_address(&mut harness, ADDRESS, typed);
+        harness.get_by_label(words);
+        assert_eq!(actions(&mut harness), [], "nothing while it is typed");
+        harness.key_press(Key::Enter);
         harness.run_steps(2);
-        let field = || (Role::TextInput, "Address");
-        harness.get_by_role_and_label(field().0, field().1).focus();
-        harness.run_steps(2);
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        harness.run_steps(1);
-        harness
-            .get_by_role_and_label(field().0, field().1)
-            .type_text(typed);
-        harness.run_steps(2);
-        harness.get_by_label("Connect").click();
         let endpoint = endpoint.parse().unwrap();
         assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
     }
 }
 
 #[test]
-fn a_wrong_address_is_told_beside_its_field_and_a_name_is_none() {
+fn the_other_protocol_of_a_port_is_one_click_away() {
+    let mut harness = at_connection(states::empty());
+    type_address(&mut harness, ADDRESS, "/dev/ttyUSB0?id=4");
+    harness.get_by_label("RS485, 115200 baud, id 4");
+    harness.get_by_label("Modbus RTU instead").click();
+    harness.run_steps(3);
+    harness.get_by_label("Modbus RTU, 115200 baud, id 4");
+    harness.get_by_label("RS485 instead");
+    harness.get_by_label("Connect").click();
+    let endpoint = "rtu:/dev/ttyUSB0?baud=115200&id=4".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn a_setting_that_is_changed_stands_in_the_address() {
+    let mut harness = at_connection(states::empty());
+    type_address(&mut harness, ADDRESS, "192.168.11.7");
+    assert!(harness.query_by_label("Unit id").is_none(), "folded");
+    harness.get_by_label("Change").click();
+    harness.run_steps(2);
+    type_address(&mut harness, "Unit id", "3");
+    harness.get_by_label("Modbus TCP, port 6000, unit 3");
+    // A wrong one is told, and stays to be mended.
+    type_address(&mut harness, "Unit id", "300");
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(actions(&mut harness), []);
+    assert!(harness.query_all_by_label_contains("0 to 255").count() > 0);
+    type_address(&mut harness, "Unit id", "4");
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    let endpoint = "tcp:192.168.11.7:6000?unit=4".parse().unwrap();
+    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+}
+
+#[test]
+fn a_wrong_address_is_told_once_it_is_not_typed_any_more_and_a_name_is_none() {
     for (typed, is_wrong) in [
         ("192.168.11", true),
         ("192.168.11.999:6000", true),
@@ -456,65 +550,60 @@ fn a_wrong_address_is_told_beside_its_field_and_a_name_is_none() {
         ("hand.local:6000", false),
         ("::1", false),
     ] {
-        let mut harness = open_at(states::empty(), View::Connection, LARGE);
-        harness.get_by_label("Kind of link: Modbus TCP").click();
-        harness.run_steps(2);
-        let field = |harness: &Harness<'static, Shown>| {
-            let field = harness.get_by_role_and_label(Role::TextInput, "Address");
-            field.focus();
-        };
-        field(&harness);
-        harness.run_steps(2);
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        harness.run_steps(1);
-        let edit = harness.get_by_role_and_label(Role::TextInput, "Address");
-        edit.type_text(typed);
-        harness.run_steps(2);
+        let mut harness = at_connection(states::empty());
+        type_address(&mut harness, ADDRESS, typed);
         let told = |harness: &Harness<'static, Shown>| {
-            let all = harness.query_all_by_label_contains("No IP address: four numbers");
+            let all = harness.query_all_by_label_contains("is no IP address: four numbers");
             all.count() > 0
         };
         assert!(!told(&harness), "not while it is typed");
         harness.key_press(Key::Enter);
         harness.run_steps(3);
         assert_eq!(told(&harness), is_wrong, "{typed}");
+        let asked = actions(&mut harness);
+        assert_eq!(asked.is_empty(), is_wrong, "{typed}: {asked:?}");
     }
 }
 
 #[test]
-fn a_wrong_field_is_told_after_connecting_was_tried_and_in_the_windows_language() {
-    for (language, kind, words) in [
-        (
-            Language::En,
-            "Kind of link: RS485",
-            "The port or address is missing",
-        ),
-        (Language::Zh, "连接方式: RS485", "缺少端口或地址"),
+fn what_is_wrong_is_told_in_the_windows_language() {
+    for (language, name, words) in [
+        (Language::En, ADDRESS, "is no address: type for example"),
+        (Language::Zh, "地址、端口或名称", "不是地址"),
     ] {
         let mut state = states::empty();
         state.settings.language = language;
-        let mut harness = open_at(state, View::Connection, LARGE);
-        harness.get_by_label(kind).click();
-        harness.run_steps(2);
+        let mut harness = at_connection(state);
+        type_address(&mut harness, name, "usb:/dev/x");
         assert!(harness.query_by_label_contains(words).is_none());
-        let connect = if language == Language::En {
-            "Connect"
-        } else {
-            "连接"
-        };
-        let buttons = harness.query_all_by_role(Role::Button);
-        let mut named =
-            buttons.filter(|node| node.accesskit_node().label().as_deref() == Some(connect));
-        named.next_back().unwrap().click();
-        drop(named);
-        harness.run_steps(2);
-        harness.get_by_label_contains(words);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert!(harness.query_all_by_label_contains(words).count() > 0);
     }
+}
+
+#[test]
+fn connected_to_just_this_address_only_disconnect_is_offered() {
+    let mut harness = at_connection(states::live());
+    assert!(harness.query_by_label("Connect").is_none());
+    harness.get_by_label("Disconnect");
+    let field = harness.get_by_role_and_label(Role::TextInput, ADDRESS);
+    field.focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(actions(&mut harness), [], "it is connected already");
+    type_address(&mut harness, ADDRESS, "10.0.0.7");
+    harness.get_by_label("Connect");
+    harness.get_by_label("Disconnect").click();
+    assert_eq!(actions(&mut harness), [Action::Disconnect]);
 }
 
 #[test]
 fn speeds_and_scenarios_are_chosen_from_lists() {
-    let mut harness = open_at(states::empty(), View::Connection, LARGE);
+    let mut harness = at_connection(states::empty());
+    harness.get_by_label("Kind of link: Simulated").click();
+    harness.run_steps(3);
     harness
         .get_by_role_and_label(Role::ComboBox, "Scenario")
         .click();
@@ -526,7 +615,7 @@ fn speeds_and_scenarios_are_chosen_from_lists() {
     assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
     assert!(harness.query_by_label("Seed").is_none(), "in the drawer");
     harness.get_by_label("Kind of link: RS485").click();
-    harness.run_steps(2);
+    harness.run_steps(3);
     harness
         .get_by_role_and_label(Role::ComboBox, "Baud")
         .click();
@@ -540,103 +629,107 @@ fn speeds_and_scenarios_are_chosen_from_lists() {
 }
 
 #[test]
-fn recent_hands_are_one_click_away() {
+fn hands_of_before_are_one_click_away_with_what_is_known_of_them() {
     let mut state = states::live();
-    let spelled = ["tcp:127.0.0.1:7650?unit=255", "sim:?seed=1&scenario=idle"];
+    let spelled = [
+        "rs485:/dev/ttyUSB0?baud=115200&id=1",
+        "tcp:127.0.0.1:7650?unit=255",
+        "sim:?seed=1&scenario=idle",
+    ];
     state.settings.recent = spelled.map(str::to_owned).into();
-    let mut harness = open_at(state, View::Connection, LARGE);
-    harness.get_by_label(&format!("Connected: {}", spelled[1]));
+    state.ports = vec![states::usb_port("/dev/ttyUSB0")];
+    let known = KnownHand {
+        name: "bench".into(),
+        side: Some(Side::Left),
+        last_day: "2026-11-23".into(),
+        ..KnownHand::default()
+    };
+    state.settings.hands = [(spelled[1].to_owned(), known)].into();
+    let mut harness = at_connection(state);
+    harness.get_by_label(&format!("Connected: {}", spelled[2]));
+    harness.get_by_label("Right hand · now plugged in");
+    harness.get_by_label("bench");
+    harness.get_by_label("Left hand · last used 2026-11-23");
     harness
-        .get_by_label(&format!("Connect: {}", spelled[0]))
+        .get_by_label(&format!("Connect: {}", spelled[1]))
         .click();
-    let endpoint = spelled[0].parse().unwrap();
+    let endpoint = spelled[1].parse().unwrap();
     assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
 }
 
 #[test]
-fn the_port_just_typed_can_be_scanned() {
-    for (kind, place, typed, wish) in [
+fn the_place_just_typed_can_be_scanned() {
+    let hosts = |text: &str| ScanTarget::Hosts(text.parse().unwrap());
+    for (typed, wish) in [
         (
-            "RS485",
-            "Serial port",
             "/dev/ttyUSB9",
             ScanTarget::Port("/dev/ttyUSB9".into(), IdRange::Few),
         ),
-        (
-            "Modbus TCP",
-            "Address",
-            "",
-            ScanTarget::Hosts("192.168.11.210:6000".parse().unwrap()),
-        ),
+        ("can0", ScanTarget::Interface("can0".into(), IdRange::Few)),
+        ("192.168.11.210", hosts("192.168.11.210:6000")),
+        ("192.168.11.0/24", hosts("192.168.11.0/24")),
     ] {
-        let mut harness = open_at(states::empty(), View::Connection, LARGE);
-        harness
-            .get_by_label(&format!("Kind of link: {kind}"))
-            .click();
-        harness.run_steps(2);
-        harness
-            .get_by_role_and_label(Role::TextInput, place)
-            .focus();
-        harness.run_steps(2);
-        if !typed.is_empty() {
-            let field = harness.get_by_role_and_label(Role::TextInput, place);
-            field.type_text(typed);
-        }
-        harness.run_steps(2);
+        let mut harness = at_connection(states::empty());
+        type_address(&mut harness, ADDRESS, typed);
         harness.get_by_label("Scan").click();
         assert_eq!(actions(&mut harness), [Action::Scan(wish)]);
     }
 }
 
 #[test]
-fn the_form_is_filled_from_an_rtu_endpoint() {
-    let mut state = states::empty();
-    let endpoint: handscope::transport::Endpoint =
-        "rtu:/dev/ttyUSB3?baud=57600&id=4".parse().unwrap();
-    state.hand_mut().connection.endpoint = Some(endpoint.clone());
-    let mut harness = open_at(state, View::Connection, LARGE);
-    harness.get_by_label("Connect").click();
-    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
-}
-
-#[test]
-fn a_can_interface_and_a_can_adapter_can_be_chosen() {
-    let mut harness = open_at(states::empty(), View::Connection, LARGE);
-    harness.get_by_label("Kind of link: CAN").click();
-    harness.run_steps(2);
-    harness.get_by_label("Connect").click();
-    let endpoint = "can:can0?id=1".parse().unwrap();
-    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
-
-    for url in [
-        "slcan:/dev/ttyACM0?bitrate=500000&id=7",
-        "usbcan:/dev/ttyUSB0?baud=9600&id=7",
+fn the_address_is_that_of_the_connected_hand_as_short_as_it_means_the_same() {
+    for (url, typed) in [
+        (
+            "rtu:/dev/ttyUSB3?baud=57600&id=4",
+            "rtu:/dev/ttyUSB3?baud=57600&id=4",
+        ),
+        ("tcp:10.0.0.7:6000?unit=255", "10.0.0.7:6000"),
+        (
+            "slcan:/dev/ttyACM0?bitrate=500000&id=7",
+            "slcan:/dev/ttyACM0?bitrate=500000&id=7",
+        ),
+        ("can:can0?id=1", "can0"),
     ] {
         let mut state = states::empty();
         let endpoint: handscope::transport::Endpoint = url.parse().unwrap();
-        state.hand_mut().connection.endpoint = Some(endpoint.clone());
-        let mut harness = open_at(state, View::Connection, LARGE);
-        harness.get_by_label("Connect").click();
-        assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+        state.hand_mut().connection.endpoint = Some(endpoint);
+        let harness = at_connection(state);
+        let field = harness.get_by_role_and_label(Role::TextInput, ADDRESS);
+        assert_eq!(field.accesskit_node().value().as_deref(), Some(typed));
+        assert!(harness.query_by_label("Connect").is_none());
     }
+}
 
-    let mut harness = open_at(states::empty(), View::Connection, LARGE);
-    harness.get_by_label("Kind of link: Maker's CAN").click();
+/// A state with a gamepad that is read.
+fn with_gamepad() -> State {
+    let mut state = states::live();
+    state.hand_mut().inputs.pad_view = Some(PadView {
+        name: Some("Test pad".into()),
+        ..PadView::default()
+    });
+    state
+}
+
+#[test]
+fn once_there_is_a_gamepad_its_picture_and_its_list_are_shown() {
+    let mut harness = open_at(with_gamepad(), View::Inputs, vec2(1440.0, 2000.0));
+    harness.run_steps(3);
+    assert!(harness.query_all_by_label("Test pad").count() > 0);
+    // In the picture and beside it.
+    let pinch = "A (bottom): Pose Pinch";
+    assert_eq!(harness.query_all_by_label(pinch).count(), 2);
+    let pose = harness.get_by_role_and_label(Role::ComboBox, "A (bottom)");
+    pose.scroll_to_me();
     harness.run_steps(2);
-    let port = |harness: &Harness<'static, Shown>, text: &str| {
-        let field = harness.get_by_role_and_label(Role::TextInput, "Serial port");
-        match text {
-            "" => field.focus(),
-            text => field.type_text(text),
-        }
-    };
-    port(&harness, "");
-    harness.run_steps(2);
-    port(&harness, "COM4");
-    harness.run_steps(2);
-    harness.get_by_label("Connect").click();
-    let endpoint = "usbcan:COM4?baud=115200&id=1".parse().unwrap();
-    assert_eq!(actions(&mut harness), [Action::Connect(endpoint)]);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "A (bottom)")
+        .click();
+    harness.run_steps(3);
+    assert!(harness.query_all_by_label("Pose Open").count() > 0);
+    harness.state_mut().state.settings.hidden_poses = ["Pinch".to_owned()].into();
+    harness.run_steps(3);
+    let gone = "A (bottom): Pose Pinch (not in the library)";
+    assert_eq!(harness.query_all_by_label(gone).count(), 2);
 }
 
 #[test]
@@ -647,7 +740,7 @@ fn the_link_lamp_opens_the_connection_and_tabs_open_their_views() {
     assert_eq!(harness.state().window.view(), View::Connection);
     for (place, view) in [
         ("Tune", View::Tune),
-        ("Sessions", View::Sessions),
+        ("Recordings", View::Sessions),
         ("Share", View::Inputs),
         ("Hand", View::Connection),
         ("Live", View::Live),

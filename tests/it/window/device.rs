@@ -759,3 +759,38 @@ fn a_save_of_staged_rows_that_the_hand_drops_is_not_done_and_says_so() {
     );
     assert!(!bench.addresses().contains(&SAVE));
 }
+
+#[test]
+fn value_and_range_stand_near_each_other_on_a_wide_screen() {
+    let mut bench = Bench::open(SimConfig::default(), vec2(2560.0, 1440.0));
+    bench.wait(1000);
+    open(&mut bench);
+    let place = |name: &str| {
+        let labels = bench.all(Role::Label);
+        let mut named = labels.into_iter().filter(|(own, _)| own == name);
+        named.next().unwrap().1
+    };
+    let live = place("Index speed live");
+    let range = place("Index speed range");
+    assert!(range.left() - live.right() < 480.0, "{live} {range}");
+}
+
+#[test]
+fn a_backup_is_no_wider_than_the_list_it_stands_in() {
+    for size in [vec2(1024.0, 640.0), vec2(1366.0, 768.0)] {
+        let mut bench = Bench::kept(SimConfig::default(), "sim:", size);
+        bench.wait(1000);
+        defaults(&mut bench, 100);
+        open(&mut bench);
+        save(&mut bench);
+        settle(&mut bench);
+        let buttons = bench.all(Role::Button);
+        let mut backups = buttons
+            .iter()
+            .filter(|(name, _)| name.ends_with("before save"));
+        let backup = backups.next().unwrap().1;
+        let dump = bench.rect(Role::Button, "Dump to file");
+        assert!(backup.right() <= size.x - 20.0, "{backup}");
+        assert!(backup.left() >= dump.left() - 1.0, "{backup} {dump}");
+    }
+}

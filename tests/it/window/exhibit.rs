@@ -50,6 +50,8 @@ fn unlock(bench: &mut Bench) {
     bench.click_button("Staff: unlock");
     bench.run(60);
     type_pin(bench, "4711");
+    // What the PIN opens takes no press at first.
+    bench.run(600);
 }
 
 /// Armed by staff, and open; nobody plays yet.
@@ -126,7 +128,7 @@ fn without_a_pin_staff_choose_one_by_typing_it_twice() {
     ] {
         bench.key(key);
     }
-    bench.run(60);
+    bench.run(600);
     assert!(
         matches!(staff(&bench), StaffPanel::Open { .. }),
         "{:?}",
@@ -534,4 +536,31 @@ fn a_lost_hand_is_told_and_needs_staff_when_it_is_back() {
     press(&mut bench, "Open");
     bench.wait(5000);
     assert_eq!(bench.writes().len(), count);
+}
+
+#[test]
+fn who_types_a_digit_too_many_does_not_leave_the_exhibition() {
+    let mut bench = shown_with(plan());
+    bench.click_button("Staff: unlock");
+    bench.run(60);
+    let seven = bench.rect(Role::Button, "7").center();
+    type_pin(&mut bench, "4711");
+    let leave = "Leave the exhibition";
+    assert!(bench.shows(leave));
+    let under = bench.rect(Role::Button, leave);
+    for at in [seven, under.center(), seven, under.center()] {
+        bench.press_at(at);
+        bench.release_at(at);
+        bench.run(200);
+        assert!(bench.state().exhibit.is_some() && bench.shows(leave));
+    }
+    // A finger that stays is not away.
+    bench.press_at(under.center());
+    bench.run(1500);
+    bench.release_at(under.center());
+    assert!(bench.state().exhibit.is_some());
+    bench.run(600);
+    bench.press_at(under.center());
+    bench.run(60);
+    assert!(bench.state().exhibit.is_none());
 }

@@ -9,8 +9,8 @@ use handscope::app::settings::Language;
 use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::link::Owner;
-use handscope::poses::edit::{LibraryEdit, PoseEdit};
 use handscope::record::LinkState;
+use handscope::sim::SimConfig;
 use handscope::ui::View;
 use std::io::Write as _;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -49,8 +49,19 @@ fn a_program_moves_the_hand_only_once_a_person_lets_it_and_every_view_ends_it() 
     send(&mut bench, &sender, to, 600);
     assert!(bench.state().hand().inputs.stream_view.not_granted > 5);
     assert_eq!(bench.writes(), []);
+    assert!(
+        !bench
+            .texts_with(&format!("Hz from {}", sender.local_addr().unwrap()))
+            .is_empty()
+    );
     bench.click_button("Let it move the hand: Another program");
     send(&mut bench, &sender, to, 1500);
+    assert!(bench.shows("moves the hand"));
+    assert!(
+        bench
+            .buttons_with("Let it move the hand: Another program")
+            .is_empty()
+    );
     let hand = bench.state().hand();
     assert_eq!(hand.connection.status.state, LinkState::Armed);
     let from = sender.local_addr().unwrap();
@@ -125,7 +136,7 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     bench.show(View::Inputs);
     bench.run(100);
     bench.type_into("Address of the gateway", "127.0.0.1:0");
-    bench.click_button("Share");
+    bench.click_button("Open the gateway");
     bench.run(200);
     let at = bench.state().hand().inputs.gateway_at.unwrap();
     assert!(TcpStream::connect(at).is_ok());
@@ -154,26 +165,6 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(TcpStream::connect(at).is_err());
     assert!(TcpStream::connect(viewed).is_err());
     assert!(bench.state().hand().inputs.dds_view.is_none());
-}
-
-#[test]
-fn the_list_of_a_gamepad_has_a_persons_own_poses_and_says_which_is_missing() {
-    let mut bench = Bench::live();
-    bench.show(View::Inputs);
-    bench.run(100);
-    assert!(bench.shows("A (bottom): Pose Pinch"));
-    bench.act(Action::Capture("Mine".into()));
-    bench.run(100);
-    bench.choose("A (bottom)", "Pose Mine");
-    assert!(bench.shows("A (bottom): Pose Mine"));
-    let mine = bench.state().poses.newest.unwrap();
-    let delete = LibraryEdit::Pose(mine, PoseEdit::Delete);
-    bench.act(Action::Library(delete));
-    bench.run(100);
-    assert!(bench.shows("A (bottom): Pose Mine (not in the library)"));
-    bench.act(Action::HideShipped("Open".into(), true));
-    bench.run(100);
-    assert!(bench.shows("Y (top): Pose Open (not in the library)"));
 }
 
 /// When the first angle was written that holds the joints, after this moment.
@@ -338,9 +329,51 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
 fn a_switch_shows_that_it_is_on_and_ends_where_it_began() {
     let mut bench = Bench::live();
     listening(&mut bench);
-    assert!(bench.is_on("Listen") && !bench.is_on("Share"));
+    assert!(bench.is_on("Listen") && !bench.is_on("Open the gateway"));
     bench.click_button("Listen");
     bench.run(200);
     assert!(!bench.is_on("Listen"));
     assert_eq!(bench.state().hand().inputs.stream_at, None);
+}
+
+#[test]
+fn all_cards_are_equally_wide_and_those_of_a_row_equally_high() {
+    for (size, columns) in [
+        (egui::vec2(1024.0, 640.0), 2),
+        (egui::vec2(1920.0, 1080.0), 3),
+        (egui::vec2(2560.0, 1440.0), 3),
+    ] {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.wait(1000);
+        bench.show(View::Inputs);
+        bench.run(200);
+        let switches = ["Listen", "Join", "Open the gateway", "Show", "Read gamepad"];
+        let places = switches.map(|name| bench.rects(name)[0]);
+        let in_first_row = places.iter().filter(|place| place.top() == places[0].top());
+        assert_eq!(in_first_row.count(), columns, "{size}: {places:?}");
+        let step = places[1].left() - places[0].left();
+        assert!(places[columns].left() == places[0].left(), "{places:?}");
+        assert!(step * f32::from(u8::try_from(columns).unwrap()) > size.x * 0.7);
+    }
+}
+
+#[test]
+fn without_a_gamepad_neither_its_picture_nor_its_list_is_there() {
+    let mut bench = Bench::live();
+    bench.show(View::Inputs);
+    bench.run(100);
+    assert!(!bench.texts_with("Plug a gamepad in").is_empty());
+    assert!(bench.all(Role::ComboBox).is_empty());
+    assert!(!bench.shows("A (bottom): Pose Pinch"));
+    assert!(bench.is_disabled(Role::Button, "Let it move the hand: Gamepad"));
+}
+
+#[test]
+fn the_exhibition_is_started_from_its_card() {
+    let mut bench = Bench::live();
+    bench.show(View::Inputs);
+    bench.run(100);
+    bench.click_button("Start the exhibition");
+    bench.run(200);
+    assert!(bench.state().exhibit.is_some());
 }

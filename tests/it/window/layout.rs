@@ -71,10 +71,11 @@ fn no_two_controls_overlap_while_armed_naming_or_choosing_a_link() {
         check(&bench, size, "STOP", &format!("{size} naming in the strip"));
         bench.show(View::Connection);
         bench.run(60);
-        for kind in ["RS485", "Modbus TCP", "Simulated"] {
-            bench.click(&format!("Kind of link: {kind}"));
+        bench.click_button("Change");
+        for address in ["/dev/ttyUSB0", "192.168.11.7", "can0", "sim:", "no such"] {
+            bench.type_into("Address, port or name", address);
             bench.run(60);
-            check(&bench, size, "STOP", &format!("{size} {kind}"));
+            check(&bench, size, "STOP", &format!("{size} {address}"));
         }
         assert!(
             bench.state().hand().connection.is_armed(),

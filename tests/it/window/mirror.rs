@@ -118,7 +118,8 @@ fn a_hand_is_led_only_once_a_person_lets_it_and_stays_within_the_limits() {
     assert!(bench.is_disabled(Role::Button, GRANT), "none is chosen");
     bench.choose("Leading hand", "1 · sim:?seed=1");
     bench.run(300);
-    assert!(bench.has_reading("State", "answers"));
+    assert!(!bench.texts_with("The leading hand answers, ").is_empty());
+    assert!(bench.is_on("Watch the leading hand"));
     let open = index(&bench, 1);
     send(&mut bench, 0, 600);
     bench.run(3000);
@@ -361,4 +362,23 @@ fn a_leader_that_is_left_leads_no_more() {
             (None, None)
         );
     }
+}
+
+#[test]
+fn the_switch_of_the_card_watches_the_other_hand_and_ends_it() {
+    let mut bench = two();
+    show(&mut bench, 1);
+    assert!(!bench.is_on("Watch the leading hand"));
+    bench.click_button("Watch the leading hand");
+    bench.run(300);
+    let leader = hand(&bench, 1)
+        .inputs
+        .mirror
+        .as_ref()
+        .map(|mirror| mirror.leader);
+    assert_eq!(leader, Some(slot(&bench, 0)));
+    bench.click_button("Watch the leading hand");
+    bench.run(100);
+    assert!(hand(&bench, 1).inputs.mirror.is_none());
+    assert!(bench.writes().is_empty());
 }

@@ -6,7 +6,7 @@ use crate::window::layout::check;
 use egui::vec2;
 use handscope::app::action::Action;
 use handscope::app::inputs::{InputAction, InputSource};
-use handscope::app::scan::ScanStage;
+use handscope::app::scan::{IdRange, ScanStage, ScanTarget};
 use handscope::hand::kinematics::Side;
 use handscope::link::Owner;
 use handscope::record::LinkState;
@@ -17,6 +17,7 @@ use handscope::ui::View;
 use std::time::{Duration, Instant};
 
 const PORT: &str = "/dev/ttyUSB7";
+const ADDRESS: &str = "Address, port or name";
 const URL: &str = "rs485:/dev/ttyUSB7?baud=115200&id=1";
 
 /// The connection view, with an adapter plugged in and the hand behind it.
@@ -68,7 +69,6 @@ fn progress_is_shown_and_cancel_ends_it_with_what_was_found() {
         progress.contains("/ 2032 questions, time left about 16 s"),
         "{progress}"
     );
-    assert!(bench.is_disabled(Role::Button, "Scan address") || !bench.shows("Scan address"));
     bench.click_button("Cancel");
     bench.run(60);
     assert!(bench.shows("Cancelled. Hands that answered: 1"));
@@ -144,24 +144,25 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
     ] {
         bench.click_button(address);
         bench.run(40);
-        assert_eq!(bench.typed("Address or range"), address);
+        assert_eq!(bench.typed(ADDRESS), address);
     }
     bench.wait(3000);
     assert_eq!(bench.dials(), dials, "offering is not asking");
     assert_eq!(bench.state().scan.stage, ScanStage::Never);
-    for (wrong, words) in [("10.0.0.0/8", "more than 1024"), ("a b", "is not a host")] {
-        bench.type_into("Address or range", wrong);
-        assert!(bench.texts_with(words).is_empty(), "only after an attempt");
-        bench.click_button("Scan address");
+    for (wrong, words) in [("10.0.0.0/8", "more than 1024"), ("a b", "is no address")] {
+        bench.type_into(ADDRESS, wrong);
+        assert!(bench.texts_with(words).is_empty(), "only once it is typed");
+        bench.key(egui::Key::Enter);
         bench.run(40);
         assert!(!bench.texts_with(words).is_empty(), "{wrong}");
+        assert!(!bench.shows("Scan"), "nothing to scan: {wrong}");
         assert_eq!(bench.state().scan.stage, ScanStage::Never);
     }
-    bench.type_into("Address or range", "127.0.0.5:6001");
+    bench.type_into(ADDRESS, "127.0.0.5:6001");
     bench.click_button("Disconnect");
     bench.run(200);
     bench.hand(SimHand::switch_off);
-    bench.click_button("Scan address");
+    bench.click_button("Scan");
     bench.until(4000, is_done);
     assert_eq!(
         bench.dials(),
@@ -176,18 +177,19 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
 }
 
 #[test]
-fn in_a_small_window_form_and_scan_scroll_together() {
+fn in_a_small_window_all_scrolls_together() {
     let size = vec2(1024.0, 640.0);
     let mut bench = Bench::open(SimConfig::default(), size);
     bench.list_ports(vec![usb_port(PORT)]);
     bench.wait(200);
     bench.show(View::Connection);
     bench.run(60);
-    bench.click_button("Scan all ports");
+    bench.act(Action::Scan(ScanTarget::Ports(IdRange::Few)));
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());
     assert!(bench.shows(&format!("Connect: {URL}")));
     check(&bench, size, "STOP", "scanning");
-    bench.type_into("Address or range", "10.0.0.0/8");
+    bench.type_into(ADDRESS, "10.0.0.0/8");
+    bench.key(egui::Key::Enter);
     check(&bench, size, "STOP", "a wrong address");
     assert!(bench.shows("Kind of link: RS485"));
 }
@@ -195,9 +197,7 @@ fn in_a_small_window_form_and_scan_scroll_together() {
 #[test]
 fn the_serial_port_that_was_typed_is_scanned_alone() {
     let mut bench = at_connection(SimConfig::default());
-    bench.click_button("Kind of link: RS485");
-    bench.run(40);
-    bench.type_into("Serial port", "/dev/ttyUSB9");
+    bench.type_into(ADDRESS, "/dev/ttyUSB9");
     bench.click_button("Scan");
     bench.until(4000, |bench| !bench.state().scan.found.is_empty());
     let found = &bench.state().scan.found[0];
@@ -338,4 +338,54 @@ fn the_window_tells_of_its_own_shared_hand_and_does_not_connect_to_it() {
             .all_disabled(&format!("Connect: {name}"))
             .contains(&true)
     );
+}
+
+#[test]
+fn while_an_address_is_typed_nobody_is_asked_and_another_hand_keeps_what_was_typed() {
+    let mut bench = at_connection(SimConfig::default());
+    let dials = bench.dials();
+    for typed in ["1", "192.168.11.9", "/dev/ttyUSB7", "can0", "hand.local"] {
+        bench.type_into(ADDRESS, typed);
+        bench.run(500);
+    }
+    assert_eq!(bench.dials(), dials);
+    bench.click_button("Add a hand");
+    bench.run(100);
+    assert_eq!(bench.state().hands.count(), 2);
+    assert_eq!(bench.typed(ADDRESS), "hand.local");
+}
+
+#[test]
+fn the_day_of_the_last_connection_is_remembered_with_the_hand() {
+    let mut bench = at_connection(SimConfig::default());
+    bench.type_into(ADDRESS, PORT);
+    bench.key(egui::Key::Enter);
+    bench.until(1000, |bench| {
+        bench.state().hand().connection.status.state == LinkState::Monitoring
+    });
+    let endpoint = URL.parse().unwrap();
+    let day = bench.state().settings.last_day(&endpoint).unwrap();
+    assert_eq!(day.len(), "2026-11-24".len(), "{day}");
+    assert!(bench.writes().is_empty());
+}
+
+#[test]
+fn figures_of_the_link_are_in_a_drawer_and_their_columns_apart() {
+    let mut bench = at_connection(SimConfig::default());
+    assert!(!bench.shows("Checksum errors"));
+    assert!(bench.texts_with("Motion state ").len() == 1, "in one line");
+    bench.open_drawer("Details");
+    assert!(bench.shows("Checksum errors"));
+    let labels = bench.all(Role::Label);
+    let place = |name: &str| {
+        let mut named = labels.iter().filter(|(own, _)| own == name);
+        named.next().unwrap_or_else(|| panic!("{name}")).1
+    };
+    for group in ["Angles, forces", "Temperatures", "Setpoints"] {
+        let now = place(&format!("{group}: now"));
+        let share = place(&format!("{group}: of its time"));
+        let most = place(&format!("{group}: at most"));
+        assert!(now.right() + 8.0 <= share.left(), "{now} {share}");
+        assert!(share.right() + 8.0 <= most.left(), "{share} {most}");
+    }
 }

@@ -91,8 +91,15 @@ fn connecting_and_disconnecting_write_nothing() {
 fn how_bytes_stand_in_words_can_be_said_for_modbus_and_is_part_of_the_address() {
     let mut bench = Bench::live();
     bench.show(View::Connection);
+    bench.run(60);
+    bench.click_button("Change");
     for (kind, has_words) in [("RS485", false), ("Modbus RTU", true), ("Modbus TCP", true)] {
-        bench.click_button(&format!("Kind of link: {kind}"));
+        let address = match kind {
+            "RS485" => "COM3",
+            "Modbus RTU" => "rtu:COM3",
+            _ => "192.168.11.210",
+        };
+        bench.type_into("Address, port or name", address);
         bench.run(60);
         if has_words && !bench.shows("Modbus bytes") {
             bench.open_drawer("For experts");
@@ -179,9 +186,10 @@ fn the_list_of_labels_has_stop_the_badge_and_every_joint_with_its_value() {
 }
 
 #[test]
-fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_lines_time_and_kept() {
+fn what_is_read_first_while_the_hand_moves_is_chosen_beside_the_use_of_the_line_and_kept() {
     let mut bench = Bench::live();
     bench.show(View::Connection);
+    bench.open_drawer("Details");
     assert_eq!(bench.state().settings.read_first, PollPriority::Force);
     bench.choose("While it moves, first", "Fingertips");
     assert_eq!(bench.state().settings.read_first, PollPriority::Touch);

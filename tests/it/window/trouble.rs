@@ -3,11 +3,13 @@
 use crate::setup::window::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
+use handscope::app::hands::action::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::record::LinkState;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
+use std::time::Duration;
 
 #[test]
 fn an_unplugged_hand_is_said_in_words_and_cannot_be_driven() {
@@ -51,6 +53,20 @@ fn what_is_no_longer_so_is_no_news() {
     bench.run(60);
     assert_eq!(bench.texts_with("No hand reached"), [""; 0]);
     assert!(bench.shows("Nothing moves the hand."));
+}
+
+#[test]
+fn a_new_slot_is_offline_since_it_is_there_and_not_since_the_start() {
+    let mut bench = Bench::live();
+    bench.wait(30_000);
+    bench.unplug();
+    bench.act(Action::Hands(HandsAction::Add));
+    bench.act(Action::Connect("tcp:192.168.11.210".parse().unwrap()));
+    bench.wait(1000);
+    let status = &bench.state().hand().connection.status;
+    assert_eq!(status.state, LinkState::Offline);
+    let since = bench.now().since(status.since);
+    assert!(since < Duration::from_secs(2), "{since:?}");
 }
 
 #[test]
