@@ -1,5 +1,4 @@
 //! The view that explains the hand: six drives, what is and was wrong, what to do, and the log. Clears nothing by itself.
-pub(crate) mod drive_lamp;
 pub(crate) mod entry;
 pub(crate) mod message_log;
 pub(crate) mod recording_events;
@@ -10,10 +9,10 @@ use crate::app::readings::Freshness;
 use crate::app::readings::faults::NothingToClear;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
-use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::message_log::MessageLog;
 use crate::ui::faults::recordings::RecordingsView;
+use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;

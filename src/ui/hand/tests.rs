@@ -405,7 +405,7 @@ fn a_dragged_place_follows_the_pointer_without_jumps_from_wherever_it_is_seen() 
             // Beyond its end it stays there.
             let beyond = (seen(0.0).1 - from) * 9.0;
             let share = drag.follow((&camera, &picture), from + beyond);
-            assert!((0.0..0.01).contains(&share), "{side:?} {finger:?}: {share}");
+            assert!((0.0..0.03).contains(&share), "{side:?} {finger:?}: {share}");
         }
     }
 }

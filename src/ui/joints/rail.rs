@@ -2,11 +2,11 @@
 
 use crate::app::layout::WindowRoom;
 use crate::hand::Dof;
-use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::joints::age_ui;
 use crate::ui::joints::row::JointRow;
 use crate::ui::joints::row_view::explain_ui;
+use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{main, window};
 use crate::ui::theme;

@@ -3,11 +3,11 @@
 use crate::app::action::Action;
 use crate::app::settings::Language;
 use crate::hand::{Dof, Force, Speed, impact};
-use crate::ui::faults::drive_lamp::DriveWords;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
+use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
 use crate::ui::text::{main, notices};
 use crate::ui::theme;

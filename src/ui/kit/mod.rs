@@ -5,6 +5,7 @@ mod card;
 mod card_tests;
 mod controls;
 pub(crate) mod dash;
+mod drive_words;
 mod field;
 mod pane;
 pub(crate) mod path_field;
@@ -17,5 +18,6 @@ pub(crate) use controls::{
     full_card_ui, head_ui, lamp, lamp_ui, left_ui, named_field, pick_ui, pressed, right_ui, say_ui,
     sign, text_width, warning_ui, wide_ui,
 };
+pub(crate) use drive_words::DriveWords;
 pub(crate) use field::{NumberField, TextField};
 pub(crate) use pane::{Pane, Typing, ViewRequest};

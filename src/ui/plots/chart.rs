@@ -337,10 +337,14 @@ impl<'a> Chart<'a> {
             ui.set_min_height(theme::PLOT_CAPTION);
             ui.add_space(self.end - theme::PLOT_END);
             let title = Label::new(look.say(self.title), look.palette.muted).small();
+            let is_fixed = view.scales.chosen(self.title).is_some();
             if let Some(at_s) = view.pointed_s() {
                 // The title is read first: the values get what it leaves.
-                let taken = kit::text_width(ui, look.say(self.title), theme::small());
-                let room = ui.available_width() - theme::PLOT_AXIS - taken - theme::GAP;
+                let words = [Some(self.title), is_fixed.then_some(panels::RANGE_FIXED)];
+                let words = words.into_iter().flatten();
+                let widths = words.map(|text| kit::text_width(ui, look.say(text), theme::small()));
+                let taken: f32 = widths.map(|width| width + theme::GAP).sum();
+                let room = ui.available_width() - theme::PLOT_AXIS - taken;
                 self.readings_ui(ui, at_s, room);
             }
             kit::left_ui(ui, |ui| {
@@ -348,7 +352,6 @@ impl<'a> Chart<'a> {
                 title.ui(ui);
                 let (text, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
                 let width = kit::text_width(ui, look.say(text), theme::small());
-                let is_fixed = view.scales.chosen(self.title).is_some();
                 if is_fixed && width <= ui.available_width() {
                     let label = Label::muted(look, text);
                     label.small().ui(ui).on_hover_text(look.say(tip));

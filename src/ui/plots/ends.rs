@@ -15,6 +15,8 @@ use egui::{
 const NAMED_FROM: f32 = 600.0;
 /// From the end of a curve to its value.
 const LEADER: f32 = 8.0;
+/// Pixels of a point from which on a display may be touched.
+const TOUCHED: f32 = 1.5;
 /// To the right edge of a value.
 pub(crate) const VALUES: f32 = LEADER + VALUE;
 /// A value.
@@ -88,9 +90,20 @@ pub(crate) fn ends_ui(
 fn end_ui(ui: &Ui, look: Look, (panel, end): (&Panel, &CurveEnd), place: Rect) -> Response {
     let name = look.say(words::dof(end.dof));
     let id = ui.scope_id().with((panel.title.en, end.dof.index()));
-    let response = ui.interact(place, id, Sense::click());
+    // A finger would hide the wrong one: there the menu does it.
+    let sense = if ui.pixels_per_point() < TOUCHED {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let response = ui.interact(place, id, sense);
     let named = look.pair(look.say(panel.title), name);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, true, &named));
+    let role = if sense.interactive() {
+        Role::Button
+    } else {
+        Role::Label
+    };
+    response.widget_info(|| WidgetInfo::selected(role, true, true, &named));
     let digits = panel.row.decimals;
     let text = end.value.map_or_else(
         || format::UNKNOWN.to_owned(),

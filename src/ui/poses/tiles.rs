@@ -117,8 +117,10 @@ fn shelf_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let columns = (count / fit.y.max(1.0)).ceil().max(fit.x.min(count));
     let size = vec2(TILE.x, room.y.clamp(TILE_LEAST, TILE.y));
     ui.style_mut().always_scroll_the_only_direction = true;
+    // No tile is cut at the end.
+    let whole = (TILE.x + gap) * fit.x.max(1.0);
     let area = ScrollArea::horizontal().auto_shrink(false);
-    area.id_salt("strip").show(ui, |ui| {
+    area.max_width(whole).id_salt("strip").show(ui, |ui| {
         ui.spacing_mut().item_spacing = vec2(gap, gap);
         ui.set_width(columns * (TILE.x + gap));
         ui.horizontal_wrapped(|ui| {
@@ -202,6 +204,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
         panel::sign_ui(ui, look, picture, &shares(&pose.angles));
     }
     let color = button.text_color(look);
+    let words = words.expand2(vec2(theme::BAR, 0.0));
     Label::new(name, color).small().center().paint(ui, words);
     if !matches!(entry, EntryId::Pose(_)) {
         let corner = Rect::from_min_size(picture.left_top(), vec2(16.0, 16.0));

@@ -55,7 +55,7 @@ texts! {
     COPIED: "Copied", "已复制";
 
 
-    RECORDINGS: "Recordings", "故障记录";
+    RECORDINGS: "Fault recordings", "故障记录";
     SECTION_TIP: "Shows this list.", "显示此列表。";
     RECORDINGS_NONE: "No recordings yet. Around each fault, 45 s before and 15 s after are kept here: everything that was measured, and what was done.", "还没有记录。每次故障前 45 s 与后 15 s 的全部测量与操作会保存在这里。";
     RECORDINGS_KEPT: "Kept in memory until the program ends, 12 at most: the oldest goes first.", "记录保存在内存中，程序退出即清除，最多 12 份；先移除最早的记录。";

@@ -27,8 +27,6 @@ texts! {
     TO_PLOTS: "Back to the plots", "返回曲线";
     STAGE: "Hand", "灵巧手";
     PLACE_HAND: "Hand", "灵巧手";
-    TO_CHINESE: "中文", "中文", "Switches the window to Chinese.", "切换为中文界面。";
-    TO_ENGLISH: "English", "English", "Switches the window to English.", "切换为英文界面。";
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
     SAVED: "Saved:", "已保存：";
     IGNORED: "{} could not be read: {} It was put aside, and the last good one or none is in use. {}", "{} 无法读取：{}该文件已另存，现使用上一份完好的文件或默认值。{}";

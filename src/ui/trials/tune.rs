@@ -23,7 +23,7 @@ impl TuneView {
     /// Draws plan and results.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let width = (ui.available_width() * 0.34).clamp(336.0, 424.0);
+        let width = (ui.available_width() * 0.34).clamp(348.0, 424.0);
         kit::bare(Panel::left("plan"), width, theme::GAP_RIGHT).show(ui, |ui| {
             kit::card_ui(ui, look, |ui| {
                 ui.set_min_height(ui.available_height());

@@ -32,7 +32,8 @@ const JOINTS_LEAST: f32 = 384.0;
 const STAGE_LEAST: f32 = 288.0;
 /// The least width of the plots, and of what stands in their place.
 const PLOTS_LEAST: f32 = 320.0;
-const DETAIL_LEAST: f32 = 480.0;
+const FAULTS_LEAST: f32 = 480.0;
+const FINGERTIP_LEAST: f32 = 640.0;
 const POSES_LEAST: f32 = 720.0;
 /// A replay shows poses, too, where the view is as high as this.
 const REPLAY_WITH_POSES: f32 = 480.0;
@@ -153,7 +154,7 @@ impl Body {
             rail.show(ui, |ui| joint_rail::rail_ui(ui, pane, sets_joints));
             return;
         }
-        let designed = ui.ctx().content_rect().width() * 0.26;
+        let designed = ui.ctx().content_rect().width() * 0.29;
         let size = RoomSize {
             designed: designed.clamp(JOINTS_LEAST, 520.0) + theme::GAP,
             least: JOINTS_LEAST + theme::GAP,
@@ -226,7 +227,8 @@ impl Body {
             rest: 300.0,
         };
         // Under a time line, a small window has room for what was measured only; no pose can be taken there anyway.
-        if pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES {
+        let has_room = pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES;
+        if has_room && self.view != View::Poses {
             rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
         }
         let width = ui.available_width();
@@ -234,7 +236,8 @@ impl Body {
             designed: (width * 0.45).clamp(STAGE_LEAST, 680.0) + theme::GAP,
             least: STAGE_LEAST + theme::GAP,
             rest: match self.view {
-                View::Touch | View::Faults => DETAIL_LEAST,
+                View::Touch => FINGERTIP_LEAST,
+                View::Faults => FAULTS_LEAST,
                 View::Poses => POSES_LEAST,
                 _ => PLOTS_LEAST,
             },

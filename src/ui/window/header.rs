@@ -267,15 +267,11 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
     if let (Some(endpoint), false) = (&pane.state.hand().connection.endpoint, simulated) {
         let text = endpoint.to_string();
-        let most = (ui.available_width() - PLACES).clamp(0.0, 220.0);
-        let width = kit::text_width(ui, &text, theme::number()) + 1.0;
-        ui.scope(|ui| {
-            ui.set_max_width(width.min(most));
-            let label = Label::new(&text, palette.muted).number();
-            label.ui(ui)
-        })
-        .inner
-        .on_hover_text(format!("{text}\n{}", look.say(main::ENDPOINT_TIP)));
+        let width = kit::text_width(ui, &text, theme::number());
+        if width + PLACES < ui.available_width() {
+            let label = Label::new(&text, palette.muted).number().ui(ui);
+            label.on_hover_text(look.say(main::ENDPOINT_TIP));
+        }
     }
 }
 

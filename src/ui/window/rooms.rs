@@ -138,17 +138,17 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         ui.separator();
         let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
+        if entry(ui, main::THEME) {
+            pane.actions.push(Action::Theme(theme.other()));
+        }
         let other = match language {
-            Language::En => window::TO_CHINESE,
-            Language::Zh => window::TO_ENGLISH,
+            Language::En => "中文",
+            Language::Zh => "English",
         };
-        for (text, action) in [
-            (main::THEME, Action::Theme(theme.other())),
-            (other, Action::Language(language.other())),
-        ] {
-            if entry(ui, text) {
-                pane.actions.push(action);
-            }
+        let button = ui.button(other);
+        let tip = look.say(window::KEY_LANGUAGE);
+        if button.on_hover_text(tip).clicked() {
+            pane.actions.push(Action::Language(language.other()));
         }
         ui.separator();
         for (text, opens) in [

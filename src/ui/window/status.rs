@@ -192,7 +192,10 @@ fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     Some(match &link.foreign_setpoint {
         Some(foreign) => {
             let foreign = words::setpoint(pane.look, foreign);
-            warning.more(pane.look.fill(main::OTHER_WROTE, &[&foreign]))
+            // What it did comes first: a short line shows that.
+            let wrote = pane.look.fill(main::OTHER_WROTE, &[&foreign]);
+            let body = format!("{wrote} {}", warning.body);
+            Warning { body, ..warning }
         }
         None => warning,
     })
@@ -326,7 +329,10 @@ impl StatusLine {
     /// Draws the line.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let warnings = warnings(pane);
-        let worst = warnings.first();
+        // That there is no hand yet is less than a message about it.
+        let is_told = news(pane).is_some_and(|notice| notice.level > Level::Info);
+        let hides = |worst: &&Warning| worst.color == pane.look.palette.accent && is_told;
+        let worst = warnings.first().filter(|worst| !hides(worst));
         let palette = pane.look.palette;
         let fill = worst.map_or(palette.card, |worst| palette.wash(worst.color));
         let frame = Frame::new().fill(fill).inner_margin(vec2(theme::PAD, 2.0));
@@ -463,8 +469,14 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
     let title = Label::new(look.say(warning.title), warning.color);
     title.font(theme::title()).ui(ui);
-    let words = Label::new(&warning.body, look.palette.text).ui(ui);
-    words.on_hover_text(&warning.body);
+    let width = kit::text_width(ui, &warning.body, theme::body());
+    let words = Label::new(&warning.body, look.palette.text);
+    let words = if width > ui.available_width() {
+        words.small()
+    } else {
+        words
+    };
+    words.ui(ui).on_hover_text(&warning.body);
 }
 
 fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {

@@ -138,6 +138,7 @@ async fn settings_are_kept_and_setpoints_never() {
             "recent",
             "sessions",
             "side",
+            "tall_plots",
             "tares",
             "theme",
             "zoom"

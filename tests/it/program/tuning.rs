@@ -270,7 +270,7 @@ async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
 #[tokio::test(start_paused = true)]
 async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
     let mut bench = running().await;
-    std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
+    bench.block_documents();
     while bench.hand().series.is_some() {
         bench.run(200).await;
     }
@@ -289,7 +289,7 @@ async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
 async fn note_and_tags_stay_with_their_session() {
     let mut bench = running().await;
     // Nothing can be saved by itself.
-    std::fs::write(bench.folder.path().join("documents"), "a file").unwrap();
+    bench.block_documents();
     let id = bench.state().trials.running.unwrap();
     let session = |bench: &Bench| bench.state().trials.session(id).cloned();
     bench.act(Action::Trial(TrialAction::Note(id, "an egg".into())));

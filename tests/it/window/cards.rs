@@ -590,7 +590,7 @@ fn a_lost_link_and_the_header_stay_bright_above_a_card() {
     bench.run(100);
     let title = bench.texts_with("LINK LOST").remove(0);
     assert!(bench.is_bright(&title), "{title}");
-    assert!(bench.is_bright("STOP") && bench.is_bright("Errors"));
+    assert!(bench.is_bright("STOP") && bench.is_bright("Live"));
     let after = bench.rect(Role::AlertDialog, "Return to the factory's parameters?");
     assert_eq!(card, after, "nothing moves under the pointer");
 }

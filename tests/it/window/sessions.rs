@@ -518,7 +518,7 @@ fn shows_again(endpoint: &str) {
             let missing: Vec<_> = wanted.iter().filter(|one| !shown.contains(one)).collect();
             assert!(
                 missing.is_empty(),
-                "{view:?} of {scenario:?} on {endpoint}: {missing:#?}"
+                "{view:?} of {scenario:?} on {endpoint}: {missing:#?} {shown:#?}"
             );
             assert!(wanted.len() > 10, "{view:?}: {}", wanted.len());
         }

@@ -59,7 +59,7 @@ fn looking_around_writes_nothing() {
     for key in [Key::D, Key::D] {
         bench.key_with(Modifiers::COMMAND, key);
     }
-    for name in ["Pause the plots", "Thresholds"] {
+    for name in ["Pause the plots", "Cursors"] {
         bench.click(name);
         bench.run(100);
     }

@@ -3,6 +3,7 @@
 use crate::setup::faulty::{FaultOdds, FaultPlan};
 use crate::setup::window::{Bench, Role};
 use handscope::app::notices::NoticeKind;
+use handscope::ui::View;
 
 fn rows(bench: &Bench) -> Vec<String> {
     let rows = bench.all(Role::Row).into_iter();
@@ -16,7 +17,7 @@ fn rows_with(bench: &Bench, part: &str) -> usize {
 
 fn looking() -> Bench {
     let mut bench = Bench::live();
-    bench.click("Traffic");
+    bench.show(View::Traffic);
     bench.run(200);
     bench
 }
@@ -25,7 +26,7 @@ fn looking() -> Bench {
 fn nothing_is_decoded_until_somebody_looks_and_then_all_that_was_kept() {
     let mut bench = Bench::live();
     assert!(bench.state().hand().connection.traffic.frames().is_empty());
-    bench.click("Traffic");
+    bench.show(View::Traffic);
     bench.run(100);
     let first = &bench.state().hand().connection.traffic.frames()[0];
     assert_eq!(first.kind.name(), "opened");
@@ -89,7 +90,7 @@ fn the_filter_leaves_only_what_it_names() {
 #[test]
 fn a_wrong_frame_is_shown_with_what_is_wrong_about_it() {
     let mut bench = Bench::live();
-    bench.click("Traffic");
+    bench.show(View::Traffic);
     bench.click("Only wrong");
     bench.unplug();
     bench.faults(FaultPlan {
@@ -187,11 +188,11 @@ fn a_cleared_list_shows_only_what_passes_afterwards() {
 #[test]
 fn without_a_link_the_view_says_why_it_is_empty() {
     let mut bench = Bench::live();
-    bench.click("Connection");
+    bench.show(View::Connection);
     bench.run(60);
     bench.click_button("Disconnect");
     bench.run(900);
-    bench.click("Traffic");
+    bench.show(View::Traffic);
     bench.run(60);
     assert!(bench.shows("Nothing is connected. Frames appear here as soon as a wire is open."));
     assert!(!bench.is_disabled(Role::Button, "STOP"));

@@ -183,11 +183,11 @@ fn a_hold_that_is_let_go_left_or_stopped_does_nothing() {
 #[test]
 fn what_forbids_arming_or_the_series_forbids_the_hold() {
     let mut bench = on_block();
-    bench.click("Index lock");
+    bench.act(Action::Lock(Dof::Index, true));
     bench.run(60);
     assert!(bench.is_disabled(Role::Button, GUARDED));
     assert!(bench.shows("Index is locked and would have to move."));
-    bench.click("Index lock");
+    bench.act(Action::Lock(Dof::Index, false));
     bench.run(60);
     assert!(!bench.is_disabled(Role::Button, GUARDED));
     hold(&mut bench, 800);
@@ -315,6 +315,8 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     bench.run(400);
     assert_eq!(bench.texts_with("Trial 1 of 2").len(), 1);
     assert!(bench.shows("End with a stop") && bench.shows("Force now, g"));
+    bench.show(View::Live);
+    bench.run(60);
     assert!(
         bench.is_disabled(Role::Slider, "Ring angle target"),
         "sliders rest"
@@ -327,6 +329,7 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     ] {
         assert_eq!(bench.typed(field), "-", "{field}: each trial sets its own");
     }
+    bench.show(View::Tune);
     finish(&mut bench, 60_000);
     assert!(
         !bench.state().hand().connection.is_armed(),

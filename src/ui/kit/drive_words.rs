@@ -2,7 +2,8 @@
 
 use crate::app::readings::Freshness;
 use crate::hand::{Dof, Status, Words};
-use crate::ui::kit::{Pane, format};
+use crate::ui::kit::pane::Pane;
+use crate::ui::style::format;
 use crate::ui::text::{main, words};
 use egui::Color32;
 
