@@ -18,7 +18,7 @@ use egui::{
 };
 
 /// An entry on the shelf, and its least height where that is low.
-const TILE: egui::Vec2 = vec2(88.0, 84.0);
+const TILE: egui::Vec2 = vec2(96.0, 84.0);
 const TILE_LEAST: f32 = 56.0;
 /// Width of the drawer of gestures.
 const DRAWER: f32 = 460.0;

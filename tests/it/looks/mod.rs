@@ -12,10 +12,11 @@ use handscope::hand::Moment;
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::cards::SceneCard;
 use handscope::shell::headless::driver::{Driver, Scene};
+use handscope::store::calendar;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -38,12 +39,17 @@ const PICTURES_MAX_BYTES: u64 = 400_000;
 const SCREENSHOTS_MAX: usize = 8;
 const SCREENSHOTS_MAX_BYTES: u64 = 1_000_000;
 
+/// When the recordings of the list began, seconds since 1970.
+const BEGAN: [u64; 3] = [1_795_248_000, 1_793_692_800, 1_793_520_000];
+
 /// A state of the program from which several views are drawn.
 struct Stage {
     scenario: &'static str,
     at_s: u64,
     /// A small series of grasps is run first.
     trials: bool,
+    /// A pose grasps what is before the hand.
+    grasps: bool,
     card: Option<SceneCard>,
     /// Names of the files, and the views.
     shots: &'static [(&'static str, View)],
@@ -58,6 +64,7 @@ const fn watching(
         scenario,
         at_s,
         trials: false,
+        grasps: false,
         card: None,
         shots,
     }
@@ -167,6 +174,9 @@ fn draw(
     if stage.trials {
         driver.try_grasps();
     }
+    if stage.grasps {
+        grasp(&mut driver);
+    }
     if let Some(card) = stage.card {
         driver.open_card(card);
     }
@@ -179,6 +189,20 @@ fn draw(
             }
         }
     }
+}
+
+/// A person arms the hand and lets it grasp what is before it.
+fn grasp(driver: &mut Driver) {
+    let hidden = BTreeSet::new();
+    let poses = &driver.desktop_app().state().poses;
+    let pose = poses.poses(&hidden).find(|pose| pose.name == "Power grasp");
+    let pose = pose.unwrap().id;
+    for action in [Action::Arm, Action::Recall(pose)] {
+        let now = driver.now();
+        driver.desktop_app().app().act(action, now);
+        driver.run_for(Duration::from_millis(300));
+    }
+    driver.run_for(Duration::from_millis(2200));
 }
 
 /// Draws the view of sessions, and one of them replayed, in each dress.
@@ -206,7 +230,13 @@ fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Pic
                 driver.dress(theme, language);
                 let mut picture = driver.picture(view);
                 let labels = picture.labels.to_string();
-                let labels = labels.replace(folder.path().to_str().unwrap(), "FOLDER");
+                let mut labels = labels.replace(folder.path().to_str().unwrap(), "FOLDER");
+                // The list is the same in every time zone.
+                for since_1970 in BEGAN.map(Duration::from_secs) {
+                    let (day, time) = calendar::local(since_1970);
+                    let utc = calendar::stamp(since_1970).replace('T', " ");
+                    labels = labels.replace(&format!("{day} {time}"), &utc[..16]);
+                }
                 picture.labels = labels.parse().unwrap();
                 take(name, &picture);
             }
@@ -447,7 +477,11 @@ fn the_window_looks_as_it_is_committed() {
 fn the_readme_has_few_small_pictures() {
     let folder = root().join("screenshots");
     if std::env::var("RENEW").is_ok_and(|what| what == "screenshots") {
-        for stage in &STAGES {
+        let held = Stage {
+            grasps: true,
+            ..watching("idle", 3, &[("live", View::Live)])
+        };
+        for stage in STAGES.iter().chain([&held]) {
             let wants = |name: &str| SCREENSHOTS.contains(&name);
             draw(stage, README_SCALE, wants, |name, picture| {
                 let rgb = picture.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
