@@ -245,7 +245,9 @@ mod tests {
         none.about.name = "sponge".into();
         assert_eq!(title(look, &state, &none), format!("sponge, {day} {hour}"));
         assert_eq!(
-            title(look, &state, &item(2 * DAY_S, &[])).matches("1970").count(),
+            title(look, &state, &item(2 * DAY_S, &[]))
+                .matches("1970")
+                .count(),
             1
         );
     }
