@@ -96,14 +96,15 @@ pub(super) fn start_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &Ctx<
 /// plan is written by now, does not begin.
 fn start_asked(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     let is_armed = hand.connection.is_armed();
-    let is_over = |(plan, at): &mut (TrialPlan, Moment)| {
-        let is_late = ctx.now.since(*at) > ARM_WITHIN;
-        is_armed || is_late || *plan != trials.plan
-    };
-    let Some((plan, _)) = hand.series_asked.take_if(is_over) else {
+    let now = ctx.now;
+    let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
+    let is_over =
+        |(plan, at): &mut (TrialPlan, Moment)| is_armed || is_late(*at) || *plan != trials.plan;
+    let Some((plan, at)) = hand.series_asked.take_if(is_over) else {
         return;
     };
-    if is_armed && plan == trials.plan {
+    // A window that hung meanwhile moves nothing late.
+    if is_armed && !is_late(at) && plan == trials.plan {
         start_series(hand, trials, ctx);
     }
     if hand.series.is_none() {

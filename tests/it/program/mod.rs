@@ -118,6 +118,13 @@ impl Bench {
         }
     }
 
+    /// The window does nothing for so long; the links go on.
+    async fn hang(&mut self, millis: u64) {
+        for _ in 0..millis / 10 {
+            sleep(Duration::from_millis(10)).await;
+        }
+    }
+
     /// Lets time go by until it is so.
     async fn until(&mut self, what: &str, is_so: impl Fn(&State) -> bool) {
         let over = Instant::now() + Duration::from_secs(60);

@@ -102,6 +102,16 @@ async fn what_ends_the_wish_to_start_leaves_the_hand_at_rest() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn a_window_that_hung_since_starts_nothing_late() {
+    let mut bench = Bench::live().await;
+    arm_and_start(&mut bench);
+    bench.hang(3000).await;
+    bench.run(500).await;
+    assert!(bench.hand().series.is_none() && !bench.hand().arms_for_series());
+    assert!(bench.told().contains(&NoticeKind::SeriesNotBegun));
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_hand_that_cannot_be_armed_begins_nothing_and_says_why() {
     let mut bench = Bench::live().await;
     bench.act(Action::Lock(Dof::Index, true));
