@@ -13,7 +13,7 @@ use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui
 use crate::ui::faults::message_log::MessageLog;
 use crate::ui::faults::recordings::RecordingsView;
 use crate::ui::kit::DriveWords;
-use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;
 use egui::{Margin, Panel, Ui};
@@ -43,34 +43,33 @@ impl FaultsView {
         self.recordings.close();
     }
 
-    /// Draws it over all of `ui`; true if it is to be shut.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
+    /// Draws it over all of `ui`.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         if let Some(recording) = self.recordings.opened(pane) {
             kit::full_card_ui(ui, look, |ui| {
                 self.recordings.recording_ui(ui, pane, &recording);
             });
-            return false;
+            return;
         }
-        let mut shut = false;
         kit::full_card_ui(ui, look, |ui| {
             let upper = (ui.available_height() * 0.55).round();
             let above = kit::bare(Panel::top("faults"), upper, Margin::ZERO);
-            above.show(ui, |ui| shut = self.faults_ui(ui, pane));
+            above.show(ui, |ui| self.faults_ui(ui, pane));
             ui.separator();
             ui.push_id("beside", |ui| self.beside_ui(ui, pane));
         });
-        shut
     }
 
-    fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
+    fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let shut = kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
+        kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
             let shut = Button::said(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
-            let shut = shut.weight(Weight::Quiet).ui(ui, look).clicked();
+            if shut.weight(Weight::Quiet).ui(ui, look).clicked() {
+                pane.open(ViewRequest::Faults);
+            }
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
-            shut
         });
         scroll_ui(ui, |ui| {
             if let Some(dof) = self.chosen
@@ -95,7 +94,6 @@ impl FaultsView {
             }
             meanings_ui(ui, pane);
         });
-        shut
     }
 
     /// The messages, or the recordings.

@@ -31,6 +31,8 @@ pub(crate) enum ViewRequest {
     View(View),
     /// A place, with the view that was open there last.
     Place(Place),
+    /// Faults and messages, or what was open before them.
+    Faults,
     /// What a drive says, with its faults.
     Drive(Dof),
     /// A note of this moment.

@@ -40,13 +40,9 @@ impl StartButton {
         });
         if is_armed {
             *self = Self::default();
-            let start = Action::Trial(TrialAction::Start);
-            pane.actions.extend(
-                response
-                    .clicked()
-                    .then_some(start)
-                    .filter(|_| reason.is_none()),
-            );
+            if response.clicked() {
+                pane.actions.push(Action::Trial(TrialAction::Start));
+            }
         } else if self.is_held(ui, pane, &response) {
             pane.actions.push(Action::Trial(TrialAction::ArmAndStart));
         }

@@ -204,11 +204,7 @@ impl Body {
 
     /// All hands side by side, over the poses.
     fn all_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let strip = RoomSize {
-            designed: strip_height(ui.available_height()) + theme::GAP,
-            least: STRIP_LEAST + theme::GAP,
-            rest: 300.0,
-        };
+        let strip = strip_size(ui.available_height());
         let Self { rooms, all, .. } = self;
         rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
         all.ui(ui, pane);
@@ -221,11 +217,7 @@ impl Body {
             return;
         }
         let Self { rooms, own, .. } = self;
-        let strip = RoomSize {
-            designed: strip_height(rect.height()) + theme::GAP,
-            least: STRIP_LEAST + theme::GAP,
-            rest: 300.0,
-        };
+        let strip = strip_size(rect.height());
         // Under a time line, a small window has room for what was measured only; no pose can be taken there anyway.
         let has_room = pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES;
         if has_room && self.view != View::Poses {
@@ -257,8 +249,7 @@ impl Body {
                 to_plots_ui(ui, pane);
                 self.poses.ui(ui, pane);
             }
-            View::Faults if self.own.faults.ui(ui, pane) => self.view = self.before_faults,
-            View::Faults => {}
+            View::Faults => self.own.faults.ui(ui, pane),
             _ => self.plots_ui(ui, rect, pane),
         }
     }
@@ -282,7 +273,12 @@ fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Height of the strip of poses in a view as high as this.
-const fn strip_height(view: f32) -> f32 {
-    if view < 560.0 { STRIP_LEAST } else { STRIP }
+/// The strip of poses in a view as high as this.
+fn strip_size(view: f32) -> RoomSize {
+    let designed = if view < 560.0 { STRIP_LEAST } else { STRIP };
+    RoomSize {
+        designed: designed + theme::GAP,
+        least: STRIP_LEAST + theme::GAP,
+        rest: 300.0,
+    }
 }

@@ -194,7 +194,7 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
         }
     };
     if pressed.clicked() {
-        pane.open(ViewRequest::View(View::Faults));
+        pane.open(ViewRequest::Faults);
     }
 }
 

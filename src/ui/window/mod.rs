@@ -218,7 +218,7 @@ impl Window {
 
     fn open(&mut self, opens: ViewRequest, now: Moment) {
         match opens {
-            ViewRequest::View(View::Faults) => self.body.toggle_faults(),
+            ViewRequest::Faults => self.body.toggle_faults(),
             ViewRequest::View(view) => self.body.show(view),
             ViewRequest::Place(place) => self.body.show_place(place),
             ViewRequest::Drive(dof) => {

@@ -243,7 +243,8 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     };
     let places = Place::ALL.map(|place| Wish::Opens(ViewRequest::Place(place)));
     let views = View::ALL.into_iter();
-    let views = views.filter(|view| view.place().title() != view.title());
+    // The faults have a key, and their place the name of its first view.
+    let views = views.filter(|view| *view != View::Faults && view.place().title() != view.title());
     let views: Vec<Wish> = views
         .map(|view| Wish::Opens(ViewRequest::View(view)))
         .collect();

@@ -115,6 +115,20 @@ fn check_nothing(bench: &Bench, why: &str) {
     assert_eq!(bench.angle(Dof::Index), 1000, "{why}");
 }
 
+/// After a short series, in a window that keeps what it did in a folder.
+fn tried() -> Bench {
+    let mut bench = Bench::keeping(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    bench.show(View::Tune);
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench
+}
+
 #[test]
 fn held_for_a_second_the_button_arms_the_hand_and_then_starts() {
     let mut bench = on_block();
@@ -394,15 +408,7 @@ fn after_a_series_nothing_is_said_to_move_a_hand_that_came_to_rest() {
 
 #[test]
 fn what_was_tried_is_saved_by_itself_and_the_views_say_where() {
-    let mut bench = Bench::keeping(SimConfig {
-        scenario: Scenario::Rigid,
-        ..SimConfig::default()
-    });
-    bench.show(View::Tune);
-    short(&mut bench);
-    arm(&mut bench);
-    bench.click("Start trials");
-    finish(&mut bench, 60_000);
+    let mut bench = tried();
     bench.until(10_000, |bench| last(bench).origin.is_in_files());
     for view in [View::Tune, View::Compare] {
         bench.show(view);
@@ -451,15 +457,7 @@ fn the_best_is_made_the_default_by_a_click_and_the_yes_of_its_card() {
 
 #[test]
 fn nothing_is_made_the_default_of_an_armed_hand() {
-    let mut bench = Bench::keeping(SimConfig {
-        scenario: Scenario::Rigid,
-        ..SimConfig::default()
-    });
-    bench.show(View::Tune);
-    short(&mut bench);
-    arm(&mut bench);
-    bench.click("Start trials");
-    finish(&mut bench, 60_000);
+    let mut bench = tried();
     let button = "Make it the default";
     bench.until(5000, |bench| !bench.is_disabled(Role::Button, button));
     arm(&mut bench);
