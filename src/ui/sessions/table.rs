@@ -29,7 +29,7 @@ const STRIP: (f32, f32) = (48.0, 308.0);
 /// Marks that are told beside the pointer.
 const MARKS_TOLD: usize = 3;
 /// The drawn hand beside the pointer.
-const HAND: Vec2 = vec2(96.0, 112.0);
+const HAND: Vec2 = vec2(120.0, 112.0);
 
 /// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
 const COLUMNS: [(Text, f32); 9] = [
