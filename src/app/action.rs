@@ -11,8 +11,8 @@ use crate::app::poses::PoseState;
 use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::readings::fault_recorder::PersonAct;
 use crate::app::readings::faults::FaultKind;
+use crate::app::recordings::RecordingAction;
 use crate::app::scan::ScanTarget;
-use crate::app::sessions::SessionAction;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
 use crate::hand::kinematics::Side;
@@ -68,8 +68,8 @@ pub enum Action {
     HideShipped(String, bool),
     /// Show a sequence on the drawn hand, or none any more; nothing is sent.
     DryRun(Option<SequenceId>),
-    /// What is asked about recorded sessions.
-    Session(SessionAction),
+    /// What is asked about recordings.
+    Recording(RecordingAction),
     /// What a person does at an exhibition, or to begin one.
     Exhibit(ExhibitAction),
     /// What is asked of inputs and of the gateway.
@@ -184,7 +184,7 @@ impl Action {
             | Self::Library(_)
             | Self::HideShipped(..)
             | Self::DryRun(_)
-            | Self::Session(_)
+            | Self::Recording(_)
             | Self::Exhibit(_)
             | Self::Input(_)
             | Self::Trial(_)

@@ -193,7 +193,7 @@ impl Action {
             | Self::UndoTare
             | Self::TakeKeptTare
             | Self::Stage(..) => Effect::Keeps,
-            Self::Session(_) => Effect::Records,
+            Self::Recording(_) => Effect::Records,
             Self::Exhibit(_) => Effect::Exhibits,
             Self::Save(_)
             | Self::SavePicture(_)

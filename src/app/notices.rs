@@ -149,8 +149,8 @@ pub enum NoticeKind {
         /// What the hand that has it is called.
         hand: String,
     },
-    /// A recorded session could not be opened or read on.
-    SessionRefused {
+    /// A recording could not be opened or read on.
+    RecordingRefused {
         /// The file.
         path: PathBuf,
         why: OpenError,
@@ -161,10 +161,10 @@ pub enum NoticeKind {
     NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.
     Recorded,
-    /// Sessions need more room than they may: the oldest are deleted when a recording begins later.
-    SessionsPlanned {
+    /// Recordings need more room than they may: the oldest are deleted when a recording begins later.
+    RecordingsPlanned {
         /// How many.
-        sessions: usize,
+        recordings: usize,
         /// Bytes that this frees.
         bytes: u64,
         /// When the first and the last of them were recorded, as days.
@@ -172,12 +172,12 @@ pub enum NoticeKind {
         /// Not before this time, `2026-11-22 09:30`, UTC.
         due: String,
     },
-    SessionsDeleted {
+    RecordingsDeleted {
         /// How many.
-        sessions: usize,
+        recordings: usize,
     },
-    /// A session was read.
-    SessionOpened {
+    /// A recording was read.
+    RecordingOpened {
         /// Where it lies.
         path: PathBuf,
         trials: usize,
@@ -196,13 +196,13 @@ pub enum NoticeKind {
     Saved { path: PathBuf, entries: usize },
     /// A file could not be written.
     NotSaved { path: PathBuf, error: SystemError },
-    /// A session could not be written in a format of others.
+    /// A recording could not be written in a format of others.
     NotExported {
-        /// The session.
+        /// The recording.
         path: PathBuf,
         error: ExportError,
     },
-    /// A session could not be deleted.
+    /// A recording could not be deleted.
     NotDeleted {
         /// The file.
         path: PathBuf,
@@ -238,7 +238,7 @@ impl NoticeKind {
         Self::NotSaved { path, error }
     }
 
-    /// A session could not be deleted.
+    /// A recording could not be deleted.
     pub(crate) fn not_deleted(path: PathBuf, error: &std::io::Error) -> Self {
         let error = error.into();
         Self::NotDeleted { path, error }
@@ -252,11 +252,11 @@ impl NoticeKind {
             | Self::HoldConfirmed { .. }
             | Self::Acknowledged { .. }
             | Self::Saved { .. }
-            | Self::SessionsDeleted { .. }
+            | Self::RecordingsDeleted { .. }
             | Self::Recorded
             | Self::PosesImported { .. }
             | Self::SeriesEnded { aborted: None, .. }
-            | Self::SessionOpened { .. }
+            | Self::RecordingOpened { .. }
             | Self::DrawnWithoutOpenGl { .. }
             | Self::NoFileChosen => Level::Info,
             _ => Level::Warn,
@@ -266,7 +266,7 @@ impl NoticeKind {
     /// Kinds that differ only in a measured figure are one notice, with the newest figure.
     fn is_same(&self, other: &Self) -> bool {
         let confirmed: fn(&Self) -> bool = |kind| matches!(kind, Self::HoldConfirmed { .. });
-        let planned: fn(&Self) -> bool = |kind| matches!(kind, Self::SessionsPlanned { .. });
+        let planned: fn(&Self) -> bool = |kind| matches!(kind, Self::RecordingsPlanned { .. });
         let alike = |is: fn(&Self) -> bool| is(self) && is(other);
         self == other || alike(confirmed) || alike(planned)
     }

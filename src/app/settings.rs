@@ -299,18 +299,18 @@ pub struct KnownHand {
 /// What is recorded, and where.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SessionSettings {
+pub struct RecordingSettings {
     /// Hands are recorded.
     pub record: bool,
     /// Built-in hands, too.
     pub record_simulated: bool,
-    /// Where sessions lie; `None` = in the person's documents.
+    /// Where recordings lie; `None` = in the person's documents.
     pub folder: Option<PathBuf>,
-    /// What all sessions together may need, gigabytes.
+    /// What all recordings together may need, gigabytes.
     pub budget_gb: f64,
 }
 
-impl Default for SessionSettings {
+impl Default for RecordingSettings {
     fn default() -> Self {
         Self {
             record: true,
@@ -321,8 +321,8 @@ impl Default for SessionSettings {
     }
 }
 
-impl SessionSettings {
-    /// What all sessions together may need, in bytes.
+impl RecordingSettings {
+    /// What all recordings together may need, in bytes.
     pub fn budget_bytes(&self) -> u64 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -374,7 +374,8 @@ pub struct Settings {
     /// What is read first while something moves.
     pub read_first: PollPriority,
     /// What is recorded, and where.
-    pub sessions: SessionSettings,
+    #[serde(rename = "sessions")]
+    pub recordings: RecordingSettings,
     /// The hand moves only while a person holds a key.
     pub hold_to_run: bool,
     /// An armed hand that is asked nothing for some minutes is disarmed.
@@ -397,7 +398,7 @@ pub struct Settings {
 impl Settings {
     /// Whether a hand is recorded, built-in or not.
     pub const fn records(&self, is_simulated: bool) -> bool {
-        self.sessions.record && (!is_simulated || self.sessions.record_simulated)
+        self.recordings.record && (!is_simulated || self.recordings.record_simulated)
     }
 
     /// What the controls of a gamepad do.
@@ -407,9 +408,9 @@ impl Settings {
         own.unwrap_or_else(PadMap::usual)
     }
 
-    /// Where sessions lie; `None` = nowhere.
-    pub fn sessions_folder(&self, documents: Option<&Path>) -> Option<PathBuf> {
-        let own = self.sessions.folder.clone();
+    /// Where recordings lie; `None` = nowhere.
+    pub fn recordings_folder(&self, documents: Option<&Path>) -> Option<PathBuf> {
+        let own = self.recordings.folder.clone();
         own.or_else(|| documents.map(day_folder::of_all))
     }
 

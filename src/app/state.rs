@@ -6,8 +6,8 @@ use crate::app::hands::Hand;
 use crate::app::hands::list::HandList;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
+use crate::app::recordings::{BesideRecording, RecordingsState, Timeline};
 use crate::app::scan::ScanState;
-use crate::app::sessions::{BesideSession, SessionsState, Timeline};
 use crate::app::settings::Settings;
 use crate::app::trials::TrialsState;
 use crate::hand::Moment;
@@ -41,16 +41,16 @@ pub struct State {
     pub scan: ScanState,
     /// The hands that other Handscopes share.
     pub fleet: FleetState,
-    /// Recorded sessions.
-    pub sessions: SessionsState,
+    /// Recordings.
+    pub recordings: RecordingsState,
     /// What would be lost if the window closed now, once a person tried to.
     pub leave: Option<LeaveQuestion>,
     /// The exhibition that is shown in place of the window.
     pub exhibit: Option<ExhibitState>,
-    /// The time line of the session that is replayed; `None` while hands are live.
+    /// The time line of the recording that is replayed; `None` while hands are live.
     pub timeline: Option<Timeline>,
-    /// A second session, drawn over the replayed one.
-    pub beside: Option<BesideSession>,
+    /// A second recording, drawn over the replayed one.
+    pub beside: Option<BesideRecording>,
     /// What is kept from one start to the next.
     pub settings: Settings,
 }

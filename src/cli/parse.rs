@@ -24,7 +24,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 
 /// A time in a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum SessionTime {
+pub(crate) enum RecordingTime {
     /// So long after its start.
     FromStart(Duration),
     /// So long before its end.
@@ -32,13 +32,13 @@ pub(crate) enum SessionTime {
 }
 
 /// Seconds from the start of a recording, or behind a minus before its end.
-pub(crate) fn session_time(text: &str) -> Result<SessionTime, String> {
+pub(crate) fn recording_time(text: &str) -> Result<RecordingTime, String> {
     match text.strip_prefix('-') {
         Some(before) if !before.starts_with(['+', '-']) => {
-            seconds(before).map(SessionTime::BeforeEnd)
+            seconds(before).map(RecordingTime::BeforeEnd)
         }
         Some(_) => Err(format!("'{text}' is not a number of seconds")),
-        None => seconds(text).map(SessionTime::FromStart),
+        None => seconds(text).map(RecordingTime::FromStart),
     }
 }
 

@@ -1,11 +1,11 @@
-//! What a session file holds, one entry after the other.
+//! What a recording file holds, one entry after the other.
 
 use crate::hand::Moment;
 use crate::record::heard::Record;
 use crate::record::state::LinkState;
 use crate::record::wire::Piece;
 
-/// One entry of a session file.
+/// One entry of a recording file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Entry {
     /// What the link told.

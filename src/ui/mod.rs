@@ -11,7 +11,7 @@ pub(crate) mod kit;
 mod params;
 mod plots;
 mod poses;
-mod sessions;
+mod recordings;
 mod style;
 mod text;
 mod theme;

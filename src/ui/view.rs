@@ -1,6 +1,6 @@
 //! The places of the window, and the views in them.
 
-use crate::ui::text::{Text, inputs, main, sessions, window};
+use crate::ui::text::{Text, inputs, main, recordings, window};
 
 /// One of the five places between which the header switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Place {
         match self {
             Self::Live => main::TAB_LIVE,
             Self::Tune => main::TAB_TUNE,
-            Self::Recordings => sessions::TITLE,
+            Self::Recordings => recordings::TITLE,
             Self::Hand => window::PLACE_HAND,
             Self::Share => inputs::TITLE,
         }
@@ -42,7 +42,7 @@ impl Place {
         match self {
             Self::Live => &[View::Live, View::Touch, View::Poses, View::Faults],
             Self::Tune => &[View::Tune, View::Compare],
-            Self::Recordings => &[View::Sessions],
+            Self::Recordings => &[View::Recordings],
             Self::Hand => &[View::Connection, View::Device, View::Traffic],
             Self::Share => &[View::Inputs],
         }
@@ -74,7 +74,7 @@ pub enum View {
     /// What goes over the wire, frame by frame.
     Traffic,
     /// What was recorded.
-    Sessions,
+    Recordings,
 }
 
 impl View {
@@ -90,7 +90,7 @@ impl View {
         Self::Connection,
         Self::Inputs,
         Self::Traffic,
-        Self::Sessions,
+        Self::Recordings,
     ];
 
     /// Stable lower-case name for the command line and files.
@@ -114,7 +114,7 @@ impl View {
             Self::Connection => ("connection", main::TAB_CONNECTION),
             Self::Inputs => ("inputs", inputs::TITLE),
             Self::Traffic => ("traffic", main::TAB_TRAFFIC),
-            Self::Sessions => ("sessions", sessions::TITLE),
+            Self::Recordings => ("sessions", recordings::TITLE),
         }
     }
 
@@ -123,7 +123,7 @@ impl View {
         match self {
             Self::Live | Self::Touch | Self::Poses | Self::Faults => Place::Live,
             Self::Tune | Self::Compare => Place::Tune,
-            Self::Sessions => Place::Recordings,
+            Self::Recordings => Place::Recordings,
             Self::Connection | Self::Device | Self::Traffic => Place::Hand,
             Self::Inputs => Place::Share,
         }

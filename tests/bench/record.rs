@@ -9,8 +9,8 @@ use handscope::app::connect::SimDial;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{HandSample, Moment, Timed};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
-use handscope::record::file::reader::{SessionFile, Stretch};
-use handscope::record::file::writer::SessionWriter;
+use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{
     FLUSH_EACH, Opening, PART_LENGTH, Part, Recorder, RecordingPlan, SystemDisk,
 };
@@ -107,7 +107,7 @@ fn source(path: &Path) -> Result<f64, Failure> {
 }
 
 fn read(path: &Path) -> Result<Vec<Entry>, Failure> {
-    let file = SessionFile::open(path)?;
+    let file = RecordingFile::open(path)?;
     let mut entries = Vec::new();
     let all = Stretch {
         from: Moment::from_micros(1_000_000),
@@ -216,7 +216,7 @@ fn write(
     entries: &[Entry],
     path: &Path,
     hours: u32,
-) -> Result<(SessionWriter, File), Failure> {
+) -> Result<(RecordingWriter, File), Failure> {
     let before = mib("VmRSS:")?;
     let mut all = on_and_on(entries).peekable();
     let (mut cpu_ms, mut written, mut bytes) = (0.0, 0, 0);
@@ -235,7 +235,7 @@ fn write(
             ..opening()
         };
         let (writer, file) = last.insert((
-            SessionWriter::new(&opening)?,
+            RecordingWriter::new(&opening)?,
             File::create(match number {
                 1 => path.to_owned(),
                 number => path.with_file_name(format!("long-{number}.mcap")),
@@ -258,7 +258,7 @@ fn write(
 /// How many entries there were.
 fn write_hour(
     entries: impl Iterator<Item = Entry>,
-    writer: &mut SessionWriter,
+    writer: &mut RecordingWriter,
     file: &mut File,
 ) -> Result<u64, Failure> {
     let (mut flushed, mut written) = (Moment::ZERO, 0);
@@ -276,7 +276,7 @@ fn write_hour(
     Ok(written)
 }
 
-fn end(writer: &mut SessionWriter, file: &mut File) -> Result<(), Failure> {
+fn end(writer: &mut RecordingWriter, file: &mut File) -> Result<(), Failure> {
     writer.finish()?;
     Ok(file.write_all(&writer.take_bytes())?)
 }
@@ -307,7 +307,7 @@ fn opened(report: &mut Report, path: &Path, what: &str) -> Result<(), Failure> {
 /// Opens a file, reads at many places, and says how long that took, and how much memory.
 pub(crate) fn child(path: &Path) -> Result<(), Failure> {
     let begun = Instant::now();
-    let file = SessionFile::open(path)?;
+    let file = RecordingFile::open(path)?;
     let open = millis(begun.elapsed());
     let mut random = fastrand::Rng::with_seed(1);
     let length = file.last().since(file.first()).saturating_sub(STRETCH);

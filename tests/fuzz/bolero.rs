@@ -26,5 +26,5 @@ macro_rules! targets {
 targets! {
     rs485_client rs485_device rtu_client modbus_pdu mbap can_record can_split slcan_answers slcan_commands
     usbcan_packets tap_rs485 tap_rtu tap_tcp tap_can tap_slcan tap_usbcan words tactile values endpoint settings
-    parameter_file pose_file exhibit_file exhibit_day session_file session_about csv_values
+    parameter_file pose_file exhibit_file exhibit_day recording_file session_about csv_values
 }

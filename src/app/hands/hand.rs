@@ -12,7 +12,7 @@ use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
 use crate::app::procedures::Procedures;
 use crate::app::readings::{Freshness, Measured, Readings};
-use crate::app::sessions::recording::HandRecording;
+use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
 use crate::app::trials::work::start_refusal;
@@ -62,7 +62,7 @@ pub struct Hand {
     pub inputs: HandInputs,
     /// What the hand keeps, and what of it is to be changed.
     pub params: ParamsState,
-    /// The session that is recorded of it.
+    /// The recording being made of it.
     pub recording: Option<HandRecording>,
     /// Who moves it, of a hand that is replayed.
     pub(crate) recorded: Option<RecordedMover>,

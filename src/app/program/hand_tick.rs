@@ -8,7 +8,7 @@ use crate::app::poses::PoseState;
 use crate::app::procedures::Procedure;
 use crate::app::program::inputs;
 use crate::app::program::taring;
-use crate::app::sessions::recording::{HandRecording, RecordingTarget};
+use crate::app::recordings::recording::{HandRecording, RecordingTarget};
 use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;
 use crate::app::trials::{SeriesRun, TrialsState};
@@ -189,7 +189,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
         (Some(_), _) => hand.recording = None,
         // A hand that never answers makes no file; what went over the wire before is still in the tap.
         (None, Some(link)) if wanted && connection.is_live() => {
-            let folder = settings.sessions_folder(ctx.env.documents.as_deref());
+            let folder = settings.recordings_folder(ctx.env.documents.as_deref());
             let target = folder.zip(connection.endpoint.as_ref());
             hand.recording = target.and_then(|(folder, endpoint)| {
                 let target = RecordingTarget {

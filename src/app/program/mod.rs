@@ -32,9 +32,9 @@ use crate::app::program::jobs::Jobs;
 use crate::app::program::pose_actions::takes_poses;
 use crate::app::program::quirk_notes::QuirkNotes;
 use crate::app::program::saved::SavedFiles;
-use crate::app::replay::work::SessionWork;
-use crate::app::sessions::SessionAction;
-use crate::app::sessions::recording::HandRecording;
+use crate::app::recordings::RecordingAction;
+use crate::app::recordings::recording::HandRecording;
+use crate::app::replay::work::ReplayWork;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::exhibit::run::ExhibitWish;
@@ -56,7 +56,7 @@ pub struct App {
     closing: Option<Closing>,
     jobs: Jobs,
     exhibit: ExhibitWork,
-    recorded: SessionWork,
+    recorded: ReplayWork,
     records: bool,
     leaves: bool,
 }
@@ -73,7 +73,7 @@ impl App {
             closing: None,
             jobs: Jobs::default(),
             exhibit: ExhibitWork::default(),
-            recorded: SessionWork::default(),
+            recorded: ReplayWork::default(),
             records: true,
             leaves: false,
         }
@@ -231,10 +231,10 @@ impl App {
             Action::Play(play) => pose_actions::play(state, play, env),
             Action::HideShipped(name, hide) => pose_actions::hide_shipped(state, name, hide),
             Action::DryRun(sequence) => pose_actions::dry_run(state, sequence),
-            Action::Session(action) => {
+            Action::Recording(action) => {
                 let on = [
-                    SessionAction::Record(true),
-                    SessionAction::RecordSimulated(true),
+                    RecordingAction::Record(true),
+                    RecordingAction::RecordSimulated(true),
                 ];
                 // A press of a person counts more than how the program was started.
                 self.records |= on.contains(&action);

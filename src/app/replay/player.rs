@@ -1,21 +1,21 @@
-//! Replays a session: which moment is shown, how time goes on, and what is read ahead. Reads files off the window's thread.
+//! Replays a recording: which moment is shown, how time goes on, and what is read ahead. Reads files off the window's thread.
 
 use crate::app::action::Action;
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
+use crate::app::recordings::BesideRecording;
+use crate::app::recordings::about::{RecordingAbout, RecordingNote};
+use crate::app::recordings::action::RecordingAction;
+use crate::app::recordings::item::RecordingItem;
+use crate::app::recordings::timeline::Timeline;
 use crate::app::replay::beside;
 use crate::app::replay::recorded::{Recorded, Shown};
-use crate::app::sessions::BesideSession;
-use crate::app::sessions::about::{SessionAbout, SessionNote};
-use crate::app::sessions::action::SessionAction;
-use crate::app::sessions::item::SessionItem;
-use crate::app::sessions::timeline::Timeline;
 use crate::app::state::State;
 use crate::hand::{Group, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::tap::WireTap;
 use crate::record::file::reader::Stretch;
-use crate::record::file::{OpenError, SessionFile};
+use crate::record::file::{OpenError, RecordingFile};
 use crate::record::{Entry, Record};
 use crate::store::{BackgroundJob, on_thread};
 use std::collections::VecDeque;
@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Read ahead while time goes on, in seconds of the session at its own pace.
+/// Read ahead while time goes on, in seconds of the recording at its own pace.
 const AHEAD: Duration = Duration::from_secs(2);
 /// A step looks this far for the next reading, at most.
 const STEP_WITHIN: Duration = Duration::from_secs(5);
@@ -36,7 +36,7 @@ pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 
 /// A file that was opened, and the hand as it was soon after the beginning, or at the beginning of the stretch that is wanted.
 pub(crate) struct Opened {
-    file: Arc<SessionFile>,
+    file: Arc<RecordingFile>,
     found: HandThen,
     stretch: Option<(Moment, Moment)>,
 }
@@ -53,10 +53,10 @@ enum SeekTarget {
     Before(Moment),
 }
 
-/// A session that is replayed.
-pub(crate) struct SessionPlayer {
-    file: Arc<SessionFile>,
-    about: SessionAbout,
+/// A recording that is replayed.
+pub(crate) struct RecordingPlayer {
+    file: Arc<RecordingFile>,
+    about: RecordingAbout,
     /// Everything the window shows of it.
     pub(crate) state: State,
     tap: WireTap,
@@ -67,7 +67,7 @@ pub(crate) struct SessionPlayer {
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
     reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
-    beside: Option<BackgroundJob<Result<BesideSession, NoticeKind>>>,
+    beside: Option<BackgroundJob<Result<BesideRecording, NoticeKind>>>,
 }
 
 /// Opens a file near its beginning or at a stretch of it, off the window's thread.
@@ -79,7 +79,7 @@ pub(crate) fn open(
     let open = async move {
         let place = path.clone();
         let opened = on_thread(move || {
-            Ok(SessionFile::open(&place).and_then(|file| {
+            Ok(RecordingFile::open(&place).and_then(|file| {
                 let at = stretch.map_or(file.first().plus(AHEAD), |(from, _)| from);
                 let at = at.clamp(file.first(), file.last());
                 let found = find(&file, SeekTarget::At(at))?;
@@ -91,13 +91,13 @@ pub(crate) fn open(
             }))
         });
         let opened = opened.await.unwrap_or_else(|error| Err(error.into()));
-        opened.map_err(|why| NoticeKind::SessionRefused { path, why })
+        opened.map_err(|why| NoticeKind::RecordingRefused { path, why })
     };
     BackgroundJob::start(&env.runtime, &env.wake, open)
 }
 
 /// The hand at the moment that is wanted.
-fn find(file: &SessionFile, wanted: SeekTarget) -> io::Result<HandThen> {
+fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandThen> {
     let one = Duration::from_micros(1);
     let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
     let at = match wanted {
@@ -116,7 +116,7 @@ fn find(file: &SessionFile, wanted: SeekTarget) -> io::Result<HandThen> {
 
 /// When the angles were read first or last in a stretch.
 fn reading(
-    file: &SessionFile,
+    file: &RecordingFile,
     (from, to): (Moment, Moment),
     first: bool,
 ) -> io::Result<Option<Moment>> {
@@ -136,7 +136,7 @@ fn reading(
     Ok(found)
 }
 
-impl SessionPlayer {
+impl RecordingPlayer {
     /// Begins to replay a file, standing still.
     pub(crate) fn new(opened: Opened, live: &State) -> Self {
         let Opened {
@@ -144,8 +144,8 @@ impl SessionPlayer {
             found: (at, recorded),
             stretch,
         } = opened;
-        let about = SessionAbout::load(file.path()).unwrap_or_default();
-        let item = SessionItem::of(&file, about.clone());
+        let about = RecordingAbout::load(file.path()).unwrap_or_default();
+        let item = RecordingItem::of(&file, about.clone());
         let timeline = Timeline {
             path: item.path.clone(),
             title: item.title(),
@@ -197,14 +197,16 @@ impl SessionPlayer {
     }
 
     /// What a person says of it, where it is in no list.
-    pub(crate) const fn about_mut(&mut self) -> &mut SessionAbout {
+    pub(crate) const fn about_mut(&mut self) -> &mut RecordingAbout {
         &mut self.about
     }
 
     /// What of an action the program carries out while this is shown. A note is one of the recording.
     pub(crate) fn pass(&mut self, action: Action) -> Option<Action> {
         match action {
-            Action::Note(at, words) => Some(Action::Session(SessionAction::EditNote(at, words))),
+            Action::Note(at, words) => {
+                Some(Action::Recording(RecordingAction::EditNote(at, words)))
+            }
             Action::Dismiss(id) => {
                 self.state.notices.dismiss(id);
                 None
@@ -253,7 +255,7 @@ impl SessionPlayer {
         let passed = live.now.since(self.ticked);
         self.ticked = live.now;
         self.state.settings.clone_from(&live.settings);
-        self.state.sessions.clone_from(&live.sessions);
+        self.state.recordings.clone_from(&live.recordings);
         let eyes = live.hands.iter().any(|hand| hand.connection.may_move());
         match BackgroundJob::take_from(&mut self.beside) {
             Some(Ok(beside)) => self.state.beside = Some(beside),
@@ -280,7 +282,7 @@ impl SessionPlayer {
             Some(Err(error)) => {
                 let path = self.path().to_owned();
                 let why = error.into();
-                let what = NoticeKind::SessionRefused { path, why };
+                let what = NoticeKind::RecordingRefused { path, why };
                 self.state.notices.push(self.state.now, what);
             }
             None => {}
@@ -367,13 +369,13 @@ impl SessionPlayer {
         self.reading = Some((wanted, job));
     }
 
-    /// Carries out what a person asks about the replayed session.
-    pub(crate) fn act(&mut self, action: &SessionAction, env: &Env) {
+    /// Carries out what a person asks about the replayed recording.
+    pub(crate) fn act(&mut self, action: &RecordingAction, env: &Env) {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);
         match action {
-            SessionAction::Seek(at) => self.wanted = Some(SeekTarget::At(within(*at))),
-            SessionAction::Run(on) => {
+            RecordingAction::Seek(at) => self.wanted = Some(SeekTarget::At(within(*at))),
+            RecordingAction::Run(on) => {
                 let is_at_end = self.at() >= last;
                 if let Some(line) = self.line() {
                     line.runs = *on;
@@ -382,13 +384,13 @@ impl SessionPlayer {
                     self.wanted = Some(SeekTarget::At(first));
                 }
             }
-            SessionAction::Pace(pace) => {
+            RecordingAction::Pace(pace) => {
                 if let Some(line) = self.line() {
                     line.pace = pace.clamp(PACES.0, PACES.1);
                 }
             }
-            SessionAction::Loop(stretch) => self.set_loop(*stretch),
-            SessionAction::Step(forward) => {
+            RecordingAction::Loop(stretch) => self.set_loop(*stretch),
+            RecordingAction::Step(forward) => {
                 let at = self.at();
                 self.wanted = Some(if *forward {
                     SeekTarget::After(at)
@@ -399,34 +401,34 @@ impl SessionPlayer {
                     line.runs = false;
                 }
             }
-            SessionAction::Beside(Some(path)) => {
+            RecordingAction::Beside(Some(path)) => {
                 self.beside = Some(beside::read(path.clone(), first, env));
             }
-            SessionAction::Beside(None) => (self.beside, self.state.beside) = (None, None),
-            SessionAction::Align(own, other) => {
+            RecordingAction::Beside(None) => (self.beside, self.state.beside) = (None, None),
+            RecordingAction::Align(own, other) => {
                 if let Some(beside) = &mut self.state.beside {
                     (beside.own, beside.other) = (*own, *other);
                 }
             }
             // They are about the list, about files, or about what is recorded now.
-            SessionAction::Record(_)
-            | SessionAction::RecordSimulated(_)
-            | SessionAction::ChooseFolder(_)
-            | SessionAction::DefaultFolder
-            | SessionAction::Look
-            | SessionAction::Open(_)
-            | SessionAction::OpenAt(..)
-            | SessionAction::Close
-            | SessionAction::Reveal(_)
-            | SessionAction::Export(..)
-            | SessionAction::Name(..)
-            | SessionAction::Star(..)
-            | SessionAction::AskDelete(_)
-            | SessionAction::Delete
-            | SessionAction::KeepIt
-            | SessionAction::MakeRoom
-            | SessionAction::KeepPlanned
-            | SessionAction::EditNote(..) => {}
+            RecordingAction::Record(_)
+            | RecordingAction::RecordSimulated(_)
+            | RecordingAction::ChooseFolder(_)
+            | RecordingAction::DefaultFolder
+            | RecordingAction::Look
+            | RecordingAction::Open(_)
+            | RecordingAction::OpenAt(..)
+            | RecordingAction::Close
+            | RecordingAction::Reveal(_)
+            | RecordingAction::Export(..)
+            | RecordingAction::Name(..)
+            | RecordingAction::Star(..)
+            | RecordingAction::AskDelete(_)
+            | RecordingAction::Delete
+            | RecordingAction::KeepIt
+            | RecordingAction::MakeRoom
+            | RecordingAction::KeepPlanned
+            | RecordingAction::EditNote(..) => {}
         }
     }
 
@@ -442,23 +444,23 @@ impl SessionPlayer {
 
     /// Goes to the beginning of a stretch, and plays that again and again.
     pub(crate) fn show_stretch(&mut self, stretch: (Moment, Moment), env: &Env) {
-        self.act(&SessionAction::Loop(Some(stretch)), env);
-        self.act(&SessionAction::Seek(stretch.0), env);
+        self.act(&RecordingAction::Loop(Some(stretch)), env);
+        self.act(&RecordingAction::Seek(stretch.0), env);
     }
 
     /// Changes the note of a moment, adds one, or takes it away; gives all notes as they are then.
-    pub(crate) fn edit_note(&mut self, at: Moment, words: &str) -> Option<Vec<SessionNote>> {
+    pub(crate) fn edit_note(&mut self, at: Moment, words: &str) -> Option<Vec<RecordingNote>> {
         let words: String = words.trim().chars().take(NOTE_MAX).collect();
         let line = self.line()?;
-        let mut notes: Vec<SessionNote> = line.notes.to_vec();
+        let mut notes: Vec<RecordingNote> = line.notes.to_vec();
         notes.retain(|note| note.at() != at);
         if !words.is_empty() {
-            notes.push(SessionNote {
+            notes.push(RecordingNote {
                 at_micros: at.micros(),
                 words,
             });
         }
-        notes.sort_by_key(SessionNote::at);
+        notes.sort_by_key(RecordingNote::at);
         line.notes = Arc::new(notes.clone());
         Some(notes)
     }

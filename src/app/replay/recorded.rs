@@ -1,4 +1,4 @@
-//! The state of the window at a moment of a recorded session: everything is taken in as it was when it was heard.
+//! The state of the window at a moment of a recording: everything is taken in as it was when it was heard.
 
 use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
@@ -8,7 +8,7 @@ use crate::history::MarkKind;
 use crate::link::Traffic;
 use crate::link::tap::WireTap;
 use crate::params;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::Stretch;
 use crate::record::{Entry, Event, EventKind, LinkReport};
 use crate::transport::Endpoint;
@@ -19,9 +19,9 @@ use std::time::Duration;
 /// So much before the moment is taken in reading by reading: the longest a person looks at closely. What is older comes from the
 /// overview, second by second.
 const CLOSE: Duration = Duration::from_secs(30);
-/// A session of this length is drawn reading by reading over another.
+/// A recording of this length is drawn reading by reading over another.
 const CLOSE_WHOLE: Duration = Duration::from_secs(600);
-/// A session of this length is taken in whole.
+/// A recording of this length is taken in whole.
 const WHOLE: Duration = Duration::from_secs(60);
 
 /// A hand as it was, and what was told of it then.
@@ -44,7 +44,7 @@ impl Recorded {
     ///
     /// # Errors
     /// What the system says.
-    pub(crate) fn at(file: &SessionFile, at: Moment) -> io::Result<Self> {
+    pub(crate) fn at(file: &RecordingFile, at: Moment) -> io::Result<Self> {
         let mut from = file.first();
         if at.since(from) > WHOLE {
             from = Moment::from_duration(at.since(Moment::ZERO).saturating_sub(CLOSE));
@@ -53,7 +53,7 @@ impl Recorded {
     }
 
     /// The hand of a file at a moment, taken in reading by reading from another moment on.
-    fn between(file: &SessionFile, from: Moment, at: Moment) -> io::Result<Self> {
+    fn between(file: &RecordingFile, from: Moment, at: Moment) -> io::Result<Self> {
         let mut recorded = Self::new(file);
         if from > file.first() {
             recorded.take_overview(file, from);
@@ -75,11 +75,11 @@ impl Recorded {
         Ok(recorded)
     }
 
-    /// The hand of a file at its end, with all of what was measured: reading by reading, or second by second in a long session.
+    /// The hand of a file at its end, with all of what was measured: reading by reading, or second by second in a long recording.
     ///
     /// # Errors
     /// What the system says.
-    pub(crate) fn whole(file: &SessionFile) -> io::Result<Self> {
+    pub(crate) fn whole(file: &RecordingFile) -> io::Result<Self> {
         if file.last().since(file.first()) <= CLOSE_WHOLE {
             return Self::between(file, file.first(), file.last());
         }
@@ -88,7 +88,7 @@ impl Recorded {
         Ok(recorded)
     }
 
-    fn new(file: &SessionFile) -> Self {
+    fn new(file: &RecordingFile) -> Self {
         let endpoint: Option<Endpoint> = file.opening().hand.parse().ok();
         let mut recorded = Self::default();
         if let Some(endpoint) = &endpoint {
@@ -100,7 +100,7 @@ impl Recorded {
     }
 
     /// What is before a moment, from the overview.
-    fn take_overview(&mut self, file: &SessionFile, until: Moment) {
+    fn take_overview(&mut self, file: &RecordingFile, until: Moment) {
         let longest = Duration::from_secs(crate::history::HISTORY_SECONDS.into());
         let from = Moment::from_duration(until.since(Moment::ZERO).saturating_sub(longest));
         let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);

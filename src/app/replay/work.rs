@@ -1,17 +1,17 @@
-//! Carries out what is asked about sessions, and lets what was begun go on. Files are read, written and deleted off the window's
+//! Carries out what is asked about recordings, and lets what was begun go on. Files are read, written and deleted off the window's
 //! thread.
 
 use crate::app::env::Env;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
-use crate::app::replay::player::{self, Opened, SessionPlayer};
-use crate::app::sessions::about::SessionAbout;
-use crate::app::sessions::action::SessionAction;
-use crate::app::sessions::budget::{self, PlannedDeletion, SessionRoom};
-use crate::app::sessions::export::RunningExport;
-use crate::app::sessions::folder;
-use crate::app::sessions::item::SessionItem;
-use crate::app::sessions::list::{self, Looked, OWN_MAX, OwnSession};
+use crate::app::recordings::about::RecordingAbout;
+use crate::app::recordings::action::RecordingAction;
+use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};
+use crate::app::recordings::export::RunningExport;
+use crate::app::recordings::folder;
+use crate::app::recordings::item::RecordingItem;
+use crate::app::recordings::list::{self, Looked, OWN_MAX, OwnRecording};
+use crate::app::replay::player::{self, Opened, RecordingPlayer};
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::calendar::since_1970;
@@ -20,11 +20,11 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What goes on with sessions.
+/// What goes on with recordings.
 #[derive(Default)]
-pub(crate) struct SessionWork {
-    /// The session that is replayed.
-    pub(crate) player: Option<SessionPlayer>,
+pub(crate) struct ReplayWork {
+    /// The recording that is replayed.
+    pub(crate) player: Option<RecordingPlayer>,
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
@@ -36,26 +36,26 @@ pub(crate) struct SessionWork {
     opened: [Option<PathBuf>; 2],
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
-    /// Sessions that are being written in formats of others.
+    /// Recordings that are being written in formats of others.
     exporting: Vec<RunningExport>,
-    /// What is to be written or deleted, one after the other: of two words about a session the later must be the last in its file.
+    /// What is to be written or deleted, one after the other: of two words about a recording the later must be the last in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<FilesWritten>,
 }
 
 /// One thing that is to be done with files.
 enum FileWork {
-    /// Write what a person says of this session.
-    Save(PathBuf, SessionAbout),
-    /// Delete this session.
+    /// Write what a person says of this recording.
+    Save(PathBuf, RecordingAbout),
+    /// Delete this recording.
     Delete(PathBuf),
-    /// Delete these sessions, as far as nobody cares for them by now.
+    /// Delete these recordings, as far as nobody cares for them by now.
     MakeRoom(Vec<PlannedDeletion>),
-    /// Keep what was told of the sessions of this folder.
+    /// Keep what was told of the recordings of this folder.
     Tell(PathBuf, Vec<PlannedDeletion>),
 }
 
-impl SessionWork {
+impl ReplayWork {
     /// Takes in what was read, and lets a replay go on.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
         if let Some(looked) = BackgroundJob::take_from(&mut self.looking) {
@@ -79,17 +79,17 @@ impl SessionWork {
     fn follow_recordings(&mut self, state: &mut State) {
         let State {
             hands,
-            sessions,
+            recordings,
             now,
             ..
         } = state;
-        let recordings = hands.iter().filter_map(|hand| hand.recording.as_ref());
+        let running = hands.iter().filter_map(|hand| hand.recording.as_ref());
         let mut recorded = Vec::new();
         for (recording, path) in
-            recordings.filter_map(|recording| Some((recording, recording.status.path.clone()?)))
+            running.filter_map(|recording| Some((recording, recording.status.path.clone()?)))
         {
-            sessions.own.retain(|own| own.path != path);
-            sessions.own.push(OwnSession {
+            recordings.own.retain(|own| own.path != path);
+            recordings.own.push(OwnRecording {
                 path: path.clone(),
                 hand: recording.hand.clone(),
                 first: recording.began,
@@ -97,44 +97,44 @@ impl SessionWork {
             });
             recorded.push(path);
         }
-        let over = sessions.own.len().saturating_sub(OWN_MAX);
-        sessions.own.drain(..over);
+        let over = recordings.own.len().saturating_sub(OWN_MAX);
+        recordings.own.drain(..over);
         let begins = recorded
             .iter()
-            .any(|path| !sessions.recorded.contains(path));
+            .any(|path| !recordings.recorded.contains(path));
         self.makes_room |= begins;
         self.look_again |= begins;
-        sessions.recorded = recorded;
+        recordings.recorded = recorded;
     }
 
     /// Tells what has no room, and deletes what was told long enough before a recording that begins.
     fn take_looked(&mut self, looked: Looked, state: &mut State) {
-        let sessions = &mut state.sessions;
-        sessions.items = Arc::new(looked.items);
-        sessions.unread = Arc::new(looked.unread);
-        sessions.looks = false;
-        sessions.looked += 1;
-        sessions.looked_at = since_1970();
+        let recordings = &mut state.recordings;
+        recordings.items = Arc::new(looked.items);
+        recordings.unread = Arc::new(looked.unread);
+        recordings.looks = false;
+        recordings.looked += 1;
+        recordings.looked_at = since_1970();
         let opened = self.opened.iter().flatten();
-        let in_use: Vec<PathBuf> = sessions.recorded.iter().chain(opened).cloned().collect();
-        let room = SessionRoom {
-            limit: state.settings.sessions.budget_bytes(),
+        let in_use: Vec<PathBuf> = recordings.recorded.iter().chain(opened).cloned().collect();
+        let room = RecordingRoom {
+            limit: state.settings.recordings.budget_bytes(),
             in_use: &in_use,
         };
         let now_unix_s = since_1970().as_secs();
-        let planned = budget::plan(&sessions.items, &room, &looked.told, now_unix_s);
+        let planned = budget::plan(&recordings.items, &room, &looked.told, now_unix_s);
         if std::mem::take(&mut self.makes_room) {
             let due = budget::due(&planned, &looked.told, now_unix_s);
             let due = Some(due).filter(|due| !due.is_empty());
             self.to_write.extend(due.map(FileWork::MakeRoom));
         }
         let is_new = planned.iter().any(|one| !looked.told.contains(one));
-        sessions.planned.clone_from(&planned);
+        recordings.planned.clone_from(&planned);
         if let Some(told) = self.what_to_tell(state, is_new) {
             state.notices.push(state.now, told);
         }
         if planned != looked.told
-            && let Some(folder) = state.sessions.folder.clone()
+            && let Some(folder) = state.recordings.folder.clone()
         {
             self.to_write.push_back(FileWork::Tell(folder, planned));
         }
@@ -142,20 +142,20 @@ impl SessionWork {
 
     /// What a person should know of what is planned: when that changes, and once in each run of the program.
     fn what_to_tell(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
-        let planned = &state.sessions.planned;
+        let planned = &state.recordings.planned;
         if !is_new && self.has_told {
             return None;
         }
         let day = |one: &PlannedDeletion| {
-            let mut items = state.sessions.items.iter();
+            let mut items = state.recordings.items.iter();
             let item = items.find(|item| item.path == one.path)?;
             Some(item.began().chars().take(10).collect::<String>())
         };
         let days = (day(planned.first()?)?, day(planned.last()?)?);
         let due = planned.iter().min_by_key(|one| one.due_unix_s())?.due();
         self.has_told = true;
-        Some(NoticeKind::SessionsPlanned {
-            sessions: planned.len(),
+        Some(NoticeKind::RecordingsPlanned {
+            recordings: planned.len(),
             bytes: planned.iter().map(|one| one.bytes).sum(),
             days,
             due,
@@ -167,7 +167,7 @@ impl SessionWork {
             Some(Ok(_)) if is_busy(state) => {
                 state.notices.push(state.now, NoticeKind::NotReplayedNow);
             }
-            Some(Ok(opened)) => self.player = Some(SessionPlayer::new(opened, state)),
+            Some(Ok(opened)) => self.player = Some(RecordingPlayer::new(opened, state)),
             Some(Err(refused)) => state.notices.push(state.now, refused),
             None => {}
         }
@@ -177,7 +177,7 @@ impl SessionWork {
         match BackgroundJob::take_from(&mut self.choosing_folder) {
             Some(Ok(folder)) => self.record_into(Some(folder), state),
             Some(Err(why)) => {
-                state.sessions.asks_folder = true;
+                state.recordings.asks_folder = true;
                 state.notices.push(state.now, why);
             }
             None => {}
@@ -201,13 +201,13 @@ impl SessionWork {
             }
         }
         let progress = self.exporting.iter().map(RunningExport::progress);
-        state.sessions.exports = progress.collect();
+        state.recordings.exports = progress.collect();
     }
 
-    /// From the next recording on; the sessions of that folder are listed at once.
+    /// From the next recording on; the recordings of that folder are listed at once.
     fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
-        state.settings.sessions.folder = folder;
-        (state.sessions.asks_folder, self.look_again) = (false, true);
+        state.settings.recordings.folder = folder;
+        (state.recordings.asks_folder, self.look_again) = (false, true);
     }
 
     /// One file after the other.
@@ -216,7 +216,9 @@ impl SessionWork {
             Some(Ok(deleted)) => {
                 self.look_again = true;
                 if deleted > 0 {
-                    let told = NoticeKind::SessionsDeleted { sessions: deleted };
+                    let told = NoticeKind::RecordingsDeleted {
+                        recordings: deleted,
+                    };
                     state.notices.push(state.now, told);
                 }
             }
@@ -235,52 +237,52 @@ impl SessionWork {
         }
     }
 
-    /// True once everything that a person said of sessions is in its file.
+    /// True once everything that a person said of recordings is in its file.
     pub(crate) fn is_written(&self) -> bool {
         self.writing.is_none() && self.to_write.is_empty()
     }
 
     /// Carries out what a person asks.
-    pub(crate) fn act(&mut self, action: SessionAction, state: &mut State, env: &Env) {
+    pub(crate) fn act(&mut self, action: RecordingAction, state: &mut State, env: &Env) {
         match action {
-            SessionAction::Record(on) => state.settings.sessions.record = on,
-            SessionAction::RecordSimulated(on) => {
-                state.settings.sessions.record_simulated = on;
-                state.settings.sessions.record |= on;
+            RecordingAction::Record(on) => state.settings.recordings.record = on,
+            RecordingAction::RecordSimulated(on) => {
+                state.settings.recordings.record_simulated = on;
+                state.settings.recordings.record |= on;
             }
-            SessionAction::ChooseFolder(typed) => {
+            RecordingAction::ChooseFolder(typed) => {
                 self.choosing_folder
                     .get_or_insert_with(|| folder::choose(typed, env));
             }
-            SessionAction::DefaultFolder => self.record_into(None, state),
-            SessionAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
-            SessionAction::Export(export) => self.exporting.push(export.begin(env)),
-            SessionAction::Look => self.look(state, env),
-            SessionAction::Open(path) => self.open(path, None, env),
-            SessionAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
-            SessionAction::Close => (self.player, self.look_again) = (None, true),
-            SessionAction::Name(path, name) => {
+            RecordingAction::DefaultFolder => self.record_into(None, state),
+            RecordingAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
+            RecordingAction::Export(export) => self.exporting.push(export.begin(env)),
+            RecordingAction::Look => self.look(state, env),
+            RecordingAction::Open(path) => self.open(path, None, env),
+            RecordingAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
+            RecordingAction::Close => (self.player, self.look_again) = (None, true),
+            RecordingAction::Name(path, name) => {
                 self.say(state, &path, |about| about.name = name);
             }
-            SessionAction::Star(path, star) => {
+            RecordingAction::Star(path, star) => {
                 self.say(state, &path, |about| about.star = star);
             }
-            SessionAction::AskDelete(path) => state.sessions.to_delete = Some(path),
-            SessionAction::KeepIt => state.sessions.to_delete = None,
-            SessionAction::Delete => {
-                let going = state.sessions.to_delete.take();
+            RecordingAction::AskDelete(path) => state.recordings.to_delete = Some(path),
+            RecordingAction::KeepIt => state.recordings.to_delete = None,
+            RecordingAction::Delete => {
+                let going = state.recordings.to_delete.take();
                 self.to_write.extend(going.map(FileWork::Delete));
             }
-            SessionAction::MakeRoom => {
-                let going = std::mem::take(&mut state.sessions.planned);
+            RecordingAction::MakeRoom => {
+                let going = std::mem::take(&mut state.recordings.planned);
                 self.to_write.push_back(FileWork::MakeRoom(going));
             }
-            SessionAction::KeepPlanned => {
-                for planned in std::mem::take(&mut state.sessions.planned) {
+            RecordingAction::KeepPlanned => {
+                for planned in std::mem::take(&mut state.recordings.planned) {
                     self.say(state, &planned.path, |about| about.star = true);
                 }
             }
-            SessionAction::EditNote(at, words) => {
+            RecordingAction::EditNote(at, words) => {
                 let edited = self.player.as_mut().and_then(|player| {
                     let notes = player.edit_note(at, &words)?;
                     Some((player.path().to_owned(), notes))
@@ -289,14 +291,14 @@ impl SessionWork {
                     self.say(state, &path, |about| about.notes = Some(notes));
                 }
             }
-            action @ (SessionAction::Seek(_)
-            | SessionAction::Run(_)
-            | SessionAction::Pace(_)
-            | SessionAction::Step(_)
-            | SessionAction::Loop(_)
-            | SessionAction::Beside(_)
-            | SessionAction::Align(..)) => {
-                if let (SessionAction::Beside(Some(path)), [_, beside]) =
+            action @ (RecordingAction::Seek(_)
+            | RecordingAction::Run(_)
+            | RecordingAction::Pace(_)
+            | RecordingAction::Step(_)
+            | RecordingAction::Loop(_)
+            | RecordingAction::Beside(_)
+            | RecordingAction::Align(..)) => {
+                if let (RecordingAction::Beside(Some(path)), [_, beside]) =
                     (&action, &mut self.opened)
                 {
                     *beside = Some(path.clone());
@@ -318,19 +320,19 @@ impl SessionWork {
         self.opening = Some(player::open(path, stretch, env));
     }
 
-    /// Looks for sessions again.
+    /// Looks for recordings again.
     fn look(&mut self, state: &mut State, env: &Env) {
-        let folder = state.settings.sessions_folder(env.documents.as_deref());
-        state.sessions.folder.clone_from(&folder);
+        let folder = state.settings.recordings_folder(env.documents.as_deref());
+        state.recordings.folder.clone_from(&folder);
         if let Some(folder) = folder {
-            state.sessions.looks = true;
-            self.looking = Some(list::look(folder, Arc::clone(&state.sessions.items), env));
+            state.recordings.looks = true;
+            self.looking = Some(list::look(folder, Arc::clone(&state.recordings.items), env));
         }
     }
 
-    /// Changes what a person says of a session, on screen at once and in its file.
-    fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut SessionAbout)) {
-        let items: &mut Vec<SessionItem> = Arc::make_mut(&mut state.sessions.items);
+    /// Changes what a person says of a recording, on screen at once and in its file.
+    fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut RecordingAbout)) {
+        let items: &mut Vec<RecordingItem> = Arc::make_mut(&mut state.recordings.items);
         let listed = items.iter_mut().find(|item| item.path == path);
         let about = match (listed, &mut self.player) {
             (Some(item), _) => &mut item.about,
@@ -344,11 +346,11 @@ impl SessionWork {
     }
 }
 
-/// How many sessions were deleted with that.
+/// How many recordings were deleted with that.
 type FilesWritten = BackgroundJob<Result<usize, NoticeKind>>;
 
-fn save(path: PathBuf, about: SessionAbout, env: &Env) -> FilesWritten {
-    let place = SessionAbout::path(&path);
+fn save(path: PathBuf, about: RecordingAbout, env: &Env) -> FilesWritten {
+    let place = RecordingAbout::path(&path);
     let save = on_thread(move || about.save(&path).map(|()| 0));
     let not_saved = move |error| NoticeKind::not_saved(place, &error);
     let save = async move { save.await.map_err(not_saved) };

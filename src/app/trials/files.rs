@@ -181,7 +181,7 @@ impl TrialsState {
             Ok(FilesDone::Opened(path, session)) => {
                 let trials = session.trials.len();
                 self.add(session.head, session.origin, session.trials);
-                NoticeKind::SessionOpened { path, trials }
+                NoticeKind::RecordingOpened { path, trials }
             }
         }
     }

@@ -1,9 +1,9 @@
-//! `export`: sessions, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
+//! `export`: recordings, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
 
 use crate::cli::out::progress::{EndWished, Progress};
 use crate::cli::out::{Out, ReaderGone, WrongUsage, say};
 use crate::cli::recordings::picture;
-use crate::cli::recordings::session_file::{
+use crate::cli::recordings::recording_file::{
     self, FileArgs, StretchArgs, is_standard, lost, say_remarks,
 };
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan, LeRobotSet};
@@ -11,7 +11,7 @@ use crate::record::export::output::Folder;
 use crate::record::export::{
     Destination, ExportError, Exported, Source, csv, cut, lerobot, parquet, rosbag,
 };
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::Stretch;
 use anyhow::{anyhow, bail};
 use serde_json::json;
@@ -23,14 +23,14 @@ const FPS: u32 = 30;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
-    /// Session files, as 'handscope record' and the window write them; - reads one from standard input
+    /// Recording files, as 'handscope record' and the window write them; - reads one from standard input
     #[arg(value_name = "FILE.mcap", required = true, num_args = 1..)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     form: FormArgs,
     #[command(flatten)]
     stretch: StretchArgs,
-    /// The file or folder to write, which must not exist yet; of several sessions a folder; - is standard output
+    /// The file or folder to write, which must not exist yet; of several recordings a folder; - is standard output
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// With --lerobot: frames a second [default: 30]
@@ -67,7 +67,7 @@ struct FormArgs {
     /// A rosbag2 folder for ROS 2
     #[arg(long)]
     rosbag: bool,
-    /// A session file again, with its own index
+    /// A recording file again, with its own index
     #[arg(long)]
     mcap: bool,
     /// A LeRobot v3.0 data set without video
@@ -142,15 +142,15 @@ pub(crate) struct RecoverArgs {
 pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let form = args.form.form();
     args.check(form)?;
-    let mut files: Vec<SessionFile> = Vec::new();
+    let mut files: Vec<RecordingFile> = Vec::new();
     for path in &args.files {
-        // The files of one recording, which a pattern like *.mcap names one by one, are one session.
+        // The files of one recording, which a pattern like *.mcap names one by one, are one recording.
         let file = path.canonicalize();
         let file = file.unwrap_or_else(|_unknown| path.clone());
         let is_it =
             |open: &Path| open.canonicalize().is_ok_and(|open| open == file) || open == path;
-        if !files.iter().flat_map(SessionFile::paths).any(is_it) {
-            files.push(session_file::open_or_stdin(path)?);
+        if !files.iter().flat_map(RecordingFile::paths).any(is_it) {
+            files.push(recording_file::open_or_stdin(path)?);
         }
     }
     files.iter().for_each(say_remarks);
@@ -204,13 +204,17 @@ impl ExportArgs {
             ));
         }
         if form == Form::Png && (self.files.len() > 1 || from_stdin > 0) {
-            return Err(WrongUsage::error("--png draws one session: name its file"));
+            return Err(WrongUsage::error(
+                "--png draws one recording: name its file",
+            ));
         }
         if !is_standard(&self.out) {
             return Ok(());
         }
         let why = match form {
-            _ if self.files.len() > 1 => "of several sessions a folder is made: name it with --out",
+            _ if self.files.len() > 1 => {
+                "of several recordings a folder is made: name it with --out"
+            }
             Form::Rosbag | Form::LeRobot => "this format is a folder: name it with --out",
             Form::Png => "a picture is a file: name it with --out",
             _ if self.json => "standard output holds what is exported: leave out --json",
@@ -237,7 +241,7 @@ impl ExportArgs {
 
 /// What is to be done.
 struct Work<'a> {
-    files: &'a [SessionFile],
+    files: &'a [RecordingFile],
     stretches: &'a [Stretch],
     form: Form,
     wished: EndWished,
@@ -245,12 +249,12 @@ struct Work<'a> {
 }
 
 struct Done {
-    sessions: Vec<Exported>,
+    recordings: Vec<Exported>,
     set: Option<LeRobotSet>,
 }
 
 impl Work<'_> {
-    /// Gives each session with how far all of them are.
+    /// Gives each recording with how far all of them are.
     fn watched<T>(
         &self,
         number: usize,
@@ -270,7 +274,7 @@ impl Work<'_> {
     }
 
     fn one_by_one(&self, places: &[Destination]) -> Result<Done, ExportError> {
-        let mut sessions = Vec::new();
+        let mut recordings = Vec::new();
         for (number, to) in places.iter().enumerate() {
             let export = |source: Source<'_>| match (self.form, to) {
                 (Form::Csv, _) => csv::write(source, to),
@@ -279,20 +283,20 @@ impl Work<'_> {
                 _ => cut::write(source, to),
             };
             if let Some(exported) = self.watched(number, export) {
-                sessions.push(exported?);
+                recordings.push(exported?);
             }
         }
         Ok(Done {
-            sessions,
+            recordings,
             set: None,
         })
     }
 
-    /// Each into a file of its own, which is called as the session.
+    /// Each into a file of its own, which is called as the recording.
     fn to_folder(&self, out: &Path) -> Result<Done, ExportError> {
         let folder = Folder::new(out)?;
         let mut places: Vec<Destination> = Vec::new();
-        for name in self.files.iter().map(SessionFile::path) {
+        for name in self.files.iter().map(RecordingFile::path) {
             let stem = if is_standard(name) {
                 "stdin".into()
             } else {
@@ -304,7 +308,7 @@ impl Work<'_> {
                 1 => format!("{stem}{ending}"),
                 more => format!("{stem}-{more}{ending}"),
             };
-            // Sessions of several days may have one name.
+            // Recordings of several days may have one name.
             let free = (1..).map(|number| Destination::Path(folder.path().join(named(number))));
             places.extend(
                 free.filter(|place| !places.contains(place))
@@ -326,8 +330,8 @@ impl Work<'_> {
             }
         });
         let watches: Vec<_> = shares.collect();
-        let sessions = self.files.iter().zip(self.stretches).zip(&watches);
-        let sources: Vec<Source<'_>> = sessions
+        let recordings = self.files.iter().zip(self.stretches).zip(&watches);
+        let sources: Vec<Source<'_>> = recordings
             .map(|((file, stretch), watch)| Source {
                 file,
                 stretch: *stretch,
@@ -336,7 +340,7 @@ impl Work<'_> {
             .collect();
         let set = lerobot::write(&sources, out, plan)?;
         Ok(Done {
-            sessions: set.sessions.clone(),
+            recordings: set.recordings.clone(),
             set: Some(set),
         })
     }
@@ -353,16 +357,16 @@ impl Done {
         &self,
         out: &mut Out,
         args: &ExportArgs,
-        files: &[SessionFile],
+        files: &[RecordingFile],
     ) -> anyhow::Result<()> {
         let form = args.form.form();
         let mut all = Exported::default();
-        for (file, session) in files.iter().zip(&self.sessions) {
-            if let Some(words) = lost(&session.damage) {
+        for (file, recording) in files.iter().zip(&self.recordings) {
+            if let Some(words) = lost(&recording.damage) {
                 say(&format!("{} is damaged: {words}", file.path().display()));
             }
-            all.rows += session.rows;
-            all.damage.add(&session.damage);
+            all.rows += recording.rows;
+            all.damage.add(&recording.damage);
         }
         let mut line = format!("{} {} in {}", all.rows, form.rows(), args.out.display());
         let mut object = as_json(&args.out, &all);
@@ -397,7 +401,7 @@ fn warn_read_back(set: &LeRobotSet) {
 fn picture(
     out: &mut Out,
     args: &ExportArgs,
-    file: &SessionFile,
+    file: &RecordingFile,
     stretch: Stretch,
 ) -> anyhow::Result<()> {
     let drawn = picture::draw(file, stretch, &args.out);
@@ -416,7 +420,7 @@ fn picture(
 /// Writes a whole copy of a file that is damaged or was not closed.
 pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
-    let file = session_file::open(path)?;
+    let file = recording_file::open(path)?;
     say_remarks(&file);
     let to = args.out.clone().unwrap_or_else(|| beside(path));
     let wished = EndWished::listen()?;

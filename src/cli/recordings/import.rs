@@ -1,9 +1,9 @@
-//! `import`: a session file out of values that `export --csv` wrote.
+//! `import`: a recording file out of values that `export --csv` wrote.
 
 use crate::cli::out::progress::{EndWished, Progress};
 use crate::cli::out::{Out, WrongUsage, say};
 use crate::cli::recordings::export::told;
-use crate::cli::recordings::session_file::{is_standard, stdin_as_file};
+use crate::cli::recordings::recording_file::{is_standard, stdin_as_file};
 use crate::record::export::Destination;
 use crate::record::import::csv::{self, ImportError, Imported};
 use anyhow::anyhow;
@@ -18,7 +18,7 @@ pub(crate) struct ImportArgs {
     /// Comma-separated values, as 'handscope export --csv' writes them, also after pandas or polars; - reads them from standard input
     #[arg(value_name = "FILE.csv", required = true, num_args = 1..)]
     files: Vec<PathBuf>,
-    /// The session file to write, which must not exist yet; - is standard output [default: FILE.mcap, beside the file]
+    /// The recording file to write, which must not exist yet; - is standard output [default: FILE.mcap, beside the file]
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
     /// Print one JSON object for each file
@@ -35,12 +35,12 @@ impl ImportArgs {
             Some(_) if self.files.len() > 1 => {
                 "--out names one file: leave it out, and each is made beside its values"
             }
-            None if from_stdin => "name the session file with --out",
+            None if from_stdin => "name the recording file with --out",
             _ if to_stdout && self.json => {
-                "standard output holds the session file: leave out --json"
+                "standard output holds the recording file: leave out --json"
             }
             _ if to_stdout && io::stdout().is_terminal() => {
-                "a session file is no text for a terminal: pipe it into a program, or name a file with --out"
+                "a recording file is no text for a terminal: pipe it into a program, or name a file with --out"
             }
             _ => return Ok(()),
         };

@@ -1,10 +1,10 @@
-//! `info`: what a session file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
+//! `info`: what a recording file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
 
 use crate::cli::out::Out;
-use crate::cli::recordings::session_file::{self, FileArgs, add_files, length, lost};
+use crate::cli::recordings::recording_file::{self, FileArgs, add_files, length, lost};
 use crate::hand::Moment;
 use crate::record::EventKind;
-use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, Remark, SessionFile};
+use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, RecordingFile, Remark};
 use crate::store::calendar;
 use anyhow::Context as _;
 use serde_json::{Value, json};
@@ -25,7 +25,7 @@ pub(crate) struct InfoArgs {
 /// Prints what there is.
 pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
-    let file = session_file::open(path)?;
+    let file = recording_file::open(path)?;
     let contents = Contents::of(&file)
         .with_context(|| format!("cannot read {} to its end", path.display()))?;
     let told = Told {
@@ -37,7 +37,7 @@ pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
 }
 
 struct Told<'a> {
-    file: &'a SessionFile,
+    file: &'a RecordingFile,
     contents: Contents,
     bytes: u64,
 }

@@ -1,4 +1,4 @@
-//! The commands on recorded sessions: recording one without a window, and all that is done with its file.
+//! The commands on recordings: recording one without a window, and all that is done with its file.
 
 pub(crate) mod beside;
 pub(crate) mod export;
@@ -6,5 +6,5 @@ pub(crate) mod import;
 pub(crate) mod info;
 pub(crate) mod picture;
 pub(crate) mod record;
+pub(crate) mod recording_file;
 pub(crate) mod replay;
-pub(crate) mod session_file;

@@ -1,10 +1,10 @@
-//! `export --png`: the window as it replays a session, its plots over a stretch.
+//! `export --png`: the window as it replays a recording, its plots over a stretch.
 
 use crate::app::settings::{Language, Theme};
 use crate::cli::out::progress::EndWished;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::Stretch;
 use crate::shell::headless::driver::{Driver, Scene};
 use crate::shell::headless::png;
@@ -17,13 +17,13 @@ use std::path::Path;
 const SIZE: (u32, u32) = (1440, 900);
 
 /// Draws the picture. The place must be free.
-pub(crate) fn draw(file: &SessionFile, stretch: Stretch, out: &Path) -> anyhow::Result<()> {
+pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow::Result<()> {
     let (first, last): (Moment, Moment) = (file.first(), file.last());
     let (from, to) = (stretch.from.max(first), stretch.to.min(last));
     if from >= to {
         let length_s = last.since(first).as_secs_f64();
         bail!(
-            "there is nothing to draw between --from and --to: the session is {length_s:.1} s long"
+            "there is nothing to draw between --from and --to: the recording is {length_s:.1} s long"
         );
     }
     if out.symlink_metadata().is_ok() {

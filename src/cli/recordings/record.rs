@@ -1,18 +1,18 @@
-//! `record`: everything that a hand reports, into a session file, until the time is up or a person ends it. Writes nothing to the
+//! `record`: everything that a hand reports, into a recording file, until the time is up or a person ends it. Writes nothing to the
 //! hand.
 
 use crate::app::env::day_folder;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
-use crate::cli::recordings::session_file::add_files;
+use crate::cli::recordings::recording_file::add_files;
 use crate::cli::session;
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::params::file::ParamsFile;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{
-    Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SessionFile, SystemDisk,
+    Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingFile, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
 use crate::store::calendar;
@@ -238,7 +238,7 @@ fn finish(
         )),
         (None, true) => Ok(()),
     };
-    let file = SessionFile::open(path)
+    let file = RecordingFile::open(path)
         .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()));
     let object = statistics(path, file.as_ref().ok(), status);
     // What it failed of says more than that the file cannot be read.
@@ -248,11 +248,11 @@ fn finish(
 }
 
 /// What is in the file; `null` where it cannot be read.
-fn statistics(path: &Path, file: Option<&SessionFile>, status: &RecorderStatus) -> Value {
+fn statistics(path: &Path, file: Option<&RecordingFile>, status: &RecorderStatus) -> Value {
     let counts = file.map(|file| file.overview().counts);
     let length = file.map(|file| file.last().since(file.first()).as_secs_f64());
     let mut object = json!({
-        "file": file.map_or(path, SessionFile::path),
+        "file": file.map_or(path, RecordingFile::path),
         "length_s": length,
         "states": counts.map(|counts| counts.states),
         "touch_sweeps": counts.map(|counts| counts.touch_sweeps()),
@@ -261,7 +261,7 @@ fn statistics(path: &Path, file: Option<&SessionFile>, status: &RecorderStatus) 
         "missing": status.missing,
         "bytes": status.bytes + status.earlier_bytes,
         "mb_per_hour": status.megabytes_an_hour(),
-        "closed": file.is_some_and(SessionFile::is_closed),
+        "closed": file.is_some_and(RecordingFile::is_closed),
     });
     add_files(&mut object, file);
     object

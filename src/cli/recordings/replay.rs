@@ -3,13 +3,13 @@
 use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
-use crate::cli::recordings::session_file::{self, FileArgs, lost, say_remarks};
+use crate::cli::recordings::recording_file::{self, FileArgs, lost, say_remarks};
 use crate::cli::wires::{WireArgs, failed};
 use crate::hand::{Group, HandId, Moment};
 use crate::params::file;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::span_of;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, Stretch};
 use crate::record::{Entry, EventKind, Record};
 use crate::sim::{SharedHand, SimConfig, SimHand, SimHands};
@@ -51,7 +51,7 @@ fn times(text: &str) -> Result<f64, String> {
 pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let path = &args.file.file;
-    let file = Arc::new(session_file::open(path)?);
+    let file = Arc::new(recording_file::open(path)?);
     say_remarks(&file);
     let hands = SimHands::from(hand(&file, args.id)?);
     let wires = args.wires.serve(&hands).await?;
@@ -85,7 +85,7 @@ enum Step {
 }
 
 /// The hand as the recording begins.
-fn hand(file: &SessionFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
+fn hand(file: &RecordingFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
     let mut first: Vec<(u16, Vec<u8>)> = Vec::new();
     let mut recorded_id = None;
     let begin = Stretch {
@@ -117,7 +117,7 @@ fn hand(file: &SessionFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
 }
 
 /// Plays all of it once.
-async fn play(file: &Arc<SessionFile>, hands: &SimHands, speed: f64) -> anyhow::Result<Damage> {
+async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow::Result<Damage> {
     let (give, mut steps) = mpsc::channel(AHEAD);
     let reader = read_ahead(Arc::clone(file), give);
     let begun = Instant::now();
@@ -135,7 +135,7 @@ async fn play(file: &Arc<SessionFile>, hands: &SimHands, speed: f64) -> anyhow::
 
 /// Reads the file on a thread of its own, no further ahead than there is room.
 fn read_ahead(
-    file: Arc<SessionFile>,
+    file: Arc<RecordingFile>,
     give: mpsc::Sender<(Moment, Step)>,
 ) -> JoinHandle<std::io::Result<Damage>> {
     tokio::task::spawn_blocking(move || {

@@ -19,7 +19,7 @@ pub(crate) struct WindowArgs {
     #[arg(long)]
     pub(crate) no_record: bool,
 
-    /// A recorded session to replay in the window
+    /// A recording to replay in the window
     #[arg(value_name = "FILE.mcap", value_parser = recording)]
     pub(crate) replay: Option<PathBuf>,
 }
@@ -75,12 +75,12 @@ fn recording(text: &str) -> Result<PathBuf, String> {
 /// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
-    use crate::cli::recordings::session_file;
+    use crate::cli::recordings::recording_file;
     use std::ffi::OsString;
     args.drawn.check(HANDS_MAX)?;
     if let Some(path) = &args.replay {
         // Said where it was asked, and not in a window that opens without it.
-        session_file::open(path)?;
+        recording_file::open(path)?;
     }
     let no_record = args.no_record.then(|| OsString::from("--no-record"));
     let words = no_record

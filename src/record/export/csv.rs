@@ -1,4 +1,4 @@
-//! A session as comma-separated values: one line for each moment of receipt, the columns of the history's tables, what happened last.
+//! A recording as comma-separated values: one line for each moment of receipt, the columns of the history's tables, what happened last.
 
 use crate::hand::column::{channel_column, joint_column, text_cell, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
@@ -16,7 +16,7 @@ const CHANNELS: u8 = 8;
 /// The column that names values outside the manual's ranges, whose cells are empty.
 pub(crate) const UNDOCUMENTED: &str = "undocumented";
 
-/// Writes a stretch. Times are seconds from the session's start.
+/// Writes a stretch. Times are seconds from the recording's start.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.

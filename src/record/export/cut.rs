@@ -1,10 +1,10 @@
-//! A stretch of a session as a session file of its own: closed, with an index, made anew of what could be read.
+//! A stretch of a recording as a recording file of its own: closed, with an index, made anew of what could be read.
 
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::{Broken, Source};
 use crate::record::file::reader::Damage;
-use crate::record::file::writer::{Counted, SessionWriter};
-use crate::record::file::{Opening, SessionFile};
+use crate::record::file::writer::{Counted, RecordingWriter};
+use crate::record::file::{Opening, RecordingFile};
 use crate::record::{Entry, Event, EventKind};
 use std::io::Write;
 
@@ -41,7 +41,7 @@ fn put(
     Ok(copied.exported)
 }
 
-fn recovered(file: &SessionFile, damage: &Damage) -> Event {
+fn recovered(file: &RecordingFile, damage: &Damage) -> Event {
     Event {
         at: file.last(),
         kind: EventKind::Recording,
@@ -70,7 +70,7 @@ pub(crate) fn copy<W: Write>(
         part: None,
         ..source.file.opening().clone()
     };
-    let mut copy = SessionCopy::new(&opening, to)?;
+    let mut copy = RecordingCopy::new(&opening, to)?;
     let damage = source.entries(|entry| copy.push(&entry))?;
     if let Some(event) = said(&damage) {
         copy.push(&Entry::Event(event))?;
@@ -80,17 +80,17 @@ pub(crate) fn copy<W: Write>(
     Ok(copied)
 }
 
-/// A session file that is made of entries.
-pub(crate) struct SessionCopy<W> {
-    writer: SessionWriter,
+/// A recording file that is made of entries.
+pub(crate) struct RecordingCopy<W> {
+    writer: RecordingWriter,
     to: W,
     rows: u64,
 }
 
-impl<W: Write> SessionCopy<W> {
+impl<W: Write> RecordingCopy<W> {
     pub(crate) fn new(opening: &Opening, to: W) -> Result<Self, Broken> {
         Ok(Self {
-            writer: SessionWriter::copy(opening)?,
+            writer: RecordingWriter::copy(opening)?,
             to,
             rows: 0,
         })

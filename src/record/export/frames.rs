@@ -2,7 +2,7 @@
 
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity};
 use crate::record::export::targets::CommandedTargets;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::{Entry, Record, WriteFate};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -68,8 +68,8 @@ impl DatasetFrame {
     }
 }
 
-/// Whether the fingertips of a session were read often enough to be in frames.
-pub(crate) fn has_touch(file: &SessionFile) -> bool {
+/// Whether the fingertips of a recording were read often enough to be in frames.
+pub(crate) fn has_touch(file: &RecordingFile) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "far below 2^53 sweeps")]
     let sweeps = file.overview().counts.touch_sweeps() as f64;
     let length_s = file.last().since(file.first()).as_secs_f64();

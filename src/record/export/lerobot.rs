@@ -1,4 +1,4 @@
-//! Sessions as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time. What was
+//! Recordings as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time. What was
 //! not read is never filled in: a silence ends the episode.
 
 use crate::hand::Moment;
@@ -11,7 +11,7 @@ use crate::record::export::frames::{
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::{Broken, Source};
 use crate::record::export::statistics::Statistics;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
@@ -57,8 +57,8 @@ pub struct LeRobotPlan {
 /// What is in a data set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeRobotSet {
-    /// Frames, and what could not be read of each session.
-    pub sessions: Vec<Exported>,
+    /// Frames, and what could not be read of each recording.
+    pub recordings: Vec<Exported>,
     /// How many episodes.
     pub episodes: u64,
     /// Frames whose action is not as it was sent, but as the hand held it when it was asked.
@@ -66,13 +66,13 @@ pub struct LeRobotSet {
 }
 
 impl LeRobotSet {
-    /// Of all sessions.
+    /// Of all recordings.
     pub fn frames(&self) -> u64 {
-        self.sessions.iter().map(|session| session.rows).sum()
+        self.recordings.iter().map(|recording| recording.rows).sum()
     }
 }
 
-/// Writes stretches of sessions as one folder.
+/// Writes stretches of recordings as one folder.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
@@ -97,11 +97,11 @@ pub fn write(
     let with_touch = sources.iter().all(|source| has_touch(source.file));
     let set = DataSet::new(BufWriter::new(data), with_touch);
     let mut set = set.map_err(|error| output.parquet_error(error))?;
-    let mut sessions = Vec::new();
+    let mut recordings = Vec::new();
     for (number, source) in sources.iter().enumerate() {
         set.recording = number;
-        let session = add(&mut set, source, plan).map_err(|error| error.of(&output))?;
-        sessions.push(session);
+        let recording = add(&mut set, source, plan).map_err(|error| error.of(&output))?;
+        recordings.push(recording);
     }
     let ended = set.end().map_err(|error| output.parquet_error(error))?;
     if ended.index == 0 {
@@ -120,7 +120,7 @@ pub fn write(
     };
     meta.write(&folder.join("meta")).map_err(error)?;
     let made = LeRobotSet {
-        sessions,
+        recordings,
         episodes: u64::try_from(ended.episodes.len()).unwrap_or(u64::MAX),
         read_back: ended.episodes.iter().map(|episode| episode.read_back).sum(),
     };
@@ -129,7 +129,7 @@ pub fn write(
     Ok(made)
 }
 
-/// Adds the frames of one session. It is read from its start, because what was commanded before the stretch holds on in it.
+/// Adds the frames of one recording. It is read from its start, because what was commanded before the stretch holds on in it.
 fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exported, Broken> {
     let mut frames = DatasetFrames::new(FramePlan {
         fps: plan.fps,
@@ -372,7 +372,7 @@ impl Meta<'_> {
 
     /// How the set was made, and of what.
     fn origin(&self) -> Value {
-        let recording = |file: &SessionFile| {
+        let recording = |file: &RecordingFile| {
             let opening = file.opening();
             json!({
                 "file": file.path().file_name().unwrap_or_default().to_string_lossy(),

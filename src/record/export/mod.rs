@@ -1,4 +1,4 @@
-//! Sessions in the formats of others: tables, a rosbag2 folder, a data set for learners, a cut copy. Each reads the session as a stream, writes beside its
+//! Recordings in the formats of others: tables, a rosbag2 folder, a data set for learners, a cut copy. Each reads the recording as a stream, writes beside its
 //! place, and takes the place only when it is whole.
 
 pub(crate) mod arrow_schema;

@@ -19,8 +19,8 @@ pub enum ExportError {
     /// The system does not let it be written.
     #[error("cannot write {}: {error}", .path.display())]
     Unwritable { path: PathBuf, error: SystemError },
-    /// The session cannot be read on.
-    #[error("cannot read the session to its end: {error}")]
+    /// The recording cannot be read on.
+    #[error("cannot read the recording to its end: {error}")]
     Unreadable { error: SystemError },
     /// There is nothing of this kind in the stretch.
     #[error("there is no reading of the joints in this stretch")]
@@ -45,7 +45,7 @@ pub enum ExportError {
 pub struct Exported {
     /// Rows of a table, or messages.
     pub rows: u64,
-    /// What of the session could not be read and is not in it.
+    /// What of the recording could not be read and is not in it.
     pub damage: Damage,
 }
 

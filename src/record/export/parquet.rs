@@ -1,4 +1,4 @@
-//! A session as a Parquet table: one row for each reading, nothing where it was not part of the reading. Units, the hand and what
+//! A recording as a Parquet table: one row for each reading, nothing where it was not part of the reading. Units, the hand and what
 //! happened stand in the file's metadata.
 
 use crate::hand::column::{channel_column, joint_column, tip_column};
@@ -26,7 +26,7 @@ const GROUP_ROWS: u64 = 8192;
 /// Channels of a fingertip.
 const CHANNELS: u8 = 8;
 
-/// Writes a stretch. Times are seconds from the session's start, and nanoseconds since 1970.
+/// Writes a stretch. Times are seconds from the recording's start, and nanoseconds since 1970.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
@@ -135,7 +135,7 @@ impl ParquetTable {
     }
 }
 
-/// What stands beside the rows: the unit of each column that has one, the session, what happened.
+/// What stands beside the rows: the unit of each column that has one, the recording, what happened.
 fn metadata(source: Source<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
     let Source { file, stretch, .. } = source;
     let opening = file.opening();
@@ -150,14 +150,14 @@ fn metadata(source: Source<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
         let time_s = mark.at.since(file.first()).as_secs_f64();
         json!({ "time_s": time_s, "kind": mark.kind.key(), "words": mark.words })
     });
-    let session = json!({
+    let recording = json!({
         "hand": opening.hand,
         "simulated": opening.simulated,
         "version": opening.version,
     });
     let mut all = vec![
         ("units", json!(units).to_string()),
-        ("session", session.to_string()),
+        ("session", recording.to_string()),
         ("events", events.collect::<serde_json::Value>().to_string()),
     ];
     let schema = arrow_schema(columns, &all);

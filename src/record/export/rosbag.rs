@@ -1,4 +1,4 @@
-//! A session as a rosbag2 folder: a copy of the stretch, and beside it the `metadata.yaml` that ROS 2 reads first.
+//! A recording as a rosbag2 folder: a copy of the stretch, and beside it the `metadata.yaml` that ROS 2 reads first.
 
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};

@@ -1,9 +1,9 @@
-//! A stretch of a session on its way into another format: read entry after entry, watched, and broken off when that is wished.
+//! A stretch of a recording on its way into another format: read entry after entry, watched, and broken off when that is wished.
 
 use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::export::output::{ExportError, Unfinished};
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, Stretch};
 use mcap::McapError;
 use parquet::errors::ParquetError;
@@ -16,10 +16,10 @@ const LOOK_EACH: u64 = 256;
 /// How far an export is, from 0 to 1. Breaks it off where that is wished.
 pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
 
-/// A stretch of a session that is exported.
+/// A stretch of a recording that is exported.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    pub file: &'a SessionFile,
+    pub file: &'a RecordingFile,
     pub stretch: Stretch,
     /// Told how far it is.
     pub watch: &'a Watch<'a>,
@@ -28,7 +28,7 @@ pub struct Source<'a> {
 /// Why a stretch was not read, or not written, to its end.
 #[derive(Debug)]
 pub(crate) enum Broken {
-    /// The session cannot be read on.
+    /// The recording cannot be read on.
     Source(io::Error),
     /// What is made of it cannot be written.
     Output(io::Error),
@@ -72,7 +72,7 @@ impl From<ParquetError> for Broken {
 
 impl<'a> Source<'a> {
     /// A stretch that nobody watches.
-    pub fn new(file: &'a SessionFile, stretch: Stretch) -> Self {
+    pub fn new(file: &'a RecordingFile, stretch: Stretch) -> Self {
         let watch = &|_| ControlFlow::Continue(());
         Self {
             file,

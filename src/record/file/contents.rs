@@ -1,9 +1,9 @@
-//! What can be read of a session file, found by reading all of it.
+//! What can be read of a recording file, found by reading all of it.
 
 use crate::hand::Moment;
 use crate::record::file::damage::{Damage, Gap};
 use crate::record::file::overview::{Counts, Overview};
-use crate::record::file::reader::{SessionFile, Stretch};
+use crate::record::file::reader::{RecordingFile, Stretch};
 use crate::record::{Entry, EventKind};
 use std::io;
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ impl Contents {
     ///
     /// # Errors
     /// What the system says.
-    pub fn of(file: &SessionFile) -> io::Result<Self> {
+    pub fn of(file: &RecordingFile) -> io::Result<Self> {
         let mut overview = Overview::default();
         let (mut newest, mut told) = (file.first(), Vec::new());
         let is_live = !file.opening().is_imported();

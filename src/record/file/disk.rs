@@ -1,4 +1,4 @@
-//! Where session files are put: the system's disk, or one that fails on purpose.
+//! Where recording files are put: the system's disk, or one that fails on purpose.
 
 use std::fs::{DirBuilder, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind, Seek as _, SeekFrom, Write as _};

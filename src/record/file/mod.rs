@@ -1,4 +1,4 @@
-//! A session as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
+//! A recording as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
 //!
 //! `format` says what stands in it. Written: `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when
 //! and into which file, of which there is a new one each hour, and `recorder` is the thread that does it. Read: `parts` tells which
@@ -29,7 +29,7 @@ pub use crate::record::file::damage::{Damage, Gap, Remark};
 pub use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
 pub use crate::record::file::format::opening::{Opening, Part};
 pub use crate::record::file::overview::{Counts, FileMark, Overview};
-pub use crate::record::file::reader::{OpenError, SessionFile};
+pub use crate::record::file::reader::{OpenError, RecordingFile};
 pub use crate::record::file::recorder::Recorder;
 pub use crate::record::file::recording::{
     FLUSH_EACH, GOES_ON_FROM, GOES_ON_IN, PART_LENGTH, RecorderNotice, RecorderStatus,

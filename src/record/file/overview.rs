@@ -1,4 +1,4 @@
-//! What a session file tells without being read whole: least and greatest of each quantity for each second, what happened, and
+//! What a recording file tells without being read whole: least and greatest of each quantity for each second, what happened, and
 //! counts. The writer puts it into the file a minute at a time; a reader makes what is missing anew.
 
 use crate::hand::{
@@ -178,7 +178,7 @@ impl Overview {
                     .and_then(|word| word.parse().ok());
                 self.counts.missing += number.unwrap_or(0);
             }
-            // A session that was imported has them as entries, because its readings do not tell them.
+            // A recording that was imported has them as entries, because its readings do not tell them.
             EventKind::Fault => self.counts.faults += 1,
             kind if !kind.is_listed() => return,
             _ => {}

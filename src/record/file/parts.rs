@@ -71,7 +71,7 @@ pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
     alone
 }
 
-/// What a file says of itself, as far as that is seen without opening it as a session.
+/// What a file says of itself, as far as that is seen without opening it as a recording.
 fn said(path: &Path) -> Option<Opening> {
     // Opening a pipe would wait for whoever writes into it.
     if !fs::metadata(path).ok()?.is_file() {

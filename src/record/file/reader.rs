@@ -1,4 +1,4 @@
-//! Reads a session file, and with it the others of its recording: what it is at once, its entries by stretches of time, and what of
+//! Reads a recording file, and with it the others of its recording: what it is at once, its entries by stretches of time, and what of
 //! it is missing.
 
 use crate::hand::Moment;
@@ -42,7 +42,7 @@ const BEGINNING: u64 = 64 * 1024;
 /// What our files begin with.
 const LIBRARY: &str = "handscope ";
 
-/// Why a file cannot be opened as a session.
+/// Why a file cannot be opened as a recording.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The system could not read it.
@@ -72,14 +72,14 @@ impl From<io::Error> for OpenError {
     }
 }
 
-/// An open session file, and those that follow it in its recording.
+/// An open recording file, and those that follow it in its recording.
 ///
 /// ```no_run
-/// use handscope::record::file::SessionFile;
+/// use handscope::record::file::RecordingFile;
 /// use handscope::record::file::reader::Stretch;
 /// use std::ops::ControlFlow;
 ///
-/// let file = SessionFile::open("session.mcap".as_ref())?;
+/// let file = RecordingFile::open("recording.mcap".as_ref())?;
 /// file.entries(Stretch::WHOLE, |entry| {
 ///     println!("{entry:?}");
 ///     ControlFlow::Continue(())
@@ -87,7 +87,7 @@ impl From<io::Error> for OpenError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct SessionFile {
+pub struct RecordingFile {
     path: PathBuf,
     file: Mutex<File>,
     found: Found,
@@ -133,7 +133,7 @@ impl Stretch {
     };
 }
 
-impl SessionFile {
+impl RecordingFile {
     /// Opens a file, and the others of its recording that lie beside it. One of those that cannot be opened is as if it were missing.
     ///
     /// # Errors
@@ -184,16 +184,16 @@ impl SessionFile {
         if file.read_exact(&mut magic).is_err() || magic != MAGIC {
             return Err(OpenError::NotMcap);
         }
-        let mut session = match own(&mut file)? {
+        let mut recording = match own(&mut file)? {
             Some(found) => Self::numbered(path, file, found),
             None => {
                 let survey = walk::survey(&mut file)?;
                 Self::surveyed(path, file, survey)?
             }
         };
-        session.find_opening()?;
-        session.find_overview()?;
-        Ok(session)
+        recording.find_opening()?;
+        recording.find_overview()?;
+        Ok(recording)
     }
 
     /// As Handscope wrote it.

@@ -1,8 +1,8 @@
-//! Puts a session on the disk from a thread of its own. Nobody waits for it: what it cannot take is counted, and said in the file.
+//! Puts a recording on the disk from a thread of its own. Nobody waits for it: what it cannot take is counted, and said in the file.
 
 use crate::record::Entry;
 use crate::record::file::recording::{
-    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, RecordingPlan, SessionRecording,
+    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, RecordingPlan, RecordingTask,
 };
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -77,7 +77,7 @@ impl Recorder {
     pub fn start(plan: RecordingPlan) -> io::Result<Self> {
         let (input, taken) = RecorderInput::new(QUEUE_MAX);
         let began = Instant::now();
-        let recording = SessionRecording::new(plan, now(began));
+        let recording = RecordingTask::new(plan, now(began));
         let recorder = Self {
             input: input.clone(),
             status: Arc::new(Mutex::new(RecorderStatus::default())),
@@ -137,7 +137,7 @@ fn now(began: Instant) -> Now {
 
 /// What the thread does: it takes what waits, and lets the recording do what is due.
 struct Work {
-    recording: SessionRecording,
+    recording: RecordingTask,
     taken: Receiver<Given>,
     lost: Arc<AtomicU64>,
     status: Arc<Mutex<RecorderStatus>>,

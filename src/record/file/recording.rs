@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::record::file::disk::{Disk, FilePlace};
 use crate::record::file::format::opening::{Opening, Part};
 use crate::record::file::tail::{Content, FileTail};
-use crate::record::file::writer::SessionWriter;
+use crate::record::file::writer::RecordingWriter;
 use crate::record::{Entry, Event, EventKind, LinkReport, Record};
 use mcap::McapError;
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ const NOTICES_MAX: usize = 20;
 /// Files begun because one took nothing any more; a disk that spoils more of them is broken.
 const REPLACED_MAX: u32 = 20;
 
-/// Where a session goes.
+/// Where a recording goes.
 #[derive(Clone)]
 pub struct RecordingPlan {
     /// The first file. Where something has its name a number is put to it, as to those of the files after it.
@@ -144,12 +144,12 @@ pub(crate) struct Given {
 }
 
 /// A recording and its files.
-pub(crate) struct SessionRecording {
+pub(crate) struct RecordingTask {
     opening: Opening,
     part_length: Duration,
     /// Since when it is written into this file.
     part_since: Duration,
-    writer: SessionWriter,
+    writer: RecordingWriter,
     /// What the writer holds that no file was given yet.
     open: Content,
     tail: FileTail,
@@ -174,7 +174,7 @@ pub(crate) struct SessionRecording {
     pending_max: usize,
 }
 
-impl SessionRecording {
+impl RecordingTask {
     /// A recording that begins now.
     ///
     /// # Errors
@@ -186,7 +186,7 @@ impl SessionRecording {
             ..plan.opening
         };
         Ok(Self {
-            writer: SessionWriter::new(&opening)?,
+            writer: RecordingWriter::new(&opening)?,
             newest: began,
             opening,
             part_length: plan.part_length,
@@ -478,7 +478,7 @@ impl SessionRecording {
             return;
         }
         self.replaced += 1;
-        let Ok(mut writer) = SessionWriter::new(&self.opening) else {
+        let Ok(mut writer) = RecordingWriter::new(&self.opening) else {
             return;
         };
         let mut trial = self.tail.next();

@@ -1,4 +1,4 @@
-//! Bytes of a session file made of entries. Writes to memory only; times are arguments.
+//! Bytes of a recording file made of entries. Writes to memory only; times are arguments.
 
 use crate::hand::Moment;
 use crate::record::Entry;
@@ -61,8 +61,8 @@ impl Counted {
     }
 }
 
-/// Makes the bytes of one session file. Of each of its chunks the crate's writer remembers 300 bytes until the end.
-pub struct SessionWriter {
+/// Makes the bytes of one recording file. Of each of its chunks the crate's writer remembers 300 bytes until the end.
+pub struct RecordingWriter {
     mcap: mcap::Writer<NoSeek<Waiting>>,
     waiting: Waiting,
     encoder: EntryEncoder,
@@ -77,7 +77,7 @@ pub struct SessionWriter {
     base_nanos: u64,
 }
 
-impl SessionWriter {
+impl RecordingWriter {
     /// A new file.
     ///
     /// # Errors

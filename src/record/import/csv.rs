@@ -1,4 +1,4 @@
-//! A session out of the comma-separated values that `export::csv` writes: its columns are known by their names, whatever their order.
+//! A recording out of the comma-separated values that `export::csv` writes: its columns are known by their names, whatever their order.
 //! What no column says stays unknown: the day, the hand, its settings, the bytes on the wire.
 
 use crate::hand::column::{channel_column, joint_column, tip_column};
@@ -10,7 +10,7 @@ use crate::hand::{
     Touch, Undocumented,
 };
 use crate::record::export::csv::UNDOCUMENTED;
-use crate::record::export::cut::SessionCopy;
+use crate::record::export::cut::RecordingCopy;
 use crate::record::export::output::{Destination, ExportError, Unfinished};
 use crate::record::export::source::Broken;
 use crate::record::file::Opening;
@@ -55,7 +55,7 @@ pub enum ImportError {
         /// What is wrong with it.
         fault: CsvFault,
     },
-    /// The session file could not be written.
+    /// The recording file could not be written.
     #[error(transparent)]
     Output(#[from] ExportError),
 }
@@ -67,7 +67,7 @@ pub enum CsvFault {
     #[error(transparent)]
     Cells(#[from] LineFault),
     /// The first line is not that of such a file.
-    #[error("there is no column time_s, so these are not the values of a session")]
+    #[error("there is no column time_s, so these are not the values of a recording")]
     NoTime,
     /// No column but the time is known.
     #[error("no column of it but time_s is known")]
@@ -103,10 +103,10 @@ pub struct Imported {
     pub incomplete_tips: u64,
 }
 
-/// Reads values, and writes what they say as a session file, as long as it is to go on.
+/// Reads values, and writes what they say as a recording file, as long as it is to go on.
 ///
 /// # Errors
-/// [`ImportError`]; then there is no session file.
+/// [`ImportError`]; then there is no recording file.
 pub fn import(
     csv: impl BufRead,
     to: &Destination,
@@ -116,7 +116,7 @@ pub fn import(
     let output = Unfinished::new(to)?;
     let written = |error: Broken| error.of(&output);
     let opening = imported_opening();
-    let mut copy = SessionCopy::new(&opening, output.private_file()?).map_err(written)?;
+    let mut copy = RecordingCopy::new(&opening, output.private_file()?).map_err(written)?;
     let monitoring = Entry::Heard(Record::State {
         at: opening.began,
         state: LinkState::Monitoring,
@@ -209,7 +209,7 @@ fn read<R: BufRead>(
     })
 }
 
-/// What is known of a session that is read from values: not the day, and not the hand.
+/// What is known of a recording that is read from values: not the day, and not the hand.
 fn imported_opening() -> Opening {
     Opening {
         base_nanos: Opening::NO_DATE,
@@ -483,7 +483,7 @@ fn memory(quantity: Quantity, six: &PerDof<Option<i16>>) -> Vec<u8> {
     shorts.flat_map(i16::to_le_bytes).collect()
 }
 
-/// The six values as a reader of the session will see them.
+/// The six values as a reader of the recording will see them.
 fn documented(quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i16>> {
     let mut sample = HandSample::default();
     sample.take(&reply(
@@ -513,7 +513,7 @@ fn whole(cell: &str) -> Option<i64> {
     })
 }
 
-/// Seconds from the session's start, to the microsecond.
+/// Seconds from the recording's start, to the microsecond.
 fn moment(cell: &str) -> Option<Moment> {
     let seconds: f64 = cell.parse().ok()?;
     if !(0.0..=SECONDS_MAX).contains(&seconds) {

@@ -1,4 +1,4 @@
-//! Sessions out of what others can write. What such a file does not say stays unknown.
+//! Recordings out of what others can write. What such a file does not say stays unknown.
 
 pub mod csv;
 mod lines;

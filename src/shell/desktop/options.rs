@@ -32,6 +32,6 @@ pub struct DesktopStart {
     pub records: bool,
     /// An exhibition to show in place of the window.
     pub exhibit: Option<Exhibition>,
-    /// A recorded session to begin with.
+    /// A recording to begin with.
     pub replay: Option<PathBuf>,
 }

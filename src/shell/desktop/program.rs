@@ -7,7 +7,7 @@ use crate::app::env::day_folder::documents;
 use crate::app::layout::{Layout, WINDOW_LEAST};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::hand::Moment;
 use crate::link::{Clock, guard};
 use crate::shell::DesktopApp;
@@ -146,7 +146,7 @@ impl Program {
             app.enter_exhibit(exhibit, clock.now());
         }
         if let Some(path) = start.replay {
-            app.act(Action::Session(SessionAction::Open(path)), clock.now());
+            app.act(Action::Recording(RecordingAction::Open(path)), clock.now());
         }
         let mut desktop_app = DesktopApp::new(app).with_snap(start.snap);
         desktop_app.set_software(is_software);
@@ -189,7 +189,7 @@ impl Program {
     fn title(&mut self, ctx: &egui::Context) {
         let state = self.desktop_app.state();
         let title = match &state.hand().connection.endpoint {
-            _ if state.timeline.is_some() => "Handscope - RECORDED session".to_owned(),
+            _ if state.timeline.is_some() => "Handscope - RECORDED".to_owned(),
             Some(_) if state.hand().connection.is_simulated() => {
                 "Handscope - SIMULATED hand".to_owned()
             }

@@ -8,7 +8,7 @@ use crate::app::env::choose::NoChoice;
 use crate::app::env::reveal::no_reveal;
 use crate::app::params::action::ParamAction;
 use crate::app::program::App;
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::app::settings::Settings;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -34,7 +34,7 @@ pub const STEP: Duration = Duration::from_millis(20);
 const ARM_WITHIN: Duration = Duration::from_millis(400);
 /// A small grid of grasps takes less.
 const GRASPS_WITHIN: Duration = Duration::from_secs(300);
-/// Opening a session and going to a moment in it: a long one is read from a slow disk.
+/// Opening a recording and going to a moment in it: a long one is read from a slow disk.
 const REPLAYED_WITHIN: Duration = Duration::from_secs(60);
 /// A hand that is there answers long before.
 pub const ANSWER_WITHIN: Duration = Duration::from_secs(3);
@@ -77,7 +77,7 @@ pub enum DriveError {
         /// Why it is not there.
         trouble: LinkTrouble,
     },
-    /// A session was not opened in time, or not at all.
+    /// A recording was not opened in time, or not at all.
     #[error("{} was not opened within {within_s} s", path.display())]
     NotReplayed {
         /// The file.
@@ -281,7 +281,7 @@ impl Driver {
         }
     }
 
-    /// Replays a session: shows its hand as it was at the end of this stretch, and in the plots just the stretch.
+    /// Replays a recording: shows its hand as it was at the end of this stretch, and in the plots just the stretch.
     ///
     /// # Errors
     /// [`DriveError::NotReplayed`].
@@ -291,10 +291,10 @@ impl Driver {
         (from, to): (Moment, Moment),
     ) -> Result<(), DriveError> {
         let within_s = REPLAYED_WITHIN.as_secs();
-        let open = SessionAction::OpenAt(path.clone(), (from, to));
-        self.act(Action::Session(open));
+        let open = RecordingAction::OpenAt(path.clone(), (from, to));
+        self.act(Action::Recording(open));
         self.until(REPLAYED_WITHIN, |state| state.timeline.is_some());
-        self.act(Action::Session(SessionAction::Seek(to)));
+        self.act(Action::Recording(RecordingAction::Seek(to)));
         let is_there = |state: &State| {
             let line = state.timeline.as_ref();
             line.is_some_and(|line| line.at == to && !line.waits)

@@ -2,11 +2,11 @@
 
 use crate::app::action::Action;
 use crate::app::readings::Freshness;
-use crate::app::readings::fault_recorder::RecordingId;
+use crate::app::readings::fault_recorder::FaultRecordingId;
 use crate::app::readings::faults::{FaultEntry, FaultKind};
 use crate::hand::Dof;
 use crate::ui::kit::{self, Button, Label, Pane, format};
-use crate::ui::sessions::stretch::ReplayedStretch;
+use crate::ui::recordings::stretch::ReplayedStretch;
 use crate::ui::text::{Text, notices, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
@@ -55,7 +55,7 @@ pub(crate) fn entry_ui(
     pane: &mut Pane<'_>,
     entry: &FaultEntry,
     depth: Depth,
-) -> Option<RecordingId> {
+) -> Option<FaultRecordingId> {
     let look = pane.look;
     let palette = look.palette;
     let mut ground = Frame::new().corner_radius(CornerRadius::same(theme::ROUND_SMALL));
@@ -135,7 +135,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
 }
 
 /// Times, and the way to the recording of it, if there is one.
-fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<RecordingId> {
+fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<FaultRecordingId> {
     let look = pane.look;
     let text = times(pane, entry);
     let recorder = &pane.state.hand().measured.recorder;
@@ -169,7 +169,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Recor
         replay = stretch.ui(ui, pane);
         recording
     });
-    pane.actions.extend(replay.map(Action::Session));
+    pane.actions.extend(replay.map(Action::Recording));
     pressed.inner.map(|recording| recording.id)
 }
 

@@ -11,7 +11,7 @@ use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Status, Words};
 use crate::ui::faults::entry::{Depth, entry_ui, inset_ui, scroll_ui, seen_all_ui};
 use crate::ui::faults::message_log::MessageLog;
-use crate::ui::faults::recordings::RecordingsView;
+use crate::ui::faults::recordings::FaultRecordingsView;
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::text::{main, notices, panels, words};
@@ -25,7 +25,7 @@ pub(crate) struct FaultsView {
     chosen: Option<Dof>,
     section: FaultSection,
     log: MessageLog,
-    recordings: RecordingsView,
+    recordings: FaultRecordingsView,
 }
 
 /// The list beside the faults.

@@ -1,6 +1,6 @@
 //! What happened in a recording, as lines of words: what a person did, how drives changed, what the link did.
 
-use crate::app::readings::fault_recorder::{FaultEventKind, PersonAct, Recording};
+use crate::app::readings::fault_recorder::{FaultEventKind, FaultRecording, PersonAct};
 use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
 use crate::poses::{Play, Preset};
@@ -20,7 +20,7 @@ pub(crate) struct EventLine {
 }
 
 /// Everything that happened, oldest first.
-pub(crate) fn lines(look: Look, recording: &Recording) -> Vec<EventLine> {
+pub(crate) fn lines(look: Look, recording: &FaultRecording) -> Vec<EventLine> {
     let events = recording.events.iter().map(|event| {
         let (text, color) = event_words(look, &event.what);
         EventLine {

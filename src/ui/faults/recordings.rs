@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
-use crate::app::readings::fault_recorder::{Recording, RecordingId};
+use crate::app::readings::fault_recorder::{FaultRecording, FaultRecordingId};
 use crate::app::settings::{Language, ShownPlots, Theme};
 use crate::hand::{Dof, PerDof};
 use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
@@ -13,7 +13,7 @@ use crate::ui::plots;
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
-use crate::ui::sessions::stretch::ReplayedStretch;
+use crate::ui::recordings::stretch::ReplayedStretch;
 use crate::ui::text::{device, notices};
 use crate::ui::theme;
 use egui::{Panel, ScrollArea, Stroke, Ui};
@@ -24,19 +24,19 @@ const NEAR_S: f64 = 5.0;
 
 /// What the recordings need between frames.
 #[derive(Debug, Default)]
-pub(crate) struct RecordingsView {
-    open: Option<RecordingId>,
+pub(crate) struct FaultRecordingsView {
+    open: Option<FaultRecordingId>,
     shown: ShownPlots,
     near: bool,
     chart: ChartView,
     /// The events of the open one, in the language they were worded in.
-    lines: Option<((RecordingId, Language, Theme), Vec<EventLine>)>,
+    lines: Option<((FaultRecordingId, Language, Theme), Vec<EventLine>)>,
 }
 
 /// One plot of a recording: the joints with the fault are strong and come last, over the others.
 fn chart<'a>(
     look: Look,
-    recording: &'a Recording,
+    recording: &'a FaultRecording,
     panel: &panels::Panel,
     height: f32,
 ) -> Chart<'a> {
@@ -73,7 +73,7 @@ fn chart<'a>(
 }
 
 /// Its first fault, and how many more.
-fn title(pane: &Pane<'_>, recording: &Recording) -> String {
+fn title(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     let Some(first) = recording.fault() else {
         return format::UNKNOWN.into();
     };
@@ -88,8 +88,8 @@ fn title(pane: &Pane<'_>, recording: &Recording) -> String {
     )
 }
 
-impl RecordingsView {
-    pub(crate) fn open(&mut self, id: RecordingId) {
+impl FaultRecordingsView {
+    pub(crate) fn open(&mut self, id: FaultRecordingId) {
         self.open = Some(id);
         self.near = false;
         self.chart = ChartView::default();
@@ -101,7 +101,7 @@ impl RecordingsView {
     }
 
     /// The open one, if it is still kept.
-    pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<Recording>> {
+    pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<FaultRecording>> {
         pane.state
             .hand()
             .measured
@@ -145,7 +145,12 @@ impl RecordingsView {
     }
 
     /// Draws the open one over all the room there is.
-    pub(crate) fn recording_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
+    pub(crate) fn recording_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        recording: &FaultRecording,
+    ) {
         self.head_ui(ui, pane, recording);
         self.tools_ui(ui, pane.look);
         let fault = recording.fault();
@@ -166,7 +171,7 @@ impl RecordingsView {
     }
 
     /// The plots that are shown, as many of them as have room.
-    fn plots_ui(&mut self, ui: &mut Ui, look: Look, recording: &Recording) {
+    fn plots_ui(&mut self, ui: &mut Ui, look: Look, recording: &FaultRecording) {
         let shown = PANELS.iter().filter(|panel| self.shown.shows(panel.kind));
         let mut shown: Vec<_> = shown.collect();
         while shown.len() > 1 && plots::room(ui, shown.len()) < 46.0 {
@@ -189,7 +194,7 @@ impl RecordingsView {
         }
     }
 
-    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) {
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) {
         let look = pane.look;
         ui.horizontal(|ui| {
             let back = Button::said(look, notices::RECORDING_BACK);
@@ -240,7 +245,13 @@ impl RecordingsView {
         });
     }
 
-    fn events_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, recording: &Recording, fault_s: f64) {
+    fn events_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &Pane<'_>,
+        recording: &FaultRecording,
+        fault_s: f64,
+    ) {
         let look = pane.look;
         let key = (recording.id, look.language, pane.state.settings.theme);
         if self.lines.as_ref().is_none_or(|(known, _)| *known != key) {
@@ -266,7 +277,7 @@ impl RecordingsView {
 }
 
 /// Of which hand, and how long ago.
-fn about(pane: &Pane<'_>, recording: &Recording) -> String {
+fn about(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     let age = recording
         .fault()
         .map(|fault| pane.state.now.since(fault.at));
@@ -287,7 +298,7 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
 }
 
 /// One recording of the list. True if it is to be opened.
-fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) -> bool {
+fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) -> bool {
     let look = pane.look;
     let palette = look.palette;
     let row = ui.horizontal(|ui| {
@@ -302,7 +313,7 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &Recording) -> bool {
             hand: &recording.hand,
             stretch: from.map(|from| (from, recording.to)),
         };
-        let replay = stretch.ui(ui, pane).map(Action::Session);
+        let replay = stretch.ui(ui, pane).map(Action::Recording);
         pane.actions.extend(replay);
         let at = kit::lamp_ui(ui, None);
         fault_entry::mark(ui, at, palette.warn);

@@ -2,7 +2,7 @@
 
 use crate::ui::kit::controls::{self, Button};
 use crate::ui::style::Look;
-use crate::ui::text::{Text, sessions, window};
+use crate::ui::text::{Text, recordings, window};
 use crate::ui::theme;
 use egui::{Align, Id, Key, Layout, Ui};
 use std::path::PathBuf;
@@ -13,9 +13,9 @@ pub(crate) fn path_ui(ui: &mut Ui, look: Look, id: &'static str) -> Option<PathB
     typed_ui(ui, look, id, (named, window::PATH_OPEN))
 }
 
-/// The same for the folder of sessions.
+/// The same for the folder of recordings.
 pub(crate) fn folder_path_ui(ui: &mut Ui, look: Look) -> Option<PathBuf> {
-    let words = (look.both(sessions::FOLDER_PATH), sessions::FOLDER_TAKE);
+    let words = (look.both(recordings::FOLDER_PATH), recordings::FOLDER_TAKE);
     typed_ui(ui, look, "sessions folder", words)
 }
 

@@ -48,7 +48,7 @@ pub(crate) struct ChartCurve<'a> {
     pub(crate) steps: bool,
     /// Digits of its value at the pointer, if that is told.
     pub(crate) told: Option<usize>,
-    /// True for a line of the second session: its points are remembered apart.
+    /// True for a line of the second recording: its points are remembered apart.
     pub(crate) beside: bool,
 }
 

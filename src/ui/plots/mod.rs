@@ -300,7 +300,7 @@ impl PlotView {
             )
         };
         let lines = panel.lines(&self.hidden);
-        // The second session stands behind the first.
+        // The second recording stands behind the first.
         let beside = pane.state.beside.iter().flat_map(|beside| {
             let measured = lines.iter().filter(|line| !line.wished);
             measured.map(|line| ChartCurve {

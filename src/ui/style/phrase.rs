@@ -81,7 +81,7 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, inputs, main, notices, panels, poses, scan, sessions, traffic,
+        cards, device, exhibit, inputs, main, notices, panels, poses, recordings, scan, traffic,
         tune, window,
     };
 
@@ -97,7 +97,7 @@ mod tests {
             poses::ALL,
             scan::ALL,
             traffic::ALL,
-            sessions::ALL,
+            recordings::ALL,
             tune::ALL,
             window::ALL,
         ];

@@ -9,7 +9,7 @@ use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::style::{Look, format};
-use crate::ui::text::{errors, inputs, main, panels, poses, scan, sessions, tune, window, words};
+use crate::ui::text::{errors, inputs, main, panels, poses, recordings, scan, tune, window, words};
 use std::path::Path;
 
 texts! {
@@ -255,7 +255,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.say(poses::COUNT_POSES),
             look.say(poses::COUNT_SEQUENCES)
         ),
-        NoticeKind::SessionOpened { path, trials } => {
+        NoticeKind::RecordingOpened { path, trials } => {
             look.fill(tune::OPENED, &[&path.display(), trials])
         }
         NoticeKind::FileRefused { path, error } => look.fill(
@@ -279,36 +279,38 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             of(window::NOT_SAVED, path, &errors::system_error(look, error))
         }
         NoticeKind::NotDeleted { path, error } => of(
-            sessions::NOT_DELETED,
+            recordings::NOT_DELETED,
             path,
             &errors::system_error(look, error),
         ),
         NoticeKind::NotExported { path, error } => {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let why = errors::export(look, error);
-            look.fill(sessions::NOT_EXPORTED, &[&name, &why])
+            look.fill(recordings::NOT_EXPORTED, &[&name, &why])
         }
         NoticeKind::NotRevealed { path, error } => {
             let why = errors::system_error(look, error);
-            look.fill(sessions::NOT_REVEALED, &[&why, &path.display()])
+            look.fill(recordings::NOT_REVEALED, &[&why, &path.display()])
         }
-        NoticeKind::SessionRefused { path, why } => look.fill(
-            sessions::REFUSED,
+        NoticeKind::RecordingRefused { path, why } => look.fill(
+            recordings::REFUSED,
             &[&path.display(), &not_opened(look, why)],
         ),
         NoticeKind::Recording(notice) => recording(look, notice),
-        NoticeKind::NotReplayedNow => look.say(sessions::NOT_NOW).to_owned(),
-        NoticeKind::Recorded => look.say(sessions::IS_RECORDING).to_owned(),
-        NoticeKind::SessionsPlanned {
-            sessions: count,
+        NoticeKind::NotReplayedNow => look.say(recordings::NOT_NOW).to_owned(),
+        NoticeKind::Recorded => look.say(recordings::IS_RECORDING).to_owned(),
+        NoticeKind::RecordingsPlanned {
+            recordings: count,
             bytes,
             days: (first, last),
             due,
         } => {
             let size = format::size(*bytes);
-            look.fill(sessions::PLANNED, &[count, &size, first, last, due])
+            look.fill(recordings::PLANNED, &[count, &size, first, last, due])
         }
-        NoticeKind::SessionsDeleted { sessions: count } => look.told(sessions::DELETED, count),
+        NoticeKind::RecordingsDeleted { recordings: count } => {
+            look.told(recordings::DELETED, count)
+        }
         NoticeKind::PlanIgnored { error } => told(tune::PLAN_IGNORED, &errors::plan(look, error)),
     }
 }
@@ -317,15 +319,15 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
 fn recording(look: Look, notice: &RecorderNotice) -> String {
     match notice {
         RecorderNotice::Moved { from, to: Some(to) } => {
-            look.fill(sessions::FILE_MOVED, &[&from.display(), &to.display()])
+            look.fill(recordings::FILE_MOVED, &[&from.display(), &to.display()])
         }
         RecorderNotice::Moved { from, to: None } => {
-            look.fill(sessions::FILE_RENAMED, &[&from.display()])
+            look.fill(recordings::FILE_RENAMED, &[&from.display()])
         }
         RecorderNotice::Removed { path, entries } => {
-            look.fill(sessions::FILE_REMOVED, &[&path.display(), entries])
+            look.fill(recordings::FILE_REMOVED, &[&path.display(), entries])
         }
-        RecorderNotice::ClockSet { next } => look.fill(sessions::CLOCK_SET, &[next]),
+        RecorderNotice::ClockSet { next } => look.fill(recordings::CLOCK_SET, &[next]),
     }
 }
 
@@ -333,11 +335,11 @@ fn recording(look: Look, notice: &RecorderNotice) -> String {
 fn not_opened(look: Look, why: &OpenError) -> String {
     let words = match why {
         OpenError::Unreadable { error } => return errors::system_error(look, error),
-        OpenError::NotAFile => sessions::NOT_A_FILE,
-        OpenError::NotMcap => sessions::NOT_MCAP,
-        OpenError::Foreign => sessions::FOREIGN,
-        OpenError::SeveralHands { hands } => return look.told(sessions::SEVERAL_HANDS, hands),
-        OpenError::Empty => sessions::EMPTY,
+        OpenError::NotAFile => recordings::NOT_A_FILE,
+        OpenError::NotMcap => recordings::NOT_MCAP,
+        OpenError::Foreign => recordings::FOREIGN,
+        OpenError::SeveralHands { hands } => return look.told(recordings::SEVERAL_HANDS, hands),
+        OpenError::Empty => recordings::EMPTY,
     };
     look.say(words).to_owned()
 }

@@ -113,7 +113,7 @@ impl ResultsView {
         let table = kit::bare(table, height.min(most), theme::GAP_TOP);
         table.show(ui, |ui| {
             let replay = self.table.ui(ui, pane, &comparison, &mut self.strong);
-            pane.actions.extend(replay.map(Action::Session));
+            pane.actions.extend(replay.map(Action::Recording));
         });
         if !runs && (BESIDE..WIDE).contains(&room.x) {
             self.best_ui(ui, pane, &comparison, focus);

@@ -1,11 +1,11 @@
 //! What was measured, one row a trial and joint. Sorts, measures nothing.
 
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey};
 use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
 use crate::ui::kit::{self, Label, Pane, dash};
-use crate::ui::sessions::stretch::ReplayedStretch;
+use crate::ui::recordings::stretch::ReplayedStretch;
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
@@ -58,7 +58,7 @@ pub(crate) struct TableView {
 /// What was pressed in it.
 struct Pressed<'a> {
     strong: &'a mut Option<TrialKey>,
-    replay: Option<SessionAction>,
+    replay: Option<RecordingAction>,
 }
 
 /// What every part of the table is drawn with.
@@ -82,7 +82,7 @@ impl TableView {
         pane: &Pane<'_>,
         comparison: &Comparison,
         strong: &mut Option<TrialKey>,
-    ) -> Option<SessionAction> {
+    ) -> Option<RecordingAction> {
         let width = ui.available_width();
         let first = (width * 0.2).clamp(184.0, 320.0);
         let number = (width * 0.063).clamp(52.0, 104.0);

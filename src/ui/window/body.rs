@@ -14,7 +14,7 @@ use crate::ui::params::DeviceView;
 use crate::ui::plots::PlotView;
 use crate::ui::poses::PoseView;
 use crate::ui::poses::tiles as pose_tiles;
-use crate::ui::sessions::SessionsView;
+use crate::ui::recordings::RecordingsView;
 use crate::ui::text::window;
 use crate::ui::theme;
 use crate::ui::touch::TouchView;
@@ -60,7 +60,7 @@ pub(super) struct Body {
     rooms: Rooms,
     poses: PoseView,
     tune: TuneView,
-    sessions: SessionsView,
+    recordings: RecordingsView,
 }
 
 /// What the views of one hand remember between frames. Nothing of it is taken for another hand's.
@@ -167,8 +167,8 @@ impl Body {
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        if self.view != View::Sessions {
-            self.sessions.leave();
+        if self.view != View::Recordings {
+            self.recordings.leave();
         }
         if self.view.place() == Place::Hand {
             self.hand_views_ui(ui, pane);
@@ -184,7 +184,7 @@ impl Body {
             View::Connection => self.own.connection.ui(ui, pane),
             View::Inputs => self.own.inputs.ui(ui, pane),
             View::Traffic => self.own.traffic.ui(ui, pane),
-            View::Sessions => self.sessions.ui(ui, pane),
+            View::Recordings => self.recordings.ui(ui, pane),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::app::state::State;
 use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures;
-use crate::ui::sessions;
+use crate::ui::recordings;
 use crate::ui::text::window;
 use crate::ui::trials::compare;
 
@@ -14,7 +14,7 @@ pub(super) fn is_covered(state: &State) -> bool {
     state.hand().procedures.card.is_some()
         || state.hand().params.question.is_some()
         || state.trials.to_confirm.is_some()
-        || state.sessions.to_delete.is_some()
+        || state.recordings.to_delete.is_some()
         || state.leave.is_some()
 }
 
@@ -24,7 +24,7 @@ pub(super) fn card_of(state: &State, look: Look) -> Option<Card> {
         .or_else(|| procedures::card_of(state, look))
         .or_else(|| device_card::card_of(state, look))
         .or_else(|| compare::card_of(state, look))
-        .or_else(|| sessions::card_of(state, look))
+        .or_else(|| recordings::card_of(state, look))
 }
 
 /// The question before the window closes and something is lost.

@@ -1,13 +1,13 @@
 //! The bar that is always there: which hand, how its link is, the five places, faults, arm, and STOP.
 
 use crate::app::action::Action;
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::link_words;
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
-use crate::ui::text::{inputs, main, notices, sessions, words};
+use crate::ui::text::{inputs, main, notices, recordings, words};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
 use crate::ui::window::rooms;
@@ -96,13 +96,13 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     let look = pane.look;
     let text = if needs_eyes {
-        sessions::BACK_EYES
+        recordings::BACK_EYES
     } else {
-        sessions::BACK
+        recordings::BACK
     };
-    let button = Button::new(look.say(text), look.tip(sessions::BACK));
+    let button = Button::new(look.say(text), look.tip(recordings::BACK));
     let button = button.weight(Weight::Strong).large();
-    button.on_click(ui, pane, Action::Session(SessionAction::Close));
+    button.on_click(ui, pane, Action::Recording(RecordingAction::Close));
 }
 
 /// Whether this hand is recorded, and the switch for it.
@@ -114,12 +114,12 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let palette = look.palette;
     let simulated = pane.state.hand().connection.is_simulated();
     let (text, color, tip) = match &pane.state.hand().recording {
-        None => (sessions::NOT_RECORDING, palette.faint, String::new()),
+        None => (recordings::NOT_RECORDING, palette.faint, String::new()),
         Some(recording) => {
             let status = &recording.status;
             let (text, color) = match status.trouble {
-                Some(_) => (sessions::TROUBLE, palette.warn),
-                None => (sessions::RECORDING, palette.bad),
+                Some(_) => (recordings::TROUBLE, palette.warn),
+                None => (recordings::RECORDING, palette.bad),
             };
             (text, color, recording_words(look, status))
         }
@@ -131,11 +131,11 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     if lamp_button_ui(ui, look, button, color).clicked() {
         let on = pane.state.hand().recording.is_none();
         let action = if simulated {
-            SessionAction::RecordSimulated(on)
+            RecordingAction::RecordSimulated(on)
         } else {
-            SessionAction::Record(on)
+            RecordingAction::Record(on)
         };
-        pane.actions.push(Action::Session(action));
+        pane.actions.push(Action::Recording(action));
     }
 }
 
@@ -146,12 +146,12 @@ fn recording_words(look: Look, status: &RecorderStatus) -> String {
     let rate = status.megabytes_an_hour();
     let rate = rate.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.0}"));
     let mut lines = vec![
-        look.fill(sessions::FILE, &[&path.unwrap_or_default()]),
-        look.fill(sessions::RATE, &[&mega(status.bytes), &rate]),
+        look.fill(recordings::FILE, &[&path.unwrap_or_default()]),
+        look.fill(recordings::RATE, &[&mega(status.bytes), &rate]),
     ];
     lines.extend(status.trouble.clone());
     if status.missing > 0 {
-        lines.push(look.fill(sessions::MISSING, &[&status.missing]));
+        lines.push(look.fill(recordings::MISSING, &[&status.missing]));
     }
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
@@ -250,7 +250,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let simulated = pane.state.hand().connection.is_simulated();
     let recorded = pane.state.timeline.is_some();
     let (text, fill, color) = match (&pane.state.hand().connection.endpoint, simulated) {
-        _ if recorded => (sessions::RECORDED, palette.warn, palette.on_accent),
+        _ if recorded => (recordings::RECORDED, palette.warn, palette.on_accent),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
@@ -261,7 +261,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.painter().rect_filled(place, 12.0, fill);
     let badge = Label::new(text, color).center().put(ui, place);
     if recorded {
-        badge.on_hover_text(look.tip(sessions::RECORDED));
+        badge.on_hover_text(look.tip(recordings::RECORDED));
     } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
     }

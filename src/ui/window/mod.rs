@@ -28,7 +28,7 @@ pub(crate) mod timeline;
 
 use crate::app::action::Action;
 use crate::app::hands::rests;
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
 use crate::hand::Moment;
@@ -140,7 +140,7 @@ impl Window {
         if is_covered(state) {
             wishes.retain(|wish| *wish == Wish::Stop);
         }
-        actions.extend(dropped_session(ui));
+        actions.extend(dropped_recording(ui));
         let mut stopped = wishes.contains(&Wish::Stop);
         actions.extend(held_key_action(ui, state, &wishes));
         let mut typing = std::mem::take(&mut self.typing);
@@ -334,13 +334,13 @@ fn bar_ui(
     bar.frame(frame).show(ui, add);
 }
 
-/// A session whose file was dropped onto the window is to be replayed.
-fn dropped_session(ui: &Ui) -> Option<Action> {
+/// A recording whose file was dropped onto the window is to be replayed.
+fn dropped_recording(ui: &Ui) -> Option<Action> {
     ui.input(|input| {
         let files = input.raw.dropped_files.iter();
         let mut paths = files.map(|file| file.path().to_owned());
         let path = paths.find(|path| path.extension().is_some_and(|ending| ending == "mcap"));
-        path.map(|path| Action::Session(SessionAction::Open(path)))
+        path.map(|path| Action::Recording(RecordingAction::Open(path)))
     })
 }
 

@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::layout::RoomLayouts;
-use crate::app::sessions::SessionAction;
+use crate::app::recordings::RecordingAction;
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
 use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
@@ -193,9 +193,9 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
     let lay_out = |rooms| Action::Layout(pane.layout(ui, rooms));
     let record = hand.recording.is_none();
     let record = if hand.connection.is_simulated() {
-        SessionAction::RecordSimulated(record)
+        RecordingAction::RecordSimulated(record)
     } else {
-        SessionAction::Record(record)
+        RecordingAction::Record(record)
     };
     let hold_to_run = Action::HoldToRun(!settings.hold_to_run);
     let disarm_idle = Action::DisarmIdle(!settings.disarm_idle);
@@ -220,7 +220,7 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
         )
     }));
     if pane.recorded().is_none() {
-        acts.push((window::RECORD, "", Action::Session(record)));
+        acts.push((window::RECORD, "", Action::Recording(record)));
         if hand.readings.faults.nothing_to_clear().is_none() {
             acts.push((panels::CLEAR, "", Action::ClearErrors));
         }

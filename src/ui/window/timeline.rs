@@ -1,13 +1,13 @@
-//! The time line of a replayed session: which moment is shown, how time goes on, what happened when.
+//! The time line of a replayed recording: which moment is shown, how time goes on, what happened when.
 
 use crate::app::action::Action;
-use crate::app::sessions::{SessionAction, Timeline};
+use crate::app::recordings::{RecordingAction, Timeline};
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
-use crate::ui::sessions::marks::{clock, shown};
-use crate::ui::sessions::{beside, strip};
-use crate::ui::text::{Text, panels, sessions};
+use crate::ui::recordings::marks::{clock, shown};
+use crate::ui::recordings::{beside, strip};
+use crate::ui::text::{Text, panels, recordings};
 use crate::ui::theme;
 use egui::{
     Color32, Event, PointerButton, Popup, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
@@ -46,34 +46,38 @@ pub(crate) fn timeline_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     });
 }
 
-fn session(pane: &mut Pane<'_>, action: SessionAction) {
-    pane.actions.push(Action::Session(action));
+fn recording(pane: &mut Pane<'_>, action: RecordingAction) {
+    pane.actions.push(Action::Recording(action));
 }
 
 fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
     let icon = |text: Text, icon| Button::said(look, text).icon(icon);
-    let back = icon(sessions::STEP_BACK, theme::TO_LEFT);
-    back.on_click(ui, pane, Action::Session(SessionAction::Step(false)));
+    let back = icon(recordings::STEP_BACK, theme::TO_LEFT);
+    back.on_click(ui, pane, Action::Recording(RecordingAction::Step(false)));
     let run = if line.runs {
-        icon(sessions::PAUSE, theme::PAUSE)
+        icon(recordings::PAUSE, theme::PAUSE)
     } else {
-        icon(sessions::RUN, theme::PLAY)
+        icon(recordings::RUN, theme::PLAY)
     };
-    run.on_click(ui, pane, Action::Session(SessionAction::Run(!line.runs)));
-    let on = icon(sessions::STEP_ON, theme::TO_RIGHT);
-    on.on_click(ui, pane, Action::Session(SessionAction::Step(true)));
+    run.on_click(
+        ui,
+        pane,
+        Action::Recording(RecordingAction::Run(!line.runs)),
+    );
+    let on = icon(recordings::STEP_ON, theme::TO_RIGHT);
+    on.on_click(ui, pane, Action::Recording(RecordingAction::Step(true)));
     let mut pace = line.pace;
-    let name = look.say(sessions::PACE);
+    let name = look.say(recordings::PACE);
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 64.0;
         if kit::choose_ui(ui, name, &mut pace, &PACES) {
-            session(pane, SessionAction::Pace(pace));
+            recording(pane, RecordingAction::Pace(pace));
         }
     });
     if line.looped.is_some() {
-        let off = Button::said(look, sessions::LOOP_OFF);
-        off.on_click(ui, pane, Action::Session(SessionAction::Loop(None)));
+        let off = Button::said(look, recordings::LOOP_OFF);
+        off.on_click(ui, pane, Action::Recording(RecordingAction::Loop(None)));
     }
     let at = clock(line.at.since(line.first));
     let whole = clock(line.last.since(line.first));
@@ -86,16 +90,16 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     Label::new(&words, color).number().ui(ui);
     marks_ui(ui, pane, line);
     beside::beside_ui(ui, pane, line);
-    let note = Button::said(look, sessions::NOTE_HERE);
+    let note = Button::said(look, recordings::NOTE_HERE);
     if note.ui(ui, look).clicked() {
         pane.open(kit::ViewRequest::Note);
     }
     if line.damaged {
-        kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(sessions::DAMAGED));
+        kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(recordings::DAMAGED));
     }
 }
 
-/// What session it is.
+/// What recording it is.
 fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
     let began: String = line.began.replace('T', " ").chars().take(16).collect();
     let words = format!("{}   {began} UTC   {}", line.title, line.hand);
@@ -103,7 +107,7 @@ fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
     label.ui(ui).on_hover_text(line.path.display().to_string());
 }
 
-/// One entry of the list of marks. Its words are made where they are seen: a long session has a hundred thousand.
+/// One entry of the list of marks. Its words are made where they are seen: a long recording has a hundred thousand.
 #[derive(Clone, Copy)]
 struct TimelineEntry<'a> {
     at: Moment,
@@ -172,13 +176,13 @@ fn columns(look: Look, place: Rect, line: &Timeline) -> BTreeMap<i32, (u8, Color
 
 fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
-    let button = Button::said(look, sessions::EVENTS).ui(ui, look);
+    let button = Button::said(look, recordings::EVENTS).ui(ui, look);
     Popup::menu(&button).show(|ui| {
         ui.set_min_width(320.0);
         let mut all: Vec<_> = entries(look, line).collect();
         all.sort_by_key(|entry| entry.at);
         if all.is_empty() {
-            Label::muted(look, sessions::NO_EVENTS).ui(ui);
+            Label::muted(look, recordings::NO_EVENTS).ui(ui);
         }
         let height = ui.spacing().interact_size.y;
         let area = ScrollArea::vertical().max_height(320.0);
@@ -196,13 +200,13 @@ fn entry_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, entry: TimelineEn
         kit::lamp_ui(ui, Some(entry.color));
         let clock = clock(entry.at.since(line.first));
         if ui.button(format!("{clock}  {}", entry.say(look))).clicked() {
-            session(pane, SessionAction::Seek(entry.at));
+            recording(pane, RecordingAction::Seek(entry.at));
         }
         if entry.is_note() {
             let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
-            let none = SessionAction::EditNote(entry.at, String::new());
+            let none = RecordingAction::EditNote(entry.at, String::new());
             let delete = delete.weight(Weight::Quiet);
-            delete.on_click(ui, pane, Action::Session(none));
+            delete.on_click(ui, pane, Action::Recording(none));
         }
     });
 }
@@ -214,7 +218,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let at_s = line.at.since(line.first).as_secs_f64();
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::Slider, true, look.say(sessions::LINE));
+        let mut info = WidgetInfo::labeled(Role::Slider, true, look.say(recordings::LINE));
         info.value = Some(at_s);
         info
     });
@@ -226,9 +230,9 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         match pressed_at.filter(|_| shift) {
             Some(origin) => {
                 let from = moment(line, length, share(place, origin.x));
-                session(pane, SessionAction::Loop(Some((from, here))));
+                recording(pane, RecordingAction::Loop(Some((from, here))));
             }
-            None => session(pane, SessionAction::Seek(here)),
+            None => recording(pane, RecordingAction::Seek(here)),
         }
     }
     paint(ui, look, place, line);
@@ -239,7 +243,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         let near = near.min_by(|one, other| away(one).total_cmp(&away(other)));
         let clock = clock(here.since(line.first));
         let words = near.map_or_else(
-            || look.tip(sessions::LINE).to_owned(),
+            || look.tip(recordings::LINE).to_owned(),
             |entry| entry.say(look),
         );
         response.on_hover_text(format!("{clock}\n{words}"));

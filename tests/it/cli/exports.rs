@@ -1,11 +1,11 @@
-//! What people do with recordings: data sets of what was commanded, several sessions at once, pipes, and a signal in the middle.
+//! What people do with recordings: data sets of what was commanded, several recordings at once, pipes, and a signal in the middle.
 
 use crate::setup::process::{Ended, handscope, listen, run, start};
 use handscope::hand::command::HandCommand;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Reply, Span, Target, register};
 use handscope::record::file::Opening;
-use handscope::record::file::writer::SessionWriter;
+use handscope::record::file::writer::RecordingWriter;
 use handscope::record::{
     Entry, Event, EventKind, LinkState, Record, WriteCause, WriteFate, WrittenMemory,
 };
@@ -118,7 +118,7 @@ impl Script {
             version: "0.1.0".into(),
             part: None,
         };
-        let mut writer = SessionWriter::new(&opening).unwrap();
+        let mut writer = RecordingWriter::new(&opening).unwrap();
         for entry in &self.entries {
             writer.push(entry).unwrap();
         }
@@ -344,7 +344,7 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
         .export(&both, &["--lerobot", "--episode", "notes"], "notes")
         .ok();
     let info = place.info("notes");
-    // The note of 1.5 s, the one of 3.5 s, and in the second session what is after the silence.
+    // The note of 1.5 s, the one of 3.5 s, and in the second recording what is after the silence.
     assert_eq!(
         (&info["total_episodes"], &info["total_tasks"]),
         (&5.into(), &2.into())
@@ -393,7 +393,7 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
             2,
             "notes",
         ),
-        (&["a.mcap", "b.mcap"], &["--png"], 2, "one session"),
+        (&["a.mcap", "b.mcap"], &["--png"], 2, "one recording"),
     ] {
         refused(&place.export(files, more, "none"), code, words);
     }
@@ -443,7 +443,7 @@ fn several_sessions_in_a_table_format_are_a_folder_of_tables() {
     }
     let backwards = place.export(&["a.mcap"], &["--csv", "--from", "-1", "--to", "-2"], "x");
     refused(&backwards, 1, "nothing between --from and --to");
-    // Longer ago than the session is its start.
+    // Longer ago than the recording is its start.
     place
         .export(&["a.mcap"], &["--csv", "--from", "-1000"], "whole.csv")
         .ok();
@@ -510,7 +510,7 @@ fn sessions_and_tables_go_through_pipes_and_not_to_a_terminal() {
             &["export", text(&file), text(&file), "--csv", "--out", "-"],
             "name it with --out",
         ),
-        (&["import", "-"], "name the session file with --out"),
+        (&["import", "-"], "name the recording file with --out"),
     ] {
         refused(&run(args), 2, words);
     }

@@ -2,7 +2,7 @@
 
 use crate::setup::process::{Running, listen, run, sim_on_tcp, start, take_pipe};
 use crate::setup::skipped::skipped;
-use handscope::record::file::SessionFile;
+use handscope::record::file::RecordingFile;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::cell::RefCell;
@@ -177,7 +177,7 @@ fn what_was_sent_stands_in_the_recording_and_a_disk_that_fails_holds_nothing_up(
         let is_told = ended.err.contains("the recording cannot be written");
         assert_eq!(is_told, !is_kept, "{told} {}", ended.err);
         if is_kept {
-            let file = SessionFile::open(record.as_ref()).unwrap();
+            let file = RecordingFile::open(record.as_ref()).unwrap();
             let writes = file.overview().counts.writes;
             assert!(writes > 10, "{writes}: {}", ended.err);
         }

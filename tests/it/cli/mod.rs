@@ -25,9 +25,9 @@ mod pictures;
 #[cfg(unix)]
 mod quirks;
 #[cfg(unix)]
-mod scan;
+mod recordings;
 #[cfg(unix)]
-mod sessions;
+mod scan;
 #[cfg(unix)]
 mod several;
 #[cfg(unix)]

@@ -1,7 +1,7 @@
 //! What must hold for any bytes, one function a decoder. The plain loops beside this file and the
 //! fuzz targets of `tests/fuzz` run the same functions. Each panics where a promise is broken.
 
-use handscope::app::sessions::SessionAbout;
+use handscope::app::recordings::RecordingAbout;
 use handscope::app::settings::Settings;
 use handscope::codec::can::{self, CanRecord, from_record, to_record};
 use handscope::codec::mbap::{self, MbapSplitter};
@@ -30,8 +30,8 @@ use handscope::params;
 use handscope::poses;
 use handscope::poses::library::PoseLibrary;
 use handscope::record::file::reader::Stretch;
-use handscope::record::file::writer::SessionWriter;
-use handscope::record::file::{Opening, SessionFile};
+use handscope::record::file::writer::RecordingWriter;
+use handscope::record::file::{Opening, RecordingFile};
 use handscope::record::import::csv::{CsvValues, ImportError};
 use handscope::record::{Direction, Entry, Event, EventKind, LinkState, Piece, PieceKind, Record};
 use handscope::store::FileCause;
@@ -76,7 +76,7 @@ pub const OTHERS: [(&str, Target); 18] = [
     ("pose_file", pose_file),
     ("exhibit_file", exhibit_file),
     ("exhibit_day", exhibit_day),
-    ("session_file", session_file),
+    ("session_file", recording_file),
     ("session_about", session_about),
     ("csv_values", csv_values),
 ];
@@ -517,13 +517,13 @@ fn exhibit_day(state: &mut State, bytes: &[u8]) {
 
 /// Any file is a session or says why not; what is read of it lies in the stretch that was asked for, and reading it again gives
 /// the same.
-fn session_file(state: &mut State, bytes: &[u8]) {
+fn recording_file(state: &mut State, bytes: &[u8]) {
     let session = &mut state.session;
     let file = session.get_or_insert_with(in_memory);
     file.as_file().set_len(0).unwrap();
     file.rewind().unwrap();
     file.write_all(bytes).unwrap();
-    let session = match SessionFile::open(file.path()) {
+    let session = match RecordingFile::open(file.path()) {
         Ok(session) => session,
         Err(why) => return assert!(!why.to_string().is_empty()),
     };
@@ -550,9 +550,9 @@ fn session_file(state: &mut State, bytes: &[u8]) {
 fn session_about(state: &mut State, bytes: &[u8]) {
     let session = &mut state.session;
     let session = session.get_or_insert_with(in_memory).path().to_owned();
-    let path = SessionAbout::path(&session);
+    let path = RecordingAbout::path(&session);
     std::fs::write(&path, bytes).unwrap();
-    let read = SessionAbout::load(&session);
+    let read = RecordingAbout::load(&session);
     std::fs::remove_file(&path).unwrap();
     let about = match read {
         Ok(about) => about,
@@ -560,7 +560,7 @@ fn session_about(state: &mut State, bytes: &[u8]) {
     };
     state.accepted += 1;
     let written = toml::to_string_pretty(&about).unwrap();
-    assert_eq!(toml::from_str::<SessionAbout>(&written).unwrap(), about);
+    assert_eq!(toml::from_str::<RecordingAbout>(&written).unwrap(), about);
 }
 
 /// Any file holds values line by line, until a line of which it says what is wrong. Each reading is about something.
@@ -613,7 +613,7 @@ fn session() -> Vec<u8> {
         asked: at(3),
         received: at(4),
     });
-    let mut writer = SessionWriter::new(&opening).unwrap();
+    let mut writer = RecordingWriter::new(&opening).unwrap();
     for entry in [
         Entry::Heard(Record::State {
             at: at(2),

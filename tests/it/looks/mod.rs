@@ -6,7 +6,7 @@
 
 use crate::setup::recorded;
 use handscope::app::action::Action;
-use handscope::app::sessions::SessionAction;
+use handscope::app::recordings::RecordingAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::hand::Moment;
 use handscope::shell::headless::canvas::Picture;
@@ -219,10 +219,13 @@ fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Pic
     let mut driver = Driver::start(&scene).unwrap();
     driver.connect().unwrap();
     let now = driver.now();
-    let choose = SessionAction::ChooseFolder(Some(folder.path().into()));
-    driver.desktop_app().app().act(Action::Session(choose), now);
+    let choose = RecordingAction::ChooseFolder(Some(folder.path().into()));
+    driver
+        .desktop_app()
+        .app()
+        .act(Action::Recording(choose), now);
     driver.run_for(Duration::from_secs(2));
-    assert_eq!(driver.desktop_app().state().sessions.items.len(), 3);
+    assert_eq!(driver.desktop_app().state().recordings.items.len(), 3);
     let mut shoot = |driver: &mut Driver, name: &str, view| {
         for (theme, language, of_dress) in DRESSES {
             let name = format!("{name}{of_dress}");
@@ -242,7 +245,7 @@ fn draw_sessions(wants: impl Fn(&str) -> bool, mut take: impl FnMut(String, &Pic
             }
         }
     };
-    shoot(&mut driver, "sessions", View::Sessions);
+    shoot(&mut driver, "sessions", View::Recordings);
     let stretch = [10, 20].map(|second| Moment::from_micros(second * 1_000_000));
     driver.replay(faulty, stretch.into()).unwrap();
     shoot(&mut driver, "replay", View::Live);

@@ -14,8 +14,8 @@ use handscope::app::layout::Layout;
 use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
 use handscope::app::readings::faults::FaultKind;
+use handscope::app::recordings::{RecordingAction, RecordingExport, RecordingForm};
 use handscope::app::scan::ScanTarget;
-use handscope::app::sessions::{SessionAction, SessionExport, SessionForm};
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SessionId, TrialAction};
 use handscope::exhibit::run::ExhibitWish;
@@ -109,39 +109,39 @@ fn trials() -> Vec<TrialAction> {
     ]
 }
 
-fn sessions() -> Vec<SessionAction> {
+fn sessions() -> Vec<RecordingAction> {
     let (path, at) = (|| "/dev/null/none.mcap".into(), Moment::ZERO);
     vec![
-        SessionAction::Record(true),
-        SessionAction::RecordSimulated(false),
+        RecordingAction::Record(true),
+        RecordingAction::RecordSimulated(false),
         // Below a file no folder can be.
-        SessionAction::ChooseFolder(Some("/dev/null/none".into())),
-        SessionAction::DefaultFolder,
-        SessionAction::Look,
-        SessionAction::Open(path()),
-        SessionAction::OpenAt(path(), (at, at)),
-        SessionAction::Close,
-        SessionAction::Reveal(path()),
-        SessionAction::Export(SessionExport {
+        RecordingAction::ChooseFolder(Some("/dev/null/none".into())),
+        RecordingAction::DefaultFolder,
+        RecordingAction::Look,
+        RecordingAction::Open(path()),
+        RecordingAction::OpenAt(path(), (at, at)),
+        RecordingAction::Close,
+        RecordingAction::Reveal(path()),
+        RecordingAction::Export(RecordingExport {
             path: path(),
-            form: SessionForm::Csv,
+            form: RecordingForm::Csv,
             stretch: None,
         }),
-        SessionAction::Name(path(), "name".into()),
-        SessionAction::Star(path(), true),
-        SessionAction::AskDelete(path()),
-        SessionAction::Delete,
-        SessionAction::KeepIt,
-        SessionAction::MakeRoom,
-        SessionAction::KeepPlanned,
-        SessionAction::Seek(at),
-        SessionAction::Run(true),
-        SessionAction::Pace(1.0),
-        SessionAction::Step(true),
-        SessionAction::Loop(None),
-        SessionAction::Beside(None),
-        SessionAction::Align(at, at),
-        SessionAction::EditNote(at, "note".into()),
+        RecordingAction::Name(path(), "name".into()),
+        RecordingAction::Star(path(), true),
+        RecordingAction::AskDelete(path()),
+        RecordingAction::Delete,
+        RecordingAction::KeepIt,
+        RecordingAction::MakeRoom,
+        RecordingAction::KeepPlanned,
+        RecordingAction::Seek(at),
+        RecordingAction::Run(true),
+        RecordingAction::Pace(1.0),
+        RecordingAction::Step(true),
+        RecordingAction::Loop(None),
+        RecordingAction::Beside(None),
+        RecordingAction::Align(at, at),
+        RecordingAction::EditNote(at, "note".into()),
     ]
 }
 
@@ -252,7 +252,7 @@ fn all(things: Things) -> Vec<Action> {
     all.extend(params().into_iter().map(Action::Param));
     all.extend(procedures().into_iter().map(Action::Procedure));
     all.extend(trials().into_iter().map(Action::Trial));
-    all.extend(sessions().into_iter().map(Action::Session));
+    all.extend(sessions().into_iter().map(Action::Recording));
     all.extend(exhibits().into_iter().map(Action::Exhibit));
     all.extend(hands().into_iter().map(Action::Hands));
     all
@@ -449,10 +449,10 @@ async fn nothing_but_a_stop_reaches_a_hand_behind_a_recording() {
     let [recording, ..] = recorded::three(bench.folder.path());
     for action in all(things) {
         if bench.state().timeline.is_none() || !bench.app.live().hand().connection.is_armed() {
-            bench.act(Action::Session(SessionAction::Close));
+            bench.act(Action::Recording(RecordingAction::Close));
             bench.run(1000).await;
             bench.arm().await;
-            bench.act(Action::Session(SessionAction::Open(recording.clone())));
+            bench.act(Action::Recording(RecordingAction::Open(recording.clone())));
             bench.replays().await;
         }
         let reached = bench.reached_by(action.clone()).await;

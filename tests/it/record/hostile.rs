@@ -2,7 +2,7 @@
 
 use crate::setup::process::listen;
 use handscope::record::file::format::topic::Topic;
-use handscope::record::file::reader::{SessionFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, Stretch};
 use handscope::record::file::walk::CHUNKS_MAX;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
@@ -27,7 +27,7 @@ fn child_reads_a_file_and_says_what_it_took() {
         return;
     };
     let before = peak_kib();
-    let words = match SessionFile::open(Path::new(&path)) {
+    let words = match RecordingFile::open(Path::new(&path)) {
         Ok(file) => {
             let mut entries = 0_u64;
             let all = Stretch::WHOLE;
@@ -81,12 +81,12 @@ impl Made {
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(LONG as u64));
         let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
-        let session = [("base_nanos", "1000"), ("began_micros", "0")];
-        let session = session.map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let recording = [("base_nanos", "1000"), ("began_micros", "0")];
+        let recording = recording.map(|(key, value)| (key.to_owned(), value.to_owned()));
         writer
             .write_metadata(&Metadata {
                 name: "handscope".into(),
-                metadata: session.into_iter().collect(),
+                metadata: recording.into_iter().collect(),
             })
             .unwrap();
         for topic in Topic::all() {

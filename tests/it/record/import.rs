@@ -1,4 +1,4 @@
-//! Comma-separated values that were exported, made into a session again: every value comes back, what no column says stays unknown,
+//! Comma-separated values that were exported, made into a recording again: every value comes back, what no column says stays unknown,
 //! and a file that is wrong is refused with the line.
 
 use handscope::hand::command::HandCommand;
@@ -9,8 +9,8 @@ use handscope::hand::{
 };
 use handscope::record::export::{Destination, Source};
 use handscope::record::export::{csv, cut};
-use handscope::record::file::reader::{SessionFile, Stretch};
-use handscope::record::file::writer::SessionWriter;
+use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{Counts, Opening};
 use handscope::record::import::csv::{self as values, ImportError, Imported};
 use handscope::record::{Entry, Event, EventKind, LinkState, Record, WriteCause};
@@ -110,16 +110,16 @@ fn write(path: &Path, entries: &[Entry]) {
         version: "0.1.0".into(),
         part: None,
     };
-    let mut writer = SessionWriter::new(&opening).unwrap();
+    let mut writer = RecordingWriter::new(&opening).unwrap();
     entries.iter().for_each(|entry| writer.push(entry).unwrap());
     writer.finish().unwrap();
     std::fs::write(path, writer.take_bytes()).unwrap();
 }
 
-fn import(csv: &Path, session: &Path) -> Result<Imported, ImportError> {
+fn import(csv: &Path, recording: &Path) -> Result<Imported, ImportError> {
     let from = BufReader::new(File::open(csv).unwrap());
     let go_on = || ControlFlow::Continue(());
-    values::import(from, &Destination::from(session), &go_on)
+    values::import(from, &Destination::from(recording), &go_on)
 }
 
 struct Trial(TempDir);
@@ -133,27 +133,27 @@ impl Trial {
         self.0.path().join(name)
     }
 
-    /// The values of a session as text.
-    fn values(&self, session: &str, csv: &str) -> String {
-        let file = SessionFile::open(&self.path(session)).unwrap();
+    /// The values of a recording as text.
+    fn values(&self, recording: &str, csv: &str) -> String {
+        let file = RecordingFile::open(&self.path(recording)).unwrap();
         let source = Source::new(&file, Stretch::WHOLE);
         csv::write(source, &Destination::Path(self.path(csv))).unwrap();
         std::fs::read_to_string(self.path(csv)).unwrap()
     }
 
     fn import(&self, text: &str) -> Result<Imported, String> {
-        let (csv, session) = (self.path("in.csv"), self.path("out.mcap"));
+        let (csv, recording) = (self.path("in.csv"), self.path("out.mcap"));
         std::fs::write(&csv, text).unwrap();
-        let _old = std::fs::remove_file(&session);
-        import(&csv, &session).map_err(|error| {
-            assert!(!session.exists());
+        let _old = std::fs::remove_file(&recording);
+        import(&csv, &recording).map_err(|error| {
+            assert!(!recording.exists());
             error.to_string()
         })
     }
 
     /// Readings of what was imported.
     fn read(&self) -> Vec<(HandSample, Groups)> {
-        let file = SessionFile::open(&self.path("out.mcap")).unwrap();
+        let file = RecordingFile::open(&self.path("out.mcap")).unwrap();
         let mut all = Vec::new();
         let damage = file.entries(Stretch::WHOLE, |entry| {
             if let Entry::Heard(Record::Reading { sample, fresh }) = entry {
@@ -202,14 +202,14 @@ fn every_value_and_every_event_comes_back_from_a_session_with_faults_and_gaps() 
     ] {
         assert!(first.contains(words), "{words}");
     }
-    let file = SessionFile::open(&trial.path("b.mcap")).unwrap();
+    let file = RecordingFile::open(&trial.path("b.mcap")).unwrap();
     let opening = file.opening();
     assert!(opening.is_imported() && !opening.simulated);
     assert_eq!(
         (opening.hand.as_str(), opening.base_nanos),
         ("", Opening::NO_DATE)
     );
-    let whole = SessionFile::open(&trial.path("a.mcap")).unwrap();
+    let whole = RecordingFile::open(&trial.path("a.mcap")).unwrap();
     assert!(whole.overview().counts.faults > 10);
     let counts = Counts {
         // Commands are no columns, and of several faults in one reply the marks tell as one.

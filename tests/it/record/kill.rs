@@ -8,7 +8,7 @@ use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Group, Moment, Span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
-use handscope::record::file::reader::{SessionFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, Stretch};
 use handscope::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use handscope::record::{Direction, Entry, PieceKind, Record};
 use handscope::sim::serve::modbus_tcp;
@@ -188,7 +188,7 @@ fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
         // Nothing of it was on the disk yet.
         return (vec![0; journal.len()], 0);
     }
-    let file = SessionFile::open(path).unwrap();
+    let file = RecordingFile::open(path).unwrap();
     let said: Vec<Said> = journal.iter().flat_map(Connection::said).collect();
     let mut said = said.iter().peekable();
     let mut wires: Vec<Vec<u8>> = Vec::new();

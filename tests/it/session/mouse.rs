@@ -7,7 +7,7 @@ use crate::session::program::{Hand, REST, Window};
 use crate::session::twin::Twin;
 use crate::setup::process;
 use handscope::app::action::Action;
-use handscope::app::sessions::SessionAction;
+use handscope::app::recordings::RecordingAction;
 use handscope::app::settings::Language;
 use handscope::hand::{Angle, Dof};
 use handscope::ui::View;
@@ -230,8 +230,8 @@ fn a_recording_is_scrubbed_with_the_mouse() {
     let recorded = process::run(&["record", "--hand", hand, "--for", "6", "--out", file]);
     assert_eq!(recorded.code, Some(0), "{}", recorded.err);
     let mut session = Session::start(display, &["--software", file]);
-    let open = SessionAction::Open(path.clone());
-    session.twin.act(Action::Session(open));
+    let open = RecordingAction::Open(path.clone());
+    session.twin.act(Action::Recording(open));
     session.looks("replayed", View::Live, Language::En);
     for share in [0.3, 0.9, 0.6] {
         session.drag("Time line", 0.45, share);
@@ -247,7 +247,7 @@ fn a_recording_is_scrubbed_with_the_mouse() {
         Language::En,
     );
     session.click("Back to live");
-    session.twin.act(Action::Session(SessionAction::Close));
+    session.twin.act(Action::Recording(RecordingAction::Close));
     session.looks("live again", View::Connection, Language::En);
     assert_eq!(session.hand.read("ANGLE_SET"), stands, "nothing moved");
     session.display.close("Handscope");

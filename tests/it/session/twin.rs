@@ -3,7 +3,7 @@
 use crate::session::display::SIZE;
 use handscope::app::action::Action;
 use handscope::app::exhibit::exhibit_file;
-use handscope::app::sessions::SessionAction;
+use handscope::app::recordings::RecordingAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::driver::{Driver, Scene};
@@ -52,7 +52,7 @@ impl Twin {
         let state = self.driver.desktop_app().app().state();
         let line = state.timeline.as_ref().unwrap();
         let at = line.first.plus(line.last.since(line.first).mul_f64(share));
-        self.act(Action::Session(SessionAction::Seek(at)));
+        self.act(Action::Recording(RecordingAction::Seek(at)));
     }
 
     pub(crate) fn picture(&mut self, view: View) -> Picture {

@@ -1,6 +1,6 @@
-//! Session files with fixed dates and hand-made readings, for pictures and lists.
+//! Recording files with fixed dates and hand-made readings, for pictures and lists.
 
-use handscope::app::sessions::{SessionAbout, SessionNote};
+use handscope::app::recordings::{RecordingAbout, RecordingNote};
 use handscope::hand::kinematics::Side;
 use handscope::hand::*;
 use handscope::link::LinkStatus;
@@ -16,13 +16,13 @@ const FIRST_DAY_S: u64 = 1_793_520_000;
 const DAY_S: u64 = 24 * 3600;
 const TICK_MS: u64 = 50;
 
-/// One session of a day.
+/// One recording of a day.
 struct Script {
     day: u64,
     seconds: u64,
     /// The second in which the index finger has a fault.
     fault_at: Option<u64>,
-    about: SessionAbout,
+    about: RecordingAbout,
 }
 
 fn timed<T>(value: T, at: Moment) -> Option<Timed<T>> {
@@ -116,9 +116,9 @@ fn write(folder: &Path, script: &Script) -> PathBuf {
     path
 }
 
-/// Three sessions: one with a star, one with a name and a fault, one with notes. The paths, the oldest first.
+/// Three recordings: one with a star, one with a name and a fault, one with notes. The paths, the oldest first.
 pub(crate) fn three(folder: &Path) -> [PathBuf; 3] {
-    let note = |second: u64, words: &str| SessionNote {
+    let note = |second: u64, words: &str| RecordingNote {
         at_micros: second * 1_000_000,
         words: words.into(),
     };
@@ -127,27 +127,27 @@ pub(crate) fn three(folder: &Path) -> [PathBuf; 3] {
             day: 0,
             seconds: 45,
             fault_at: None,
-            about: SessionAbout {
+            about: RecordingAbout {
                 star: true,
-                ..SessionAbout::default()
+                ..RecordingAbout::default()
             },
         },
         Script {
             day: 2,
             seconds: 30,
             fault_at: Some(12),
-            about: SessionAbout {
+            about: RecordingAbout {
                 name: "Old finger, hard sponge".into(),
-                ..SessionAbout::default()
+                ..RecordingAbout::default()
             },
         },
         Script {
             day: 20,
             seconds: 125,
             fault_at: None,
-            about: SessionAbout {
+            about: RecordingAbout {
                 notes: Some(vec![note(20, "first contact"), note(70, "slipped")]),
-                ..SessionAbout::default()
+                ..RecordingAbout::default()
             },
         },
     ];

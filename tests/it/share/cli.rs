@@ -3,7 +3,7 @@
 use crate::setup::process::{Running, listen, run, sim_on_link, sim_on_tcp, start};
 use crate::setup::skipped::skipped;
 use handscope::hand::{Angle, Dof};
-use handscope::record::file::reader::{SessionFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, Stretch};
 use handscope::record::{Entry, Record};
 use nix::sys::signal::Signal;
 use std::io::{Read as _, Write as _};
@@ -157,7 +157,7 @@ fn clients_that_come_write_and_leave_between_two_looks_are_told_too() {
     share.signal(Signal::SIGINT);
     share.end().ok();
     // What clients wrote was recorded as it passed.
-    let file = SessionFile::open(&record).unwrap();
+    let file = RecordingFile::open(&record).unwrap();
     let mut told = Vec::new();
     let all = Stretch {
         from: file.first(),

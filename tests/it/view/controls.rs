@@ -744,7 +744,7 @@ fn the_link_lamp_opens_the_connection_and_tabs_open_their_views() {
     assert_eq!(harness.state().window.view(), View::Connection);
     for (place, view) in [
         ("Tune", View::Tune),
-        ("Recordings", View::Sessions),
+        ("Recordings", View::Recordings),
         ("Share", View::Inputs),
         ("Hand", View::Connection),
         ("Live", View::Live),

@@ -449,8 +449,8 @@ fn name_and_side_are_kept_of_each_hand() {
 #[test]
 fn two_hands_are_recorded_each_into_its_own_file() {
     let mut bench = Bench::keeping(SimConfig::default());
-    bench.act(Action::Session(
-        handscope::app::sessions::SessionAction::RecordSimulated(true),
+    bench.act(Action::Recording(
+        handscope::app::recordings::RecordingAction::RecordSimulated(true),
     ));
     bench.open_another("sim:?seed=2");
     let path = |hand: &&Hand| hand.recording.as_ref()?.status.path.clone();

@@ -2,7 +2,7 @@
 
 use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 use crate::app::readings::fault_recorder::recording::{
-    DriveState, FaultAt, Recording, RecordingId,
+    DriveState, FaultAt, FaultRecording, FaultRecordingId,
 };
 use crate::app::readings::faults::FaultKind;
 use crate::hand::{Dof, Group, Groups, HandSample, Moment, PerDof};
@@ -42,7 +42,7 @@ pub struct FaultRecorder {
     now: PerDof<DriveState>,
     events_lost: u64,
     running: Option<OpenRecording>,
-    kept: VecDeque<Arc<Recording>>,
+    kept: VecDeque<Arc<FaultRecording>>,
     made: u64,
 }
 
@@ -146,8 +146,8 @@ impl FaultRecorder {
         };
         let first = running.first.since(Moment::ZERO);
         let from = Moment::from_duration(first.saturating_sub(BEFORE));
-        let recording = Recording {
-            id: RecordingId(self.made),
+        let recording = FaultRecording {
+            id: FaultRecordingId(self.made),
             hand: hand.to_owned(),
             faults: running.faults,
             from,
@@ -165,17 +165,17 @@ impl FaultRecorder {
     }
 
     /// All that are kept, newest first.
-    pub fn iter(&self) -> impl Iterator<Item = &Arc<Recording>> {
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<FaultRecording>> {
         self.kept.iter().rev()
     }
 
     /// The recording with this id, if it is still kept.
-    pub fn get(&self, id: RecordingId) -> Option<&Arc<Recording>> {
+    pub fn get(&self, id: FaultRecordingId) -> Option<&Arc<FaultRecording>> {
         self.kept.iter().find(|recording| recording.id == id)
     }
 
     /// The newest recording of this fault, come at this moment.
-    pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<Recording>> {
+    pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<FaultRecording>> {
         let mut recordings = self.iter();
         recordings.find(|recording| recording.holds(dof, what, since))
     }
@@ -253,7 +253,7 @@ mod tests {
             self.recorder.fault(dof, STALL, self.now());
         }
 
-        fn newest(&self) -> Arc<Recording> {
+        fn newest(&self) -> Arc<FaultRecording> {
             let newest = self.recorder.iter().next().expect("a recording");
             Arc::clone(newest)
         }
@@ -355,8 +355,8 @@ mod tests {
             bench.run(16, Status::Stalled);
         }
         assert_eq!(bench.recorder.lost(), 1);
-        assert!(bench.recorder.get(RecordingId(0)).is_none());
-        assert!(bench.recorder.get(RecordingId(1)).is_some());
+        assert!(bench.recorder.get(FaultRecordingId(0)).is_none());
+        assert!(bench.recorder.get(FaultRecordingId(1)).is_some());
         assert_eq!(bench.recorder.iter().count(), RECORDINGS_MAX);
         let held = bench.recorder.iter().map(|own| own.history.bytes());
         let bytes: usize = held.sum();

@@ -9,5 +9,5 @@ pub use crate::app::readings::fault_recorder::book::{
 };
 pub use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 pub use crate::app::readings::fault_recorder::recording::{
-    DriveState, FaultAt, Recording, RecordingId,
+    DriveState, FaultAt, FaultRecording, FaultRecordingId,
 };

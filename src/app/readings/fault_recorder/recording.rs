@@ -8,7 +8,7 @@ use crate::history::{History, Series, Table, TableGroup};
 
 /// A recording for as long as the program runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct RecordingId(pub u64);
+pub struct FaultRecordingId(pub u64);
 
 /// A fault that came while it was recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub struct DriveState {
 
 /// Everything around a fault.
 #[derive(Debug, Clone)]
-pub struct Recording {
+pub struct FaultRecording {
     /// To find it.
-    pub id: RecordingId,
+    pub id: FaultRecordingId,
     /// The hand, in the spelling of endpoints.
     pub hand: String,
     /// The faults, oldest first, at least one.
@@ -50,7 +50,7 @@ pub struct Recording {
     pub events_lost: u64,
 }
 
-impl Recording {
+impl FaultRecording {
     /// The fault that began it.
     pub fn fault(&self) -> Option<FaultAt> {
         self.faults.first().copied()

@@ -1,4 +1,4 @@
-//! What stands in the messages of a session file, as ROS 2 defines them. The definitions stand in each file, too.
+//! What stands in the messages of a recording file, as ROS 2 defines them. The definitions stand in each file, too.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What a session file says of itself at its beginning.
+//! What a recording file says of itself at its beginning.
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -6,7 +6,7 @@ use mcap::records::{Record, op};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// The name of what is said of a session among a file's metadata.
+/// The name of what is said of a recording among a file's metadata.
 pub(crate) const METADATA: &str = "handscope";
 
 /// Which file of a recording it is: a long one goes on in a new file each hour.
@@ -18,7 +18,7 @@ pub struct Part {
     pub number: u32,
 }
 
-/// What a session begins with.
+/// What a recording begins with.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Opening {
     /// The time of [`Moment::ZERO`], nanoseconds since 1970.
@@ -40,7 +40,7 @@ pub struct Opening {
 impl Opening {
     /// The time of [`Moment::ZERO`] where the day is not known: a second after 1970, because 0 is no time of a message.
     pub const NO_DATE: u64 = 1_000_000_000;
-    /// Ends the version of a session that was read from values.
+    /// Ends the version of a recording that was read from values.
     pub const IMPORTED: &'static str = "(imported)";
 
     /// Of a file that says nothing of itself, whose first message is of this time: neither the hand nor its side is known.
@@ -65,7 +65,7 @@ impl Opening {
         }
     }
 
-    /// True if the session was read from values: its events stand in it as they were written, and the day is not known.
+    /// True if the recording was read from values: its events stand in it as they were written, and the day is not known.
     pub fn is_imported(&self) -> bool {
         self.version.ends_with(Self::IMPORTED)
     }

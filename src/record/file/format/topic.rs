@@ -1,4 +1,4 @@
-//! The topics of a session file and the definitions of their messages. Numbers are fixed: a file whose list of channels is damaged
+//! The topics of a recording file and the definitions of their messages. Numbers are fixed: a file whose list of channels is damaged
 //! is read all the same.
 
 use crate::hand::Finger;

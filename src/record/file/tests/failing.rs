@@ -8,10 +8,10 @@
 )]
 
 use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
-use crate::record::file::reader::SessionFile;
+use crate::record::file::reader::RecordingFile;
 use crate::record::file::recorder::{Recorder, RecorderInput};
 use crate::record::file::recording::{
-    Now, PART_LENGTH, RecorderNotice, RecorderStatus, RecordingPlan, SessionRecording,
+    Now, PART_LENGTH, RecorderNotice, RecorderStatus, RecordingPlan, RecordingTask,
 };
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
@@ -182,7 +182,7 @@ impl DiskFile for FailingFile {
 /// One recording in virtual time: entries come at a steady rate while the disk has its troubles.
 struct Schedule {
     disk: FailingDisk,
-    recording: SessionRecording,
+    recording: RecordingTask,
     input: RecorderInput,
     taken: std::sync::mpsc::Receiver<crate::record::file::recording::Given>,
     entries: Vec<Entry>,
@@ -212,7 +212,7 @@ impl Schedule {
             wall_nanos: 0,
         };
         let plan = plan(Path::new("a/b.mcap"), disk.clone());
-        let recording = SessionRecording::new(plan, now).unwrap();
+        let recording = RecordingTask::new(plan, now).unwrap();
         Self {
             disk,
             recording: recording.with_pending_max(20_000 + room * 40),
@@ -433,7 +433,7 @@ fn a_clock_that_is_set_is_said_in_both_files_and_times_are_right_in_each() {
     for (_, content) in &schedule.disk.0.lock().unwrap().files {
         let path = folder.path().join("a.mcap");
         std::fs::write(&path, &content.lock().unwrap().bytes).unwrap();
-        let file = SessionFile::open(&path).unwrap();
+        let file = RecordingFile::open(&path).unwrap();
         bases.push(file.opening().base_nanos);
         assert!(file.is_closed());
         let marks = file.overview().marks.iter();
@@ -536,7 +536,7 @@ fn a_file_that_is_renamed_is_written_on_and_one_that_is_removed_is_told_and_begu
         let status = recorder.end();
         assert_eq!(status.path.as_ref(), Some(&other), "{what}");
         assert_eq!(status.notices.len(), 1, "{what}: {:?}", status.notices);
-        let file = SessionFile::open(&other).unwrap();
+        let file = RecordingFile::open(&other).unwrap();
         assert!(file.is_closed());
         let (all, ..) = read(&other).unwrap();
         let count = all
@@ -578,10 +578,10 @@ fn a_disk_that_hangs_holds_nobody_up_and_the_end_comes_in_time() {
 }
 
 /// Waits until the recording at this path is read as ended.
-fn until_ended(path: &Path) -> SessionFile {
+fn until_ended(path: &Path) -> RecordingFile {
     let until = Instant::now() + Duration::from_secs(20);
     loop {
-        match SessionFile::open(path) {
+        match RecordingFile::open(path) {
             Ok(file) if file.is_closed() => return file,
             _ => assert!(Instant::now() < until, "it does not end"),
         }

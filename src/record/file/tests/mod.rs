@@ -1,4 +1,4 @@
-//! Sessions written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
+//! Recordings written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
 mod failing;
 pub(crate) mod parts;
@@ -11,8 +11,8 @@ use crate::hand::{
     Angle, Dof, Group, Groups, HandSample, Moment, PerDof, Reply, Span, Target, register,
 };
 use crate::record::file::format::opening::Opening;
-use crate::record::file::reader::{Damage, SessionFile, Stretch};
-use crate::record::file::writer::SessionWriter;
+use crate::record::file::reader::{Damage, RecordingFile, Stretch};
+use crate::record::file::writer::RecordingWriter;
 use crate::record::{
     ArmRefusal, Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind,
     Record, WriteCause, WriteFate,
@@ -137,7 +137,7 @@ pub(crate) fn atoms(entry: &Entry) -> Vec<Atom> {
 }
 
 pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
-    let mut writer = SessionWriter::new(&opening()).unwrap();
+    let mut writer = RecordingWriter::new(&opening()).unwrap();
     for (number, entry) in entries.iter().enumerate() {
         writer.push(entry).unwrap();
         if number % 60 == 59 {
@@ -148,8 +148,8 @@ pub(crate) fn bytes_of(entries: &[Entry]) -> Vec<u8> {
     writer.take_bytes()
 }
 
-pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, SessionFile, Damage)> {
-    let file = SessionFile::open(path).ok()?;
+pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, RecordingFile, Damage)> {
+    let file = RecordingFile::open(path).ok()?;
     let mut all = Vec::new();
     let damage = file
         .entries(Stretch::WHOLE, |entry| {
@@ -192,7 +192,7 @@ fn the_overview_is_the_same_from_the_index_and_made_anew() {
     let path = folder.path().join("a.mcap");
     let bytes = bytes_of(&entries(2, 35_000));
     std::fs::write(&path, &bytes).unwrap();
-    let whole = SessionFile::open(&path).unwrap();
+    let whole = RecordingFile::open(&path).unwrap();
     // Without blocks: their name is spoilt, and with it the sums over them.
     let mut spoilt = bytes.clone();
     let name = b"handscope-overview";
@@ -202,7 +202,7 @@ fn the_overview_is_the_same_from_the_index_and_made_anew() {
         }
     }
     std::fs::write(&path, &spoilt).unwrap();
-    let anew = SessionFile::open(&path).unwrap();
+    let anew = RecordingFile::open(&path).unwrap();
     let (one, two) = (whole.overview(), anew.overview());
     assert_eq!((one.counts, &one.marks), (two.counts, &two.marks));
     assert_eq!(format!("{:?}", one.rows), format!("{:?}", two.rows));
@@ -273,14 +273,14 @@ fn what_is_no_session_is_refused_in_words() {
     let path = folder.path().join("a.mcap");
     let words = |bytes: &[u8]| {
         std::fs::write(&path, bytes).unwrap();
-        SessionFile::open(&path).unwrap_err().to_string()
+        RecordingFile::open(&path).unwrap_err().to_string()
     };
     assert!(words(b"").contains("not an MCAP file"));
     assert!(words(b"time_s,angle\n1,2\n").contains("not an MCAP file"));
     assert!(words(&bytes_of(&[])[..8]).contains("no whole piece"));
-    let gone = SessionFile::open(&folder.path().join("b.mcap")).unwrap_err();
+    let gone = RecordingFile::open(&folder.path().join("b.mcap")).unwrap_err();
     assert!(gone.to_string().starts_with("it cannot be read"));
-    let folder = SessionFile::open(folder.path()).unwrap_err();
+    let folder = RecordingFile::open(folder.path()).unwrap_err();
     assert_eq!(
         folder.to_string(),
         "it is no file, but a folder or a device"
@@ -305,7 +305,7 @@ fn a_stretch_begins_with_what_was_known_before_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mcap");
     std::fs::write(&path, bytes_of(&entries(6, 10_000))).unwrap();
-    let file = SessionFile::open(&path).unwrap();
+    let file = RecordingFile::open(&path).unwrap();
     let from = Moment::from_micros(12_000_000);
     let to = Moment::from_micros(12_100_000);
     let mut first = None;

@@ -7,8 +7,8 @@ use crate::record::file::damage::Remark;
 use crate::record::file::disk::SystemDisk;
 use crate::record::file::format::opening::Opening;
 use crate::record::file::parts::recordings;
-use crate::record::file::reader::{SessionFile, Stretch};
-use crate::record::file::recording::{Given, Now, RecordingPlan, SessionRecording};
+use crate::record::file::reader::{RecordingFile, Stretch};
+use crate::record::file::recording::{Given, Now, RecordingPlan, RecordingTask};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -34,7 +34,7 @@ fn record(opening: Opening, path: PathBuf, entries: &[Entry]) -> PathBuf {
         let wall_nanos = i64::try_from(since.as_nanos()).unwrap();
         Now { since, wall_nanos }
     };
-    let mut recording = SessionRecording::new(plan, now(opening.began)).unwrap();
+    let mut recording = RecordingTask::new(plan, now(opening.began)).unwrap();
     let mut last = opening.began;
     for entry in entries {
         last = entry.at();
@@ -93,7 +93,7 @@ fn each_file_opens_all_and_all_is_what_was_recorded() {
         let all: Vec<&Atom> = all.iter().filter(is_new).collect();
         assert!(all.len() >= parts.wanted.len(), "{}", all.len());
     }
-    let file = SessionFile::open(&parts.path("a-2.mcap")).unwrap();
+    let file = RecordingFile::open(&parts.path("a-2.mcap")).unwrap();
     assert!(file.is_closed() && !file.is_damaged());
     assert_eq!(
         (file.first(), file.path()),
@@ -111,7 +111,7 @@ fn each_file_opens_all_and_all_is_what_was_recorded() {
 #[test]
 fn a_stretch_over_the_border_of_two_files_is_read_from_both() {
     let parts = Parts::new();
-    let file = SessionFile::open(&parts.path("a.mcap")).unwrap();
+    let file = RecordingFile::open(&parts.path("a.mcap")).unwrap();
     let stretch = |from, to| {
         let (from, to) = (Moment::from_micros(from), Moment::from_micros(to));
         let mut all = Vec::new();

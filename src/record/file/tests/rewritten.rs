@@ -11,8 +11,8 @@ use crate::record::Entry;
 use crate::record::file::channels::SkipReason;
 use crate::record::file::damage::{Damage, Remark};
 use crate::record::file::format::opening::METADATA;
-use crate::record::file::reader::{OpenError, SessionFile};
-use crate::record::file::writer::SessionWriter;
+use crate::record::file::reader::{OpenError, RecordingFile};
+use crate::record::file::writer::RecordingWriter;
 use mcap::records::{MessageHeader, Metadata, op};
 use mcap::{Compression, Message, MessageStream, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -162,7 +162,7 @@ impl Recording {
         self.folder.path().join("a.mcap")
     }
 
-    fn read(&self, bytes: &[u8]) -> (Vec<Atom>, SessionFile, Damage) {
+    fn read(&self, bytes: &[u8]) -> (Vec<Atom>, RecordingFile, Damage) {
         std::fs::write(self.path(), bytes).unwrap();
         read(&self.path()).unwrap()
     }
@@ -293,7 +293,7 @@ fn recordings_of_several_hands_in_one_file_are_not_mixed() {
     other.hand = "tcp:127.0.0.1:6000".into();
     rewrite.metadata.push(other.metadata());
     std::fs::write(recording.path(), rewrite.of(&recording.bytes)).unwrap();
-    let refused = SessionFile::open(&recording.path()).unwrap_err();
+    let refused = RecordingFile::open(&recording.path()).unwrap_err();
     let hands = "sim:?seed=3, tcp:127.0.0.1:6000".to_owned();
     assert_eq!(refused, OpenError::SeveralHands { hands });
 }
@@ -394,7 +394,7 @@ fn a_flipped_bit_outside_of_chunks_is_told_where_the_file_has_a_sum() {
 /// A short recording, closed or not.
 fn short(closed: bool) -> (Vec<u8>, Vec<Atom>) {
     let entries: Vec<Entry> = entries(4, 40);
-    let mut writer = SessionWriter::new(&opening()).unwrap();
+    let mut writer = RecordingWriter::new(&opening()).unwrap();
     for (number, entry) in entries.iter().enumerate() {
         writer.push(entry).unwrap();
         if number % 15 == 14 {

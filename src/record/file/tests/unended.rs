@@ -7,16 +7,16 @@
 
 use super::{BASE, opening};
 use crate::hand::Moment;
-use crate::record::file::reader::{Damage, SessionFile, Stretch};
+use crate::record::file::reader::{Damage, RecordingFile, Stretch};
 use crate::record::file::walk::walk;
-use crate::record::file::writer::SessionWriter;
+use crate::record::file::writer::RecordingWriter;
 use crate::record::{Entry, Event, EventKind};
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
 /// A note each tenth of a second, four in a chunk, and no end.
 fn unended(seconds: u64) -> Vec<u8> {
-    let mut writer = SessionWriter::new(&opening()).unwrap();
+    let mut writer = RecordingWriter::new(&opening()).unwrap();
     for number in 0..seconds * 10 {
         let note = Event {
             at: at(number),
@@ -37,7 +37,7 @@ fn at(number: u64) -> Moment {
 }
 
 /// The notes of a stretch, and what is missing.
-fn notes(file: &SessionFile, from: Moment, to: Moment) -> (Vec<Moment>, Damage) {
+fn notes(file: &RecordingFile, from: Moment, to: Moment) -> (Vec<Moment>, Damage) {
     let mut all = Vec::new();
     let stretch = Stretch {
         from,
@@ -67,7 +67,7 @@ fn a_flipped_bit_in_the_head_of_a_chunk_hides_nothing_without_being_counted() {
             let mut flipped = bytes.clone();
             flipped[chunk.place.offset as usize + bit / 8] ^= 1 << (bit % 8);
             std::fs::write(&path, &flipped).unwrap();
-            let file = SessionFile::open(&path).unwrap();
+            let file = RecordingFile::open(&path).unwrap();
             let (some, damage) = notes(&file, first, after);
             let whole = some.len() == 4 && some[0] == first && some[3] == after;
             let is_time = (9..25).contains(&(bit / 8));

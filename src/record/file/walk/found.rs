@@ -1,4 +1,4 @@
-//! What is found of a session file, and how its bytes are read: no further than the longest record of ours.
+//! What is found of a recording file, and how its bytes are read: no further than the longest record of ours.
 
 use std::io::{self, Read, Seek, SeekFrom};
 

@@ -1,4 +1,4 @@
-//! Finds the records of a session file that may be cut, damaged, or made to harm: every length is checked before it is used.
+//! Finds the records of a recording file that may be cut, damaged, or made to harm: every length is checked before it is used.
 //!
 //! `index` asks the index of a file that was ended, and `hops` goes from record to record where there is none; `times` corrects what
 //! it found there. `survey` reads the whole of a file that another program has written or changed.

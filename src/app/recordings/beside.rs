@@ -1,12 +1,12 @@
-//! A second session, drawn over the one that is replayed: both are aligned by a moment of each.
+//! A second recording, drawn over the one that is replayed: both are aligned by a moment of each.
 
 use crate::hand::Moment;
 use crate::history::History;
 use crate::record::file::FileMark;
 
-/// A session that is drawn over another.
+/// A recording that is drawn over another.
 #[derive(Debug)]
-pub struct BesideSession {
+pub struct BesideRecording {
     /// Its name, or that of its file.
     pub title: String,
     pub first: Moment,
@@ -14,14 +14,14 @@ pub struct BesideSession {
     pub marks: Vec<FileMark>,
     /// What was measured.
     pub history: History,
-    /// The moment of the replayed session at which both are aligned.
+    /// The moment of the replayed recording at which both are aligned.
     pub own: Moment,
-    /// The moment of this session.
+    /// The moment of this recording.
     pub other: Moment,
 }
 
-impl BesideSession {
-    /// Seconds from the times of the replayed session to those of this one.
+impl BesideRecording {
+    /// Seconds from the times of the replayed recording to those of this one.
     pub fn offset_s(&self) -> f64 {
         self.other.secs() - self.own.secs()
     }

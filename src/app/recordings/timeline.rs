@@ -1,17 +1,17 @@
-//! What the time line of a replayed session shows.
+//! What the time line of a replayed recording shows.
 
-use crate::app::sessions::about::SessionNote;
+use crate::app::recordings::about::RecordingNote;
 use crate::hand::Moment;
 use crate::record::file::FileMark;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the time line of a replayed session shows.
+/// What the time line of a replayed recording shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timeline {
     /// The file.
     pub path: PathBuf,
-    /// The session's name, or that of its file.
+    /// The recording's name, or that of its file.
     pub title: String,
     /// When it began, `2026-11-22T09:30:00Z`.
     pub began: String,
@@ -30,7 +30,7 @@ pub struct Timeline {
     /// What happened.
     pub marks: Arc<Vec<FileMark>>,
     /// The notes in force.
-    pub notes: Arc<Vec<SessionNote>>,
+    pub notes: Arc<Vec<RecordingNote>>,
     /// Greatest force over its length.
     pub strip: Arc<Vec<f32>>,
     /// The moment that was asked for is not shown yet.

@@ -1,11 +1,11 @@
-//! A session, or a stretch of it, in a format of others: written off the window's thread into the folder of the day.
+//! A recording, or a stretch of it, in a format of others: written off the window's thread into the folder of the day.
 
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::hand::Moment;
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan};
 use crate::record::export::{Destination, ExportError, Source, csv, cut, lerobot, parquet, rosbag};
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::Stretch;
 use crate::store::{BackgroundJob, calendar, on_thread};
 use std::ops::ControlFlow;
@@ -18,7 +18,7 @@ const FPS: u32 = 30;
 
 /// A format of others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SessionForm {
+pub enum RecordingForm {
     /// A table as text.
     Csv,
     /// A table.
@@ -27,11 +27,11 @@ pub enum SessionForm {
     Rosbag,
     /// A folder for learners, without video.
     LeRobot,
-    /// A session file again, whole and with its own index.
+    /// A recording file again, whole and with its own index.
     Mcap,
 }
 
-impl SessionForm {
+impl RecordingForm {
     pub const ALL: [Self; 5] = [
         Self::Csv,
         Self::Parquet,
@@ -40,7 +40,7 @@ impl SessionForm {
         Self::Mcap,
     ];
 
-    /// What stands behind the session's name.
+    /// What stands behind the recording's name.
     const fn ending(self) -> &'static str {
         match self {
             Self::Csv => ".csv",
@@ -51,7 +51,7 @@ impl SessionForm {
         }
     }
 
-    /// Writes what is wanted of a session; how many rows, messages or frames are in it.
+    /// Writes what is wanted of a recording; how many rows, messages or frames are in it.
     fn write(self, source: Source<'_>, to: &Path) -> Result<u64, ExportError> {
         let place = Destination::from(to);
         let written = match self {
@@ -74,10 +74,10 @@ impl SessionForm {
 
 /// What is to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SessionExport {
-    /// The session.
+pub struct RecordingExport {
+    /// The recording.
     pub path: PathBuf,
-    pub form: SessionForm,
+    pub form: RecordingForm,
     /// From and to; `None` = all of it.
     pub stretch: Option<(Moment, Moment)>,
 }
@@ -85,14 +85,14 @@ pub struct SessionExport {
 /// How far an export is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportProgress {
-    pub export: SessionExport,
+    pub export: RecordingExport,
     /// Of all that is to be read.
     pub percent: u8,
 }
 
 /// An export under way.
 pub(crate) struct RunningExport {
-    export: SessionExport,
+    export: RecordingExport,
     percent: Arc<AtomicU8>,
     /// What to tell a person once it is done.
     pub(crate) job: Option<BackgroundJob<NoticeKind>>,
@@ -107,8 +107,8 @@ impl RunningExport {
     }
 }
 
-impl SessionExport {
-    /// What it is called: after the session.
+impl RecordingExport {
+    /// What it is called: after the recording.
     fn file_name(&self) -> String {
         let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let part = if self.stretch.is_some() { "-part" } else { "" };
@@ -122,15 +122,15 @@ impl SessionExport {
             return NoticeKind::not_saved(to, &error);
         }
         let path = self.path.clone();
-        let file = match SessionFile::open(&path) {
+        let file = match RecordingFile::open(&path) {
             Ok(file) => file,
-            Err(why) => return NoticeKind::SessionRefused { path, why },
+            Err(why) => return NoticeKind::RecordingRefused { path, why },
         };
         let (from, until) = self.stretch.unwrap_or((file.first(), file.last()));
         let stretch = Stretch {
             from,
             to: until,
-            wire: self.form == SessionForm::Mcap,
+            wire: self.form == RecordingForm::Mcap,
         };
         let watch = |share: f64| {
             #[expect(

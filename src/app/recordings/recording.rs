@@ -1,4 +1,4 @@
-//! The session that is being recorded of a hand: begun when a link opens, ended when it closes or a person wants none.
+//! The recording being made of a hand: begun when a link opens, ended when it closes or a person wants none.
 
 use crate::app::env::Env;
 use crate::app::files::settings_file;
@@ -48,7 +48,7 @@ pub struct HandRecording {
 /// What is recorded, and where it goes.
 #[derive(Debug)]
 pub(crate) struct RecordingTarget<'a> {
-    /// The folder of sessions.
+    /// The folder of recordings.
     pub(crate) folder: PathBuf,
     /// The hand.
     pub(crate) endpoint: &'a Endpoint,

@@ -1,4 +1,4 @@
-//! Sessions on the command line: recorded, looked into, exported, recovered, and every file that is none.
+//! Recordings on the command line: recorded, looked into, exported, recovered, and every file that is none.
 
 use crate::setup::process::{Ended, Running, run, start};
 use nix::sys::signal::Signal;
@@ -7,7 +7,7 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A session of the simulated hand in a folder of its own.
+/// A recording of the simulated hand in a folder of its own.
 struct Recorded {
     folder: TempDir,
     stats: Value,
@@ -440,7 +440,7 @@ fn replayed(file: &Path, more: &[&str]) -> (Running, String) {
     (replay, format!("tcp:{address}"))
 }
 
-/// The angles of a session, without those that repeat.
+/// The angles of a recording, without those that repeat.
 fn angles(recorded: &Recorded, file: &str) -> Vec<String> {
     let (file, csv) = (recorded.path(file), recorded.path("angles.csv"));
     run(&["export", text(&file), "--csv", "--out", text(&csv)]).ok();

@@ -1,4 +1,4 @@
-//! Sessions in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
+//! Recordings in the running program: recorded as they happen, listed, replayed in the same window, named and deleted.
 
 use crate::setup::window::{ANGLE_SET, Bench, LARGE, Role};
 use crate::window::tune;
@@ -8,9 +8,9 @@ use handscope::app::hands::Mover;
 use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
-use handscope::app::sessions::recording::HandRecording;
-use handscope::app::sessions::{
-    SessionAbout, SessionAction, SessionExport, SessionForm, SessionItem,
+use handscope::app::recordings::recording::HandRecording;
+use handscope::app::recordings::{
+    RecordingAbout, RecordingAction, RecordingExport, RecordingForm, RecordingItem,
 };
 use handscope::app::settings::Theme;
 use handscope::hand::{Angle, Dof, Moment};
@@ -19,7 +19,7 @@ use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
 use handscope::record::file::reader::Stretch;
-use handscope::record::file::{OpenError, SessionFile};
+use handscope::record::file::{OpenError, RecordingFile};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
 use std::ops::ControlFlow;
@@ -54,34 +54,34 @@ fn settle(bench: &mut Bench, so: impl Fn(&Bench) -> bool) {
     panic!("it does not settle: {:?}", bench.texts());
 }
 
-fn session(bench: &mut Bench, action: SessionAction) {
-    bench.act(Action::Session(action));
+fn recording(bench: &mut Bench, action: RecordingAction) {
+    bench.act(Action::Recording(action));
     bench.run(20);
 }
 
-fn read_item(path: &Path) -> Result<SessionItem, OpenError> {
-    let file = SessionFile::open(path)?;
-    Ok(SessionItem::of(
+fn read_item(path: &Path) -> Result<RecordingItem, OpenError> {
+    let file = RecordingFile::open(path)?;
+    Ok(RecordingItem::of(
         &file,
-        SessionAbout::load(path).unwrap_or_default(),
+        RecordingAbout::load(path).unwrap_or_default(),
     ))
 }
 
 /// Ends the recording, and gives its file.
 fn ended(bench: &mut Bench) -> PathBuf {
     let path = recorded(bench);
-    session(bench, SessionAction::Record(false));
+    recording(bench, RecordingAction::Record(false));
     settle(bench, |_| read_item(&path).is_ok_and(|item| item.closed));
     path
 }
 
 fn replay(bench: &mut Bench, path: PathBuf) {
-    session(bench, SessionAction::Open(path));
+    recording(bench, RecordingAction::Open(path));
     settle(bench, |bench| bench.state().timeline.is_some());
 }
 
 fn seek(bench: &mut Bench, at: Moment) {
-    session(bench, SessionAction::Seek(at));
+    recording(bench, RecordingAction::Seek(at));
     settle(bench, |bench| {
         let line = bench.state().timeline.as_ref().unwrap();
         line.at == at && !line.waits
@@ -179,8 +179,8 @@ fn a_stop_while_a_session_is_shown_holds_every_live_hand() {
 fn the_list_finds_names_stars_and_deletes_after_a_question() {
     let mut bench = bench(Scenario::Grasp);
     let path = ended(&mut bench);
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
     let title = read_item(&path).unwrap().title();
     let listed = format!("Keep: {title}");
     assert!(bench.shows(&listed), "{:?}", bench.texts());
@@ -207,7 +207,7 @@ fn the_list_finds_names_stars_and_deletes_after_a_question() {
     bench.click_button("Keep it");
     bench.run(100);
     assert!(path.exists());
-    session(&mut bench, SessionAction::AskDelete(path.clone()));
+    recording(&mut bench, RecordingAction::AskDelete(path.clone()));
     bench.run(100);
     bench.click_button("Delete the recording");
     settle(&mut bench, |_| !path.exists());
@@ -281,7 +281,7 @@ fn a_replay_tells_speed_force_target_and_mover_as_they_were() {
 fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
     let mut bench = bench(Scenario::Grasp);
     let path = ended(&mut bench);
-    for form in SessionForm::ALL {
+    for form in RecordingForm::ALL {
         let saved = |bench: &Bench| {
             let notices = bench.state().notices.iter();
             let paths = notices.filter_map(|notice| match &notice.what {
@@ -292,16 +292,16 @@ fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
             paths.collect::<Vec<_>>()
         };
         let before = saved(&bench).len();
-        session(&mut bench, export(&path, form, None));
+        recording(&mut bench, export(&path, form, None));
         settle(&mut bench, |bench| saved(bench).len() > before);
         let (to, entries) = saved(&bench).remove(0);
         assert!(to.exists() && entries > 10, "{form:?}: {entries} in {to:?}");
     }
 }
 
-fn export(path: &Path, form: SessionForm, stretch: Option<(Moment, Moment)>) -> SessionAction {
+fn export(path: &Path, form: RecordingForm, stretch: Option<(Moment, Moment)>) -> RecordingAction {
     let path = path.to_owned();
-    SessionAction::Export(SessionExport {
+    RecordingAction::Export(RecordingExport {
         path,
         form,
         stretch,
@@ -313,8 +313,10 @@ fn a_stretch_that_is_dragged_on_the_strip_is_exported_alone() {
     let mut bench = bench(Scenario::Grasp);
     bench.wait(5000);
     let path = ended(&mut bench);
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| {
+        !bench.state().recordings.items.is_empty()
+    });
     bench.run(100);
     let item = read_item(&path).unwrap();
     let strip = bench.rect(Role::Image, &format!("Force over time: {}", item.title()));
@@ -340,7 +342,7 @@ fn a_stretch_that_is_dragged_on_the_strip_is_exported_alone() {
     let wanted = item.length.as_secs_f64() / 4.0;
     assert!((span - wanted).abs() < 0.2, "{span} is not {wanted}");
     settle(&mut bench, |bench| {
-        bench.state().sessions.exports.is_empty()
+        bench.state().recordings.exports.is_empty()
     });
 }
 
@@ -350,7 +352,7 @@ fn an_export_that_fails_says_why() {
     let path = ended(&mut bench);
     let first = read_item(&path).unwrap().first;
     let nothing = Some((first, first));
-    session(&mut bench, export(&path, SessionForm::LeRobot, nothing));
+    recording(&mut bench, export(&path, RecordingForm::LeRobot, nothing));
     settle(&mut bench, |bench| {
         let told = bench.texts_with("Not exported: ");
         told.iter()
@@ -361,8 +363,8 @@ fn an_export_that_fails_says_why() {
 #[test]
 fn an_empty_place_says_what_comes_there_and_leads_to_a_hand() {
     let mut bench = Bench::keeping(SimConfig::default());
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
     bench.run(60);
     assert!(bench.shows("No recordings yet"));
     bench.click_button("Connect a hand");
@@ -406,10 +408,10 @@ fn time_goes_on_stops_steps_and_loops() {
         first.plus(Duration::from_secs(1)),
         first.plus(Duration::from_secs(2)),
     );
-    session(&mut bench, SessionAction::Loop(Some(stretch)));
-    session(&mut bench, SessionAction::Pace(10.0));
+    recording(&mut bench, RecordingAction::Loop(Some(stretch)));
+    recording(&mut bench, RecordingAction::Pace(10.0));
     seek(&mut bench, stretch.0);
-    session(&mut bench, SessionAction::Run(true));
+    recording(&mut bench, RecordingAction::Run(true));
     let mut rounds = 0;
     let mut last = at(&bench);
     settle_rounds(&mut bench, |bench| {
@@ -454,7 +456,7 @@ fn a_note_is_recorded_and_one_can_be_given_after_the_fact() {
     bench.run(100);
     let entries = bench.buttons_with("seen afterwards");
     assert_eq!(entries.len(), 1, "{:?}", bench.texts());
-    session(&mut bench, SessionAction::EditNote(at, String::new()));
+    recording(&mut bench, RecordingAction::EditNote(at, String::new()));
     settle(&mut bench, |_| notes(&path).len() == 1);
 }
 
@@ -555,7 +557,7 @@ fn a_file_that_is_no_session_is_refused_in_words() {
     let mut bench = bench(Scenario::Idle);
     let path = ended(&mut bench).with_file_name("other.mcap");
     std::fs::write(&path, "not at all").unwrap();
-    session(&mut bench, SessionAction::Open(path));
+    recording(&mut bench, RecordingAction::Open(path));
     settle(&mut bench, |bench| {
         !bench.texts_with("cannot be replayed").is_empty()
     });
@@ -593,13 +595,15 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     bench.act(Action::Note(bench.now(), "first grasp".into()));
     bench.wait(1000);
     let first = ended(&mut bench);
-    session(&mut bench, SessionAction::Record(true));
+    recording(&mut bench, RecordingAction::Record(true));
     bench.wait(3000);
     bench.act(Action::Note(bench.now(), "second grasp".into()));
     bench.wait(1000);
     let second = ended(&mut bench);
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| bench.state().sessions.items.len() == 2);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| {
+        bench.state().recordings.items.len() == 2
+    });
     replay(&mut bench, first.clone());
     bench.show(View::Live);
     bench.click_button("Compare with");
@@ -610,7 +614,7 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     settle(&mut bench, |bench| bench.state().beside.is_some());
     let note = |path| read_item(path).unwrap().notes()[0].at();
     let (own, other) = (note(&first), note(&second));
-    session(&mut bench, SessionAction::Align(own, other));
+    recording(&mut bench, RecordingAction::Align(own, other));
     bench.run(100);
     let beside = bench.state().beside.as_ref().unwrap();
     assert_eq!(beside.offset_s(), other.secs() - own.secs());
@@ -663,7 +667,7 @@ fn nothing_of_the_live_window_is_changed_from_within_a_recording() {
     bench.run(60);
     bench.act(Action::FactoryReset);
     bench.run(60);
-    session(&mut bench, SessionAction::Open(path));
+    recording(&mut bench, RecordingAction::Open(path));
     settle(&mut bench, |bench| {
         !bench.texts_with("Not replayed now").is_empty()
     });
@@ -678,7 +682,7 @@ fn a_replay_and_an_exhibition_are_never_shown_together() {
     };
     let mut late = bench(Scenario::Idle);
     let path = ended(&mut late);
-    late.act(Action::Session(SessionAction::Open(path)));
+    late.act(Action::Recording(RecordingAction::Open(path)));
     late.act(Action::Exhibit(ExhibitAction::Enter));
     settle(&mut late, is_told);
     assert!(late.state().exhibit.is_some() && late.state().timeline.is_none());
@@ -688,7 +692,7 @@ fn a_replay_and_an_exhibition_are_never_shown_together() {
     let text = include_str!("../../../assets/exhibit.toml");
     std::fs::write(early.folder().join("handscope-exhibit.toml"), text).unwrap();
     early.act(Action::Exhibit(ExhibitAction::EnterFile));
-    early.act(Action::Session(SessionAction::Open(path)));
+    early.act(Action::Recording(RecordingAction::Open(path)));
     settle(&mut early, |bench| bench.state().exhibit.is_some());
     assert!(early.state().timeline.is_none());
 }
@@ -700,11 +704,13 @@ fn a_note_does_not_undo_a_name_and_a_bad_file_of_words_is_kept() {
     let path = ended(&mut bench);
     let about = path.with_extension("toml");
     std::fs::write(&about, "name = ").unwrap();
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| bench.state().sessions.items.len() == 1);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| {
+        bench.state().recordings.items.len() == 1
+    });
     replay(&mut bench, path.clone());
     for name in ["one", "two", "three"] {
-        bench.act(Action::Session(SessionAction::Name(
+        bench.act(Action::Recording(RecordingAction::Name(
             path.clone(),
             name.into(),
         )));
@@ -733,13 +739,13 @@ fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
     let first = recorded(&mut bench);
     let default = bench.folder().join("documents/Handscope");
     assert!(first.starts_with(&default));
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| bench.state().sessions.looked > 0);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
     assert_eq!(bench.reading("Folder"), default.display().to_string());
     assert!(bench.is_disabled(egui::accesskit::Role::Button, "Default"));
     // In the place of a folder there is a file: it is told, and a path can be typed.
     let no_folder = Some(first.join("sessions"));
-    session(&mut bench, SessionAction::ChooseFolder(no_folder));
+    recording(&mut bench, RecordingAction::ChooseFolder(no_folder));
     settle(&mut bench, |bench| bench.shows("Path of the folder"));
     assert!(!bench.texts_with("sessions").is_empty());
     let typed = bench.folder().join("typed");
@@ -751,7 +757,7 @@ fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
     assert!(!bench.shows("Path of the folder") && typed.is_dir());
     assert_eq!(recorded(&mut bench), first);
     ended(&mut bench);
-    session(&mut bench, SessionAction::Record(true));
+    recording(&mut bench, RecordingAction::Record(true));
     assert!(recorded(&mut bench).starts_with(&typed));
     let folder = bench.folder().to_owned();
     bench.click_button("Change ...");
@@ -768,8 +774,10 @@ fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
 fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() {
     let mut bench = bench(Scenario::Idle);
     let path = ended(&mut bench);
-    bench.show(View::Sessions);
-    settle(&mut bench, |bench| !bench.state().sessions.items.is_empty());
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| {
+        !bench.state().recordings.items.is_empty()
+    });
     let title = read_item(&path).unwrap().title();
     bench.click(&format!("More: {title}"));
     bench.run(100);
@@ -781,7 +789,7 @@ fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() 
     let copied = bench.click_to_copy("Copy path");
     assert_eq!(copied, Some(path.display().to_string()));
     let gone = path.with_file_name("gone.mcap");
-    session(&mut bench, SessionAction::Reveal(gone.clone()));
+    recording(&mut bench, RecordingAction::Reveal(gone.clone()));
     settle(&mut bench, |bench| {
         let told = bench.texts_with("The file manager did not start");
         told.iter()
@@ -790,7 +798,7 @@ fn a_session_is_shown_in_the_file_manager_and_a_failure_is_told_with_its_path() 
     assert_eq!(bench.revealed().len(), 1, "nothing was started");
 }
 
-/// Copies of a session in the folder of sessions: of five days, the oldest first.
+/// Copies of a recording in the folder of recordings: of five days, the oldest first.
 fn old_sessions(bench: &Bench, of: &Path) -> Vec<PathBuf> {
     let folder = bench.folder().join("documents/Handscope/2020-01-01");
     std::fs::create_dir_all(&folder).unwrap();
@@ -818,28 +826,28 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     };
     let mut bench = Bench::kept_with(config, |settings| {
         settings.endpoint = Some(HAND.into());
-        settings.sessions.budget_gb = 0.0;
+        settings.recordings.budget_gb = 0.0;
     });
     bench.wait(2000);
     let first = ended(&mut bench);
     // Nobody may delete what somebody cares for.
-    let mut about = SessionAbout::load(&first).unwrap();
+    let mut about = RecordingAbout::load(&first).unwrap();
     about.name = "first".into();
     about.save(&first).unwrap();
-    // A session of some 20 MB: the least budget has no room for it.
+    // A recording of some 20 MB: the least budget has no room for it.
     let old = old_sessions(&bench, &first);
     for path in &old {
         let file = std::fs::OpenOptions::new().append(true).open(path).unwrap();
         file.set_len(20_000_000).unwrap();
     }
-    bench.show(View::Sessions);
+    bench.show(View::Recordings);
     settle(&mut bench, |bench| {
-        bench.state().sessions.planned.len() == 3
+        bench.state().recordings.planned.len() == 3
     });
     assert!(!bench.texts_with("Recordings need more room").is_empty());
     let told = bench.folder().join("documents/Handscope/to-delete.toml");
     settle(&mut bench, |_| told.exists());
-    session(&mut bench, SessionAction::Record(true));
+    recording(&mut bench, RecordingAction::Record(true));
     recorded(&mut bench);
     bench.wait(1000);
     assert!(old.iter().all(|path| path.exists()), "told just now");
@@ -847,18 +855,18 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     // One of them was told long before, and one that was told has a star by now.
     ended(&mut bench);
     tell(&bench, &old[1], 1);
-    session(&mut bench, SessionAction::Record(true));
+    recording(&mut bench, RecordingAction::Record(true));
     settle(&mut bench, |_| !old[1].exists());
     assert!(old[0].exists() && old[2].exists() && first.exists());
     assert!(!bench.texts_with("Recordings deleted").is_empty());
     settle(&mut bench, |bench| {
-        bench.state().sessions.planned.len() == 2
+        bench.state().recordings.planned.len() == 2
     });
     bench.click_button("Keep them");
     settle(&mut bench, |_| read_item(&old[2]).unwrap().about.star);
-    session(&mut bench, SessionAction::Star(old[0].clone(), false));
+    recording(&mut bench, RecordingAction::Star(old[0].clone(), false));
     settle(&mut bench, |bench| {
-        !bench.state().sessions.planned.is_empty()
+        !bench.state().recordings.planned.is_empty()
     });
     bench.click_button("Delete now");
     settle(&mut bench, |_| !old[0].exists());
@@ -867,7 +875,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
 
 /// The words of all events of a kind, in order.
 fn events(path: &Path, kind: EventKind) -> Vec<String> {
-    let file = SessionFile::open(path).unwrap();
+    let file = RecordingFile::open(path).unwrap();
     let mut words = Vec::new();
     let all = Stretch {
         from: file.first(),
@@ -976,7 +984,7 @@ fn a_fault_is_replayed_from_two_seconds_before_while_its_session_is_recorded() {
     drop(faults);
     assert!(looped.1 > looped.0.plus(Duration::from_secs(2)));
     // In the replay the same button goes there within the same file.
-    session(&mut bench, SessionAction::Loop(None));
+    recording(&mut bench, RecordingAction::Loop(None));
     let end = bench.state().timeline.as_ref().unwrap().last;
     seek(&mut bench, end);
     let again = replay_listed(&mut bench, joint, &path);

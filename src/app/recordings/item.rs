@@ -1,10 +1,10 @@
-//! One session of the list: what is known of a file without reading it whole.
+//! One recording of the list: what is known of a file without reading it whole.
 
-use crate::app::sessions::about::{SessionAbout, SessionNote};
+use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::hand::{Dof, Moment, PerDof, Quantity};
 use crate::record::EventKind;
 use crate::record::file::overview::{OverviewRow, joint_line};
-use crate::record::file::{Counts, FileMark, OpenError, Opening, Overview, SessionFile};
+use crate::record::file::{Counts, FileMark, OpenError, Opening, Overview, RecordingFile};
 use crate::store::calendar::stamp;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -16,7 +16,7 @@ use std::time::Duration;
 pub const STRIP: usize = 300;
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct SessionItem {
+pub struct RecordingItem {
     /// The file, or the first of several: a long recording has one for each hour.
     pub path: PathBuf,
     /// All its files, in the order of time.
@@ -40,23 +40,23 @@ pub struct SessionItem {
     /// True if the recording was ended as it should be.
     pub closed: bool,
     /// What a person says of it.
-    pub about: SessionAbout,
+    pub about: RecordingAbout,
 }
 
-impl SessionItem {
+impl RecordingItem {
     /// Reads what is known of the files of one recording, and tells which of them cannot be read.
     pub fn read(files: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
-        let (file, unread) = SessionFile::open_all(files);
+        let (file, unread) = RecordingFile::open_all(files);
         let item = file.map(|file| {
             // What a person said of it must not keep the recording from being seen.
-            let about = SessionAbout::load(file.path()).unwrap_or_default();
+            let about = RecordingAbout::load(file.path()).unwrap_or_default();
             Self::of(&file, about)
         });
         (item, unread)
     }
 
     /// Of an open file.
-    pub fn of(file: &SessionFile, about: SessionAbout) -> Self {
+    pub fn of(file: &RecordingFile, about: RecordingAbout) -> Self {
         let overview = file.overview();
         let span = (file.first(), file.last());
         Self {
@@ -121,7 +121,7 @@ impl SessionItem {
     }
 
     /// The notes in force.
-    pub fn notes(&self) -> Vec<SessionNote> {
+    pub fn notes(&self) -> Vec<RecordingNote> {
         self.about.notes(&self.marks)
     }
 

@@ -1,40 +1,43 @@
-//! Which session holds a stretch of time: the one that is replayed, or one that was recorded since the program began, whose
+//! Which recording holds a stretch of time: the one that is replayed, or one that was recorded since the program began, whose
 //! moments are the program's own.
 
-use crate::app::sessions::action::SessionAction;
-use crate::app::sessions::list::SessionsState;
-use crate::app::sessions::timeline::Timeline;
+use crate::app::recordings::action::RecordingAction;
+use crate::app::recordings::list::RecordingsState;
+use crate::app::recordings::timeline::Timeline;
 use crate::hand::Moment;
 use std::time::Duration;
 
 /// So much is shown before what a person wants to see.
 const BEFORE: Duration = Duration::from_secs(2);
 
-/// What replays a stretch of a hand again and again, from a little before it; `None` if no session holds its beginning.
+/// What replays a stretch of a hand again and again, from a little before it; `None` if no recording holds its beginning.
 pub fn replay_of(
-    sessions: &SessionsState,
+    recordings: &RecordingsState,
     replayed: Option<&Timeline>,
     hand: &str,
     (from, to): (Moment, Moment),
-) -> Option<SessionAction> {
+) -> Option<RecordingAction> {
     let before = Moment::from_duration(from.since(Moment::ZERO).saturating_sub(BEFORE));
     let (path, first) = match replayed {
         Some(line) => (line.first..=line.last)
             .contains(&from)
             .then_some((&line.path, line.first)),
         None => {
-            let mut own = sessions.own.iter();
+            let mut own = recordings.own.iter();
             let own = own.rfind(|own| own.holds(hand, from));
             own.map(|own| (&own.path, own.first))
         }
     }?;
-    Some(SessionAction::OpenAt(path.clone(), (before.max(first), to)))
+    Some(RecordingAction::OpenAt(
+        path.clone(),
+        (before.max(first), to),
+    ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::sessions::list::OwnSession;
+    use crate::app::recordings::list::OwnRecording;
 
     const fn second(at: u64) -> Moment {
         Moment::from_micros(at * 1_000_000)
@@ -42,27 +45,27 @@ mod tests {
 
     #[test]
     fn the_session_that_holds_the_moment_of_that_hand_is_opened_two_seconds_before() {
-        let own = |name: &str, hand: &str, first, last| OwnSession {
+        let own = |name: &str, hand: &str, first, last| OwnRecording {
             path: name.into(),
             hand: hand.into(),
             first: second(first),
             last: second(last),
         };
-        let sessions = SessionsState {
+        let recordings = RecordingsState {
             own: vec![
                 own("a", "x", 10, 20),
                 own("b", "y", 10, 20),
                 own("c", "x", 30, 40),
             ],
-            ..SessionsState::default()
+            ..RecordingsState::default()
         };
         let check = |hand: &str, from, wanted: Option<(&str, u64)>| {
             let stretch = (second(from), second(50));
             let wanted = wanted.map(|(name, first)| {
-                SessionAction::OpenAt(name.into(), (second(first), second(50)))
+                RecordingAction::OpenAt(name.into(), (second(first), second(50)))
             });
             assert_eq!(
-                replay_of(&sessions, None, hand, stretch),
+                replay_of(&recordings, None, hand, stretch),
                 wanted,
                 "{hand} {from}"
             );

@@ -1,13 +1,13 @@
-//! The strip of force of a session: an instrument, painted by hand. The same in the list and under the time line.
+//! The strip of force of a recording: an instrument, painted by hand. The same in the list and under the time line.
 
-use crate::app::sessions::SessionItem;
+use crate::app::recordings::RecordingItem;
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::ui::kit::Look;
-use crate::ui::sessions::marks;
+use crate::ui::recordings::marks;
 use egui::{Color32, Painter, Rect, Stroke, pos2, vec2};
 
-/// A force that fills the strip at least, in grams: a quiet session does not look like a grasp.
+/// A force that fills the strip at least, in grams: a quiet recording does not look like a grasp.
 const FULL_LEAST: f32 = 200.0;
 
 /// Paints the greatest forces over a place.
@@ -33,8 +33,8 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
     }
 }
 
-/// Paints faults, stops and notes of a session over its strip.
-pub(crate) fn marks(painter: &Painter, look: Look, place: Rect, item: &SessionItem) {
+/// Paints faults, stops and notes of a recording over its strip.
+pub(crate) fn marks(painter: &Painter, look: Look, place: Rect, item: &RecordingItem) {
     let length = item.length.as_secs_f32().max(1e-3);
     for (at, color) in moments(look, item) {
         let x = place.left() + at.since(item.first).as_secs_f32() / length * place.width();
@@ -43,7 +43,7 @@ pub(crate) fn marks(painter: &Painter, look: Look, place: Rect, item: &SessionIt
 }
 
 /// The moments and colours of what is marked.
-pub(crate) fn moments(look: Look, item: &SessionItem) -> Vec<(Moment, Color32)> {
+pub(crate) fn moments(look: Look, item: &RecordingItem) -> Vec<(Moment, Color32)> {
     let is_marked = |kind| {
         matches!(
             kind,

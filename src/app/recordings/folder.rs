@@ -1,4 +1,4 @@
-//! The folder that sessions go into: chosen by a person, and made if it is not there; and a session shown in it by the system's
+//! The folder that recordings go into: chosen by a person, and made if it is not there; and a recording shown in it by the system's
 //! file manager.
 
 use crate::app::env::Env;

@@ -1,8 +1,8 @@
-//! Which sessions go when they need more room than they may: the oldest first, none that a person cares for, and by themselves
+//! Which recordings go when they need more room than they may: the oldest first, none that a person cares for, and by themselves
 //! only what was told long enough before.
 
-use crate::app::sessions::about::SessionAbout;
-use crate::app::sessions::item::SessionItem;
+use crate::app::recordings::about::RecordingAbout;
+use crate::app::recordings::item::RecordingItem;
 use crate::record::file::parts;
 use crate::store::toml_file::{self, FileText};
 use crate::store::{calendar, replace};
@@ -11,14 +11,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A session is deleted by itself this long after that was told, at the earliest: a person comes back the next day and can say no.
+/// A recording is deleted by itself this long after that was told, at the earliest: a person comes back the next day and can say no.
 pub const TOLD_FOR: Duration = Duration::from_secs(24 * 3600);
-/// Beside the sessions: what was told of them.
+/// Beside the recordings: what was told of them.
 const FILE_NAME: &str = "to-delete.toml";
-/// Some thousand sessions.
+/// Some thousand recordings.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
-/// A session that is to make room, and since when that is told.
+/// A recording that is to make room, and since when that is told.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlannedDeletion {
     /// The file, or the first of several.
@@ -29,17 +29,18 @@ pub struct PlannedDeletion {
     pub told_unix_s: u64,
 }
 
-/// What was told of a folder's sessions, as a file.
+/// What was told of a folder's recordings, as a file.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct ToldFile {
-    session: Vec<PlannedDeletion>,
+    #[serde(rename = "session")]
+    recordings: Vec<PlannedDeletion>,
 }
 
 /// How much room there is, and what must stay.
 #[derive(Debug)]
-pub struct SessionRoom<'a> {
-    /// What all sessions together may need, bytes.
+pub struct RecordingRoom<'a> {
+    /// What all recordings together may need, bytes.
     pub limit: u64,
     /// Files that are being recorded or replayed.
     pub in_use: &'a [PathBuf],
@@ -66,7 +67,7 @@ impl PlannedDeletion {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
             Err(error) => return Err(error),
         };
-        let about = SessionAbout::load(&self.path);
+        let about = RecordingAbout::load(&self.path);
         // What cannot be read may be a star.
         if !is_same || about.map_or(true, |about| about.is_kept(0)) {
             return Ok(false);
@@ -75,21 +76,21 @@ impl PlannedDeletion {
     }
 }
 
-/// Deletes a session, its last file first, and what was said of it.
-pub(crate) fn delete(session: &Path) -> io::Result<()> {
-    for file in parts::of(session).iter().rev() {
+/// Deletes a recording, its last file first, and what was said of it.
+pub(crate) fn delete(recording: &Path) -> io::Result<()> {
+    for file in parts::of(recording).iter().rev() {
         std::fs::remove_file(file)?;
     }
-    // Not each session has one.
-    let _said = std::fs::remove_file(SessionAbout::path(session));
+    // Not each recording has one.
+    let _said = std::fs::remove_file(RecordingAbout::path(recording));
     Ok(())
 }
 
-/// The sessions that go so that no more is left than there is room, `items` being the oldest last. One that is in use, has a
+/// The recordings that go so that no more is left than there is room, `items` being the oldest last. One that is in use, has a
 /// star, a name or notes stays. Of what was `told` before, the time is kept, unless the file changed or a clock was set back.
 pub fn plan(
-    items: &[SessionItem],
-    room: &SessionRoom<'_>,
+    items: &[RecordingItem],
+    room: &RecordingRoom<'_>,
     told: &[PlannedDeletion],
     now_unix_s: u64,
 ) -> Vec<PlannedDeletion> {
@@ -128,16 +129,17 @@ pub fn due(
     planned.iter().filter(is_due).cloned().collect()
 }
 
-/// What was told of the sessions of this folder. Where that cannot be read, nothing was: it is told again.
+/// What was told of the recordings of this folder. Where that cannot be read, nothing was: it is told again.
 pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
     let path = told_path(folder);
     let read = toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse());
-    read.map(|file: ToldFile| file.session).unwrap_or_default()
+    read.map(|file: ToldFile| file.recordings)
+        .unwrap_or_default()
 }
 
-/// Keeps what was told of the sessions of this folder.
-pub(crate) fn save_told(folder: &Path, session: Vec<PlannedDeletion>) -> io::Result<()> {
-    let text = toml::to_string_pretty(&ToldFile { session }).map_err(io::Error::other)?;
+/// Keeps what was told of the recordings of this folder.
+pub(crate) fn save_told(folder: &Path, recordings: Vec<PlannedDeletion>) -> io::Result<()> {
+    let text = toml::to_string_pretty(&ToldFile { recordings }).map_err(io::Error::other)?;
     replace(&told_path(folder), text.as_bytes())
 }
 
@@ -157,8 +159,8 @@ mod tests {
     const DAY_S: u64 = 24 * 3600;
     const NOW_S: u64 = 100 * DAY_S;
 
-    fn item(name: &str, bytes: u64) -> SessionItem {
-        SessionItem {
+    fn item(name: &str, bytes: u64) -> RecordingItem {
+        RecordingItem {
             opening: Opening::unknown(0),
             path: name.into(),
             files: vec![name.into()],
@@ -170,7 +172,7 @@ mod tests {
             strip: Vec::new(),
             poses: Arc::default(),
             closed: true,
-            about: SessionAbout::default(),
+            about: RecordingAbout::default(),
         }
     }
 
@@ -183,7 +185,7 @@ mod tests {
     }
 
     /// The newest first; each needs ten bytes.
-    fn items() -> Vec<SessionItem> {
+    fn items() -> Vec<RecordingItem> {
         ["d", "c", "b", "a"].map(|name| item(name, 10)).into()
     }
 
@@ -193,11 +195,11 @@ mod tests {
 
     #[test]
     fn the_oldest_go_until_the_rest_fits_and_what_a_person_cares_for_stays() {
-        let check = |limit, in_use: &[PathBuf], change: fn(&mut SessionItem), wanted: &[&str]| {
+        let check = |limit, in_use: &[PathBuf], change: fn(&mut RecordingItem), wanted: &[&str]| {
             let mut items = items();
             // The oldest.
             items.last_mut().map(change).unwrap();
-            let planned = plan(&items, &SessionRoom { limit, in_use }, &[], NOW_S);
+            let planned = plan(&items, &RecordingRoom { limit, in_use }, &[], NOW_S);
             assert_eq!(names(&planned), wanted, "{limit} {in_use:?}");
             assert!(planned.iter().all(|one| one.told_unix_s == NOW_S));
         };
@@ -219,7 +221,7 @@ mod tests {
     #[test]
     fn only_what_was_told_a_day_before_and_did_not_change_is_due() {
         let check = |known: PlannedDeletion, is_due: bool, told_unix_s: u64| {
-            let room = SessionRoom {
+            let room = RecordingRoom {
                 limit: 30,
                 in_use: &[],
             };
@@ -233,7 +235,7 @@ mod tests {
         check(told("a", 10, NOW_S - DAY_S), true, NOW_S - DAY_S);
         check(told("a", 10, NOW_S - DAY_S + 1), false, NOW_S - DAY_S + 1);
         check(told("a", 10, 0), true, 0);
-        // Another session was told, another size, or at a time that is still to come.
+        // Another recording was told, another size, or at a time that is still to come.
         check(told("b", 10, 0), false, NOW_S);
         check(told("a", 9, 0), false, NOW_S);
         check(told("a", 10, NOW_S + 1), false, NOW_S);
@@ -246,6 +248,8 @@ mod tests {
         let all = vec![told("a", 10, 5), told("捏", 7, 6)];
         save_told(folder.path(), all.clone()).unwrap();
         assert_eq!(load_told(folder.path()), all);
+        let written = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
+        assert!(written.contains("[[session]]"), "{written}");
         std::fs::write(folder.path().join(FILE_NAME), "session = 3").unwrap();
         assert_eq!(load_told(folder.path()), []);
     }
@@ -260,12 +264,12 @@ mod tests {
         assert!(!planned.carry_out().unwrap());
         std::fs::write(&path, "abc").unwrap();
         for about in ["star = true", "name = \"x\"", "no toml at all"] {
-            std::fs::write(SessionAbout::path(&path), about).unwrap();
+            std::fs::write(RecordingAbout::path(&path), about).unwrap();
             assert!(!planned.carry_out().unwrap() && path.exists(), "{about}");
         }
-        std::fs::write(SessionAbout::path(&path), "star = false").unwrap();
+        std::fs::write(RecordingAbout::path(&path), "star = false").unwrap();
         assert!(planned.carry_out().unwrap());
-        assert!(!path.exists() && !SessionAbout::path(&path).exists());
+        assert!(!path.exists() && !RecordingAbout::path(&path).exists());
         assert!(!planned.carry_out().unwrap(), "it is gone already");
     }
 
@@ -274,7 +278,7 @@ mod tests {
         let parts = Parts::new();
         let another = parts.path("another.mcap");
         std::fs::write(&another, "abc").unwrap();
-        let (item, unread) = SessionItem::read(&super::parts::of(&parts.path("a.mcap")));
+        let (item, unread) = RecordingItem::read(&super::parts::of(&parts.path("a.mcap")));
         let item = item.unwrap();
         assert_eq!((item.files.len(), unread.len()), (3, 0));
         let mut planned = told("", item.bytes - 1, 0);

@@ -1,8 +1,8 @@
-//! How marks and times of a session are told, in lists and on the time line.
+//! How marks and times of a recording are told, in lists and on the time line.
 
 use crate::record::EventKind;
 use crate::ui::kit::Look;
-use crate::ui::text::{Text, main, panels, sessions, tune};
+use crate::ui::text::{Text, main, panels, recordings, tune};
 use egui::Color32;
 use std::time::Duration;
 
@@ -17,12 +17,12 @@ pub(crate) fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
         EventKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         EventKind::Trial => (tune::COLUMN_TRIAL, palette.accent),
         EventKind::Note => (panels::NOTES, palette.text),
-        EventKind::Recording => (sessions::RECORDING, palette.warn),
+        EventKind::Recording => (recordings::RECORDING, palette.warn),
         _ => return None,
     })
 }
 
-/// `1:02:03.45`, from the beginning of the session.
+/// `1:02:03.45`, from the beginning of the recording.
 pub(crate) fn clock(since: Duration) -> String {
     let seconds = since.as_secs();
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);

@@ -1,12 +1,12 @@
-//! What a person asks about sessions.
+//! What a person asks about recordings.
 
-use crate::app::sessions::export::SessionExport;
+use crate::app::recordings::export::RecordingExport;
 use crate::hand::Moment;
 use std::path::PathBuf;
 
-/// What a person asks about sessions.
+/// What a person asks about recordings.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
-pub enum SessionAction {
+pub enum RecordingAction {
     /// Record hands from now on, or no longer.
     Record(bool),
     /// Record built-in hands, too, or no longer.
@@ -15,7 +15,7 @@ pub enum SessionAction {
     ChooseFolder(Option<PathBuf>),
     /// Record into the person's documents again.
     DefaultFolder,
-    /// Look again which sessions there are.
+    /// Look again which recordings there are.
     Look,
     /// Replay this file: one of the list, or any other.
     Open(PathBuf),
@@ -25,15 +25,15 @@ pub enum SessionAction {
     Close,
     /// Show where this file lies, in the system's file manager.
     Reveal(PathBuf),
-    /// Write a session, or a stretch of it, in a format of others.
-    Export(SessionExport),
-    /// Give a session a name; empty takes it away.
+    /// Write a recording, or a stretch of it, in a format of others.
+    Export(RecordingExport),
+    /// Give a recording a name; empty takes it away.
     Name(PathBuf, String),
-    /// Give a session a star, or take it away.
+    /// Give a recording a star, or take it away.
     Star(PathBuf, bool),
-    /// Ask whether this session is to be deleted.
+    /// Ask whether this recording is to be deleted.
     AskDelete(PathBuf),
-    /// Delete the session that was asked about.
+    /// Delete the recording that was asked about.
     Delete,
     /// Delete nothing.
     KeepIt,
@@ -51,9 +51,9 @@ pub enum SessionAction {
     Step(bool),
     /// Play this stretch again and again, or all once.
     Loop(Option<(Moment, Moment)>),
-    /// Draw this session over the replayed one, or none any more.
+    /// Draw this recording over the replayed one, or none any more.
     Beside(Option<PathBuf>),
-    /// Align both: this moment of the replayed session with that moment of the other.
+    /// Align both: this moment of the replayed recording with that moment of the other.
     Align(Moment, Moment),
     /// Change the words of the note at a moment; of no words, take it away.
     EditNote(Moment, String),

@@ -1,4 +1,4 @@
-//! What a person says of a session, in a small file beside it: its name, a star, notes. The recording itself is never changed.
+//! What a person says of a recording, in a small file beside it: its name, a star, notes. The recording itself is never changed.
 
 use crate::hand::Moment;
 use crate::record::EventKind;
@@ -13,40 +13,40 @@ use std::path::{Path, PathBuf};
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SessionNote {
+pub struct RecordingNote {
     /// Microseconds of the recording's own clock.
     pub at_micros: u64,
     /// What was noted.
     pub words: String,
 }
 
-/// What a person says of a session.
+/// What a person says of a recording.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SessionAbout {
+pub struct RecordingAbout {
     /// Its name; empty if it has none.
     pub name: String,
     /// Kept, whatever the budget says.
     pub star: bool,
     /// The notes as a person left them, in place of those in the recording; `None` if nobody changed them.
-    pub notes: Option<Vec<SessionNote>>,
+    pub notes: Option<Vec<RecordingNote>>,
     /// Keys of a later version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
-impl SessionAbout {
-    /// Where it stands beside a session.
-    pub fn path(session: &Path) -> PathBuf {
-        session.with_extension("toml")
+impl RecordingAbout {
+    /// Where it stands beside a recording.
+    pub fn path(recording: &Path) -> PathBuf {
+        recording.with_extension("toml")
     }
 
-    /// Reads it; nothing is said of a session without such a file.
+    /// Reads it; nothing is said of a recording without such a file.
     ///
     /// # Errors
     /// [`FileError`]: what cannot be read, and where.
-    pub fn load(session: &Path) -> Result<Self, FileError> {
-        let path = Self::path(session);
+    pub fn load(recording: &Path) -> Result<Self, FileError> {
+        let path = Self::path(recording);
         if matches!(path.try_exists(), Ok(false)) {
             return Ok(Self::default());
         }
@@ -57,30 +57,30 @@ impl SessionAbout {
     ///
     /// # Errors
     /// What the system says.
-    pub fn save(&self, session: &Path) -> io::Result<()> {
+    pub fn save(&self, recording: &Path) -> io::Result<()> {
         let text = toml::to_string_pretty(self).map_err(io::Error::other)?;
-        if Self::load(session).is_err() {
+        if Self::load(recording).is_err() {
             // Whatever a person wrote there by hand is kept under another name.
-            let _aside = set_aside(&Self::path(session));
+            let _aside = set_aside(&Self::path(recording));
         }
-        replace(&Self::path(session), text.as_bytes())
+        replace(&Self::path(recording), text.as_bytes())
     }
 
     /// The notes in force: a person's, else those of the recording.
-    pub fn notes(&self, marks: &[FileMark]) -> Vec<SessionNote> {
+    pub fn notes(&self, marks: &[FileMark]) -> Vec<RecordingNote> {
         if let Some(notes) = &self.notes {
             return notes.clone();
         }
         let notes = marks.iter().filter(|mark| mark.kind == EventKind::Note);
         notes
-            .map(|mark| SessionNote {
+            .map(|mark| RecordingNote {
                 at_micros: mark.at.micros(),
                 words: mark.words.clone(),
             })
             .collect()
     }
 
-    /// True if the budget must leave the session alone.
+    /// True if the budget must leave the recording alone.
     pub fn is_kept(&self, notes_recorded: u64) -> bool {
         let notes = self
             .notes
@@ -90,7 +90,7 @@ impl SessionAbout {
     }
 }
 
-impl SessionNote {
+impl RecordingNote {
     pub const fn at(&self) -> Moment {
         Moment::from_micros(self.at_micros)
     }

@@ -1,9 +1,9 @@
-//! Which sessions there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
+//! Which recordings there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
 
 use crate::app::env::Env;
-use crate::app::sessions::budget::{self, PlannedDeletion};
-use crate::app::sessions::export::ExportProgress;
-use crate::app::sessions::item::SessionItem;
+use crate::app::recordings::budget::{self, PlannedDeletion};
+use crate::app::recordings::export::ExportProgress;
+use crate::app::recordings::item::RecordingItem;
 use crate::hand::Moment;
 use crate::record::file::parts;
 use crate::store::{BackgroundJob, on_thread};
@@ -13,18 +13,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Sessions that are listed: some for each working day of two years. Beyond, the oldest are not.
+/// Recordings that are listed: some for each working day of two years. Beyond, the oldest are not.
 pub const SESSIONS_MAX: usize = 2000;
-/// Sessions of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
+/// Recordings of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
 pub(crate) const OWN_MAX: usize = 100;
 /// A file that is being recorded is read again once it grew by this part of itself.
 const GROWS_BY: u64 = 10;
 /// Folders of days that are looked into.
 const FOLDERS_MAX: usize = 4000;
 
-/// A session that was recorded since the program began.
+/// A recording made since the program began.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OwnSession {
+pub struct OwnRecording {
     /// The file.
     pub path: PathBuf,
     /// The hand, in the spelling of endpoints.
@@ -35,18 +35,18 @@ pub struct OwnSession {
     pub last: Moment,
 }
 
-impl OwnSession {
+impl OwnRecording {
     /// True if it holds this moment of a hand.
     pub(crate) fn holds(&self, hand: &str, at: Moment) -> bool {
         self.hand == hand && (self.first..=self.last).contains(&at)
     }
 }
 
-/// What the view of sessions shows.
+/// What the view of recordings shows.
 #[derive(Debug, Default, Clone)]
-pub struct SessionsState {
+pub struct RecordingsState {
     /// The newest first.
-    pub items: Arc<Vec<SessionItem>>,
+    pub items: Arc<Vec<RecordingItem>>,
     /// Where they lie; `None` = nowhere.
     pub folder: Option<PathBuf>,
     /// No folder was chosen in a dialog: its path can be typed.
@@ -55,14 +55,14 @@ pub struct SessionsState {
     pub looks: bool,
     /// Files there that could not be read, and why.
     pub unread: Arc<Vec<(PathBuf, String)>>,
-    /// The session that is to be deleted, once a person agrees.
+    /// The recording that is to be deleted, once a person agrees.
     pub to_delete: Option<PathBuf>,
     /// What the budget has no room for, the oldest first.
     pub planned: Vec<PlannedDeletion>,
     /// Files that are being recorded.
     pub recorded: Vec<PathBuf>,
     /// What was recorded since the program began, the oldest first.
-    pub own: Vec<OwnSession>,
+    pub own: Vec<OwnRecording>,
     /// Counts how often they were looked for.
     pub looked: u64,
     /// The time since 1970 when that was done last: what is today.
@@ -71,28 +71,28 @@ pub struct SessionsState {
     pub exports: Vec<ExportProgress>,
 }
 
-impl SessionsState {
-    /// How long a session is; one that this program records grows from frame to frame.
-    pub fn length(&self, item: &SessionItem) -> Duration {
+impl RecordingsState {
+    /// How long a recording is; one that this program records grows from frame to frame.
+    pub fn length(&self, item: &RecordingItem) -> Duration {
         let mut own = self.own.iter();
         let own = own.find(|own| own.path == item.path && self.recorded.contains(&own.path));
         own.map_or(item.length, |own| own.last.since(own.first))
     }
 }
 
-/// What looking for sessions found.
+/// What looking for recordings found.
 #[derive(Debug)]
 pub(crate) struct Looked {
-    pub(crate) items: Vec<SessionItem>,
+    pub(crate) items: Vec<RecordingItem>,
     pub(crate) unread: Vec<(PathBuf, String)>,
-    /// What was told before of sessions that are to make room.
+    /// What was told before of recordings that are to make room.
     pub(crate) told: Vec<PlannedDeletion>,
 }
 
-/// Looks for sessions in this folder and the folders of days in it.
+/// Looks for recordings in this folder and the folders of days in it.
 pub(crate) fn look(
     folder: PathBuf,
-    known: Arc<Vec<SessionItem>>,
+    known: Arc<Vec<RecordingItem>>,
     env: &Env,
 ) -> BackgroundJob<Looked> {
     let look = async move {
@@ -106,7 +106,7 @@ pub(crate) fn look(
     BackgroundJob::start(&env.runtime, &env.wake, look)
 }
 
-fn find(folder: &Path, known: &[SessionItem]) -> Looked {
+fn find(folder: &Path, known: &[RecordingItem]) -> Looked {
     let mut recordings = parts::recordings(files(folder));
     recordings.sort_by(|one, two| two.cmp(one));
     recordings.truncate(SESSIONS_MAX);
@@ -114,16 +114,17 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
     for files in recordings {
         let sizes = files.iter().flat_map(std::fs::metadata);
         let bytes = sizes.map(|about| about.len()).sum::<u64>();
-        let same = |item: &&SessionItem| item.files == files && is_known(item, bytes);
+        let same = |item: &&RecordingItem| item.files == files && is_known(item, bytes);
         if let Some(item) = known.iter().find(same) {
-            let about = crate::app::sessions::SessionAbout::load(&item.path).unwrap_or_default();
-            items.push(SessionItem {
+            let about =
+                crate::app::recordings::RecordingAbout::load(&item.path).unwrap_or_default();
+            items.push(RecordingItem {
                 about,
                 ..item.clone()
             });
             continue;
         }
-        let (item, refused) = SessionItem::read(&files);
+        let (item, refused) = RecordingItem::read(&files);
         items.extend(item);
         unread.extend(
             refused
@@ -141,7 +142,7 @@ fn find(folder: &Path, known: &[SessionItem]) -> Looked {
 
 /// True if files of this size in all need not be read again: they were ended, or grew little since and go on. What goes on is
 /// read whole.
-fn is_known(item: &SessionItem, bytes: u64) -> bool {
+fn is_known(item: &RecordingItem, bytes: u64) -> bool {
     if item.closed {
         return item.bytes == bytes;
     }

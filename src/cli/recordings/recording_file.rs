@@ -1,9 +1,9 @@
-//! Session files that a person names: how one is opened, its moments in seconds from its start, and what is missing in words.
+//! Recording files that a person names: how one is opened, its moments in seconds from its start, and what is missing in words.
 
 use crate::cli::out::{WrongUsage, say};
-use crate::cli::parse::{SessionTime, session_time};
+use crate::cli::parse::{RecordingTime, recording_time};
 use crate::hand::Moment;
-use crate::record::file::SessionFile;
+use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, OpenError, Stretch};
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use std::time::Duration;
 /// A file of a recording.
 #[derive(Debug, clap::Args)]
 pub(crate) struct FileArgs {
-    /// A session file, as 'handscope record' and the window write it
+    /// A recording file, as 'handscope record' and the window write it
     #[arg(value_name = "FILE.mcap")]
     pub(crate) file: PathBuf,
 }
@@ -23,27 +23,27 @@ pub(crate) struct FileArgs {
 /// A stretch of a recording, in seconds from its start.
 #[derive(Debug, clap::Args)]
 pub(crate) struct StretchArgs {
-    /// Begin here, in seconds from the session's start, or with - before its end [default: at its start]
-    #[arg(long, value_name = "SECONDS", value_parser = session_time, allow_negative_numbers = true)]
-    from: Option<SessionTime>,
+    /// Begin here, in seconds from the recording's start, or with - before its end [default: at its start]
+    #[arg(long, value_name = "SECONDS", value_parser = recording_time, allow_negative_numbers = true)]
+    from: Option<RecordingTime>,
     /// End here [default: at its end]
-    #[arg(long, value_name = "SECONDS", value_parser = session_time, allow_negative_numbers = true)]
-    to: Option<SessionTime>,
+    #[arg(long, value_name = "SECONDS", value_parser = recording_time, allow_negative_numbers = true)]
+    to: Option<RecordingTime>,
 }
 
 impl StretchArgs {
     /// The stretch of this file.
-    pub(crate) fn of(&self, file: &SessionFile) -> anyhow::Result<Stretch> {
-        let at = |time: SessionTime| match time {
-            SessionTime::FromStart(step) => file.first().plus(step),
-            SessionTime::BeforeEnd(step) => file.first().plus(length(file).saturating_sub(step)),
+    pub(crate) fn of(&self, file: &RecordingFile) -> anyhow::Result<Stretch> {
+        let at = |time: RecordingTime| match time {
+            RecordingTime::FromStart(step) => file.first().plus(step),
+            RecordingTime::BeforeEnd(step) => file.first().plus(length(file).saturating_sub(step)),
         };
         let from = self.from.map_or(Moment::ZERO, at);
         let to = self.to.map_or(file.last(), at);
         let length_s = length(file).as_secs_f64();
         if from > to {
             bail!(
-                "there is nothing between --from and --to: the session is {length_s:.1} s long, and --from must be before --to"
+                "there is nothing between --from and --to: the recording is {length_s:.1} s long, and --from must be before --to"
             );
         }
         Ok(Stretch {
@@ -54,8 +54,8 @@ impl StretchArgs {
     }
 }
 
-pub(crate) fn open(path: &Path) -> anyhow::Result<SessionFile> {
-    opened(SessionFile::open(path), path)
+pub(crate) fn open(path: &Path) -> anyhow::Result<RecordingFile> {
+    opened(RecordingFile::open(path), path)
 }
 
 /// True for what stands for standard input or output in place of a file.
@@ -64,10 +64,10 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 }
 
 /// Opens a file, or what comes on standard input.
-pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<SessionFile> {
+pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<RecordingFile> {
     if is_standard(path) {
         opened(
-            SessionFile::of(stdin_as_file()?, path),
+            RecordingFile::of(stdin_as_file()?, path),
             Path::new("standard input"),
         )
     } else {
@@ -88,16 +88,16 @@ pub(crate) fn stdin_as_file() -> anyhow::Result<File> {
     Ok(file)
 }
 
-fn opened(file: Result<SessionFile, OpenError>, path: &Path) -> anyhow::Result<SessionFile> {
+fn opened(file: Result<RecordingFile, OpenError>, path: &Path) -> anyhow::Result<RecordingFile> {
     file.map_err(|error| {
         let is_csv = path.extension().is_some_and(|ending| ending == "csv");
         let what_to_do = match error {
             OpenError::Unreadable { .. } => "check the path",
-            OpenError::NotMcap if is_csv => "make a session file of it with 'handscope import'",
+            OpenError::NotMcap if is_csv => "make a recording file of it with 'handscope import'",
             OpenError::NotAFile | OpenError::NotMcap => {
-                "name a session file of 'handscope record' or of the window"
+                "name a recording file of 'handscope record' or of the window"
             }
-            OpenError::Foreign => "only sessions of Handscope can be opened",
+            OpenError::Foreign => "only recordings of Handscope can be opened",
             OpenError::SeveralHands { .. } => {
                 "take them apart with the program that put them together"
             }
@@ -107,14 +107,14 @@ fn opened(file: Result<SessionFile, OpenError>, path: &Path) -> anyhow::Result<S
     })
 }
 
-/// How long a session is.
-pub(crate) fn length(file: &SessionFile) -> Duration {
+/// How long a recording is.
+pub(crate) fn length(file: &RecordingFile) -> Duration {
     file.last().since(file.first())
 }
 
 /// Names the files of a recording that has several.
-pub(crate) fn add_files(object: &mut Value, file: Option<&SessionFile>) {
-    let files: Vec<&Path> = file.into_iter().flat_map(SessionFile::paths).collect();
+pub(crate) fn add_files(object: &mut Value, file: Option<&RecordingFile>) {
+    let files: Vec<&Path> = file.into_iter().flat_map(RecordingFile::paths).collect();
     if let Some(fields) = object.as_object_mut().filter(|_| files.len() > 1) {
         fields.insert("files".into(), json!(files));
     }
@@ -151,7 +151,7 @@ pub(crate) fn lost(damage: &Damage) -> Option<String> {
 }
 
 /// What is to be said of how the file was found, on stderr.
-pub(crate) fn say_remarks(file: &SessionFile) {
+pub(crate) fn say_remarks(file: &RecordingFile) {
     for remark in file.remarks() {
         say(&format!("{}: {remark}", file.path().display()));
     }

@@ -1,15 +1,15 @@
-//! The table of sessions: a row each, with what is done with it at its end.
+//! The table of recordings: a row each, with what is done with it at its end.
 
 use crate::app::action::Action;
-use crate::app::sessions::{SessionAction, SessionExport, SessionForm, SessionItem};
+use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, RecordingItem};
 use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, Look, Pane, TextField, Weight, format};
 use crate::ui::plots::times::length;
-use crate::ui::sessions::marks;
-use crate::ui::sessions::strip;
-use crate::ui::text::{Text, notices, sessions};
+use crate::ui::recordings::marks;
+use crate::ui::recordings::strip;
+use crate::ui::text::{Text, notices, recordings};
 use crate::ui::theme;
 use egui::{
     Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
@@ -33,15 +33,15 @@ const HAND: Vec2 = vec2(120.0, 112.0);
 
 /// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
 const COLUMNS: [(Text, f32); 9] = [
-    (sessions::STAR, 36.0),
-    (sessions::NAME, 0.0),
-    (sessions::LENGTH, 84.0),
-    (sessions::FORCE, STRIP.0),
-    (sessions::FAULTS, 52.0),
-    (sessions::TRIALS, 52.0),
-    (sessions::NOTES, 52.0),
-    (sessions::SIZE, 72.0),
-    (sessions::REPLAY, 100.0),
+    (recordings::STAR, 36.0),
+    (recordings::NAME, 0.0),
+    (recordings::LENGTH, 84.0),
+    (recordings::FORCE, STRIP.0),
+    (recordings::FAULTS, 52.0),
+    (recordings::TRIALS, 52.0),
+    (recordings::NOTES, 52.0),
+    (recordings::SIZE, 72.0),
+    (recordings::REPLAY, 100.0),
 ];
 
 /// A stretch that is marked on the strip of a recording, as parts of its length.
@@ -54,11 +54,11 @@ pub(crate) struct MarkedStretch {
 
 impl MarkedStretch {
     /// How long it is.
-    fn length(&self, item: &SessionItem) -> Duration {
+    fn length(&self, item: &RecordingItem) -> Duration {
         item.length.mul_f64(self.to - self.from)
     }
 
-    fn stretch(&self, item: &SessionItem) -> (Moment, Moment) {
+    fn stretch(&self, item: &RecordingItem) -> (Moment, Moment) {
         (item.moment(self.from), item.moment(self.to))
     }
 
@@ -78,13 +78,13 @@ impl MarkedStretch {
 }
 
 /// The table, with what is marked in it.
-pub(crate) struct SessionTable<'a> {
+pub(crate) struct RecordingTable<'a> {
     pub(crate) marked: &'a mut Option<MarkedStretch>,
 }
 
-impl SessionTable<'_> {
+impl RecordingTable<'_> {
     /// Draws it.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, items: &[&SessionItem]) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, items: &[&RecordingItem]) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.x = theme::STEP;
         let strip = strip_width(ui.available_width());
@@ -96,14 +96,14 @@ impl SessionTable<'_> {
         for (title, width) in COLUMNS {
             table = table.column(match width {
                 0.0 => Column::remainder().at_least(NAME).clip(true),
-                _ if title == sessions::FORCE => Column::exact(strip),
+                _ if title == recordings::FORCE => Column::exact(strip),
                 width => Column::exact(width),
             });
         }
         let table = table.header(theme::CONTROL, |mut row| {
             for (title, _) in COLUMNS {
                 row.col(|ui| {
-                    let text = if title == sessions::REPLAY {
+                    let text = if title == recordings::REPLAY {
                         ""
                     } else {
                         look.say(title)
@@ -124,7 +124,7 @@ impl SessionTable<'_> {
         });
     }
 
-    fn cell_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem, column: usize) {
+    fn cell_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem, column: usize) {
         let palette = pane.look.palette;
         let count = |ui: &mut Ui, count: u64, color: Color32| {
             let color = if count == 0 { palette.faint } else { color };
@@ -134,7 +134,7 @@ impl SessionTable<'_> {
             0 => star_ui(ui, pane, item),
             1 => name_ui(ui, pane, item),
             2 => {
-                let length = format::duration(pane.state.sessions.length(item));
+                let length = format::duration(pane.state.recordings.length(item));
                 Label::new(&length, palette.text).number().ui(ui);
             }
             3 => self.strip_ui(ui, pane, item),
@@ -153,11 +153,11 @@ impl SessionTable<'_> {
     }
 
     /// The strip of force: the pointer shows the hand of then, a drag marks a stretch and offers its export.
-    fn strip_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+    fn strip_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
         let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        let name = look.pair(look.say(sessions::STRIP), &item.title());
+        let name = look.pair(look.say(recordings::STRIP), &item.title());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         let part = |x: f32| f64::from(((x - place.left()) / place.width()).clamp(0.0, 1.0));
         if response.clicked() {
@@ -194,75 +194,78 @@ impl SessionTable<'_> {
     }
 
     /// What is marked of a recording.
-    fn of(&self, item: &SessionItem) -> Option<&MarkedStretch> {
+    fn of(&self, item: &RecordingItem) -> Option<&MarkedStretch> {
         self.marked
             .as_ref()
             .filter(|marked| marked.path == item.path)
     }
 
     /// The formats that a recording, or what is marked of it, can be exported in.
-    fn forms_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+    fn forms_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let marked = self.of(item);
         let title = match marked {
             Some(marked) => {
                 let length = length(marked.length(item).as_secs_f64());
-                look.fill(sessions::EXPORT_PART, &[&length])
+                look.fill(recordings::EXPORT_PART, &[&length])
             }
-            None => look.say(sessions::EXPORT).to_owned(),
+            None => look.say(recordings::EXPORT).to_owned(),
         };
         ui.label(title);
-        for form in SessionForm::ALL {
-            if ui.button(look.say(sessions::form(form))).clicked() {
-                let export = SessionExport {
+        for form in RecordingForm::ALL {
+            if ui.button(look.say(recordings::form(form))).clicked() {
+                let export = RecordingExport {
                     path: item.path.clone(),
                     form,
                     stretch: marked.map(|marked| marked.stretch(item)),
                 };
                 pane.actions
-                    .push(Action::Session(SessionAction::Export(export)));
+                    .push(Action::Recording(RecordingAction::Export(export)));
                 ui.close();
             }
         }
     }
 
-    fn ends_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+    fn ends_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let title = item.title();
-        let named = look.pair(look.say(sessions::REPLAY), &title);
-        let replay = Button::said(look, sessions::REPLAY).named(&named);
-        let open = SessionAction::Open(item.path.clone());
-        replay.on_click(ui, pane, Action::Session(open));
-        let named = look.pair(look.say(sessions::MORE), &title);
-        let more = Button::said(look, sessions::MORE).named(&named);
+        let named = look.pair(look.say(recordings::REPLAY), &title);
+        let replay = Button::said(look, recordings::REPLAY).named(&named);
+        let open = RecordingAction::Open(item.path.clone());
+        replay.on_click(ui, pane, Action::Recording(open));
+        let named = look.pair(look.say(recordings::MORE), &title);
+        let more = Button::said(look, recordings::MORE).named(&named);
         let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
         let close = egui::PopupCloseBehavior::CloseOnClickOutside;
         Popup::menu(&more).close_behavior(close).show(|ui| {
             ui.set_min_width(220.0);
-            let field = TextField::new(look.say(sessions::RENAME), NAME_MAX);
-            let field = field.hint(look.tip(sessions::RENAME));
+            let field = TextField::new(look.say(recordings::RENAME), NAME_MAX);
+            let field = field.hint(look.tip(recordings::RENAME));
             if let Some(name) = field.ui(ui, pane, &item.about.name) {
-                let action = SessionAction::Name(item.path.clone(), name.trim().to_owned());
-                pane.actions.push(Action::Session(action));
+                let action = RecordingAction::Name(item.path.clone(), name.trim().to_owned());
+                pane.actions.push(Action::Recording(action));
             }
-            let reveal = ui.button(look.say(sessions::REVEAL));
-            if reveal.on_hover_text(look.tip(sessions::REVEAL)).clicked() {
-                let reveal = SessionAction::Reveal(item.path.clone());
-                pane.actions.push(Action::Session(reveal));
+            let reveal = ui.button(look.say(recordings::REVEAL));
+            if reveal.on_hover_text(look.tip(recordings::REVEAL)).clicked() {
+                let reveal = RecordingAction::Reveal(item.path.clone());
+                pane.actions.push(Action::Recording(reveal));
                 ui.close();
             }
             ui.separator();
             self.forms_ui(ui, pane, item);
             ui.separator();
-            let copy = ui.button(look.say(sessions::COPY_PATH));
-            if copy.on_hover_text(look.tip(sessions::COPY_PATH)).clicked() {
+            let copy = ui.button(look.say(recordings::COPY_PATH));
+            if copy
+                .on_hover_text(look.tip(recordings::COPY_PATH))
+                .clicked()
+            {
                 ui.copy_text(item.path.display().to_string());
                 ui.close();
             }
-            let delete = ui.button(look.say(sessions::DELETE));
-            if delete.on_hover_text(look.tip(sessions::DELETE)).clicked() {
-                let ask = SessionAction::AskDelete(item.path.clone());
-                pane.actions.push(Action::Session(ask));
+            let delete = ui.button(look.say(recordings::DELETE));
+            if delete.on_hover_text(look.tip(recordings::DELETE)).clicked() {
+                let ask = RecordingAction::AskDelete(item.path.clone());
+                pane.actions.push(Action::Recording(ask));
                 ui.close();
             }
         });
@@ -277,9 +280,9 @@ fn strip_width(room: f32) -> f32 {
 }
 
 /// The size; told apart where it goes to make room.
-fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &SessionItem) {
+fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
-    let mut planned = pane.state.sessions.planned.iter();
+    let mut planned = pane.state.recordings.planned.iter();
     let planned = planned.find(|planned| planned.path == item.path);
     let color = match planned {
         Some(_) => look.palette.warn,
@@ -288,40 +291,40 @@ fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &SessionItem) {
     let size = format::megabytes(item.bytes);
     let label = Label::new(&size, color).number().ui(ui);
     if let Some(planned) = planned {
-        label.on_hover_text(look.fill(sessions::GOES, &[&planned.due()]));
+        label.on_hover_text(look.fill(recordings::GOES, &[&planned.due()]));
     }
 }
 
-fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
     let star = item.about.star;
     let (icon, tip) = if star {
-        (theme::STAR, look.say(sessions::UNSTAR))
+        (theme::STAR, look.say(recordings::UNSTAR))
     } else {
-        (theme::NO_STAR, look.tip(sessions::STAR))
+        (theme::NO_STAR, look.tip(recordings::STAR))
     };
-    let name = look.pair(look.say(sessions::STAR), &item.title());
-    let button = Button::new(look.say(sessions::STAR), tip).named(&name);
+    let name = look.pair(look.say(recordings::STAR), &item.title());
+    let button = Button::new(look.say(recordings::STAR), tip).named(&name);
     let button = button.icon(icon).weight(Weight::Quiet).selected(star);
-    let action = SessionAction::Star(item.path.clone(), !star);
-    button.on_click(ui, pane, Action::Session(action));
+    let action = RecordingAction::Star(item.path.clone(), !star);
+    button.on_click(ui, pane, Action::Recording(action));
 }
 
 /// The name in words, and below it the hand.
-fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
+fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add_space(theme::STEP);
-        let title = sessions::title(look, pane.state, item);
+        let title = recordings::title(look, pane.state, item);
         let label = Label::new(&title, look.palette.text).ui(ui);
         label.on_hover_text(item.path.display().to_string());
-        let is_recorded = item.is_in(&pane.state.sessions.recorded);
-        let simulated = item.opening.simulated.then_some(sessions::SIMULATED);
+        let is_recorded = item.is_in(&pane.state.recordings.recorded);
+        let simulated = item.opening.simulated.then_some(recordings::SIMULATED);
         let (state, color) = match item.closed {
-            _ if is_recorded => (Some(sessions::RECORDS_NOW), look.palette.ok),
+            _ if is_recorded => (Some(recordings::RECORDS_NOW), look.palette.ok),
             true => (None, look.palette.muted),
-            false => (Some(sessions::UNCLOSED), look.palette.warn),
+            false => (Some(recordings::UNCLOSED), look.palette.warn),
         };
         let about = state
             .into_iter()
@@ -330,13 +333,13 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &SessionItem) {
         let about: Vec<&str> = about.chain([item.opening.hand.as_str()]).collect();
         let label = Label::new(&about.join("  "), color).small().ui(ui);
         if !item.closed {
-            label.on_hover_text(look.tip(sessions::UNCLOSED));
+            label.on_hover_text(look.tip(recordings::UNCLOSED));
         }
     });
 }
 
 /// The hand as it was after a part of a recording, with the time, its greatest force and what happened there.
-fn moment_ui(ui: &mut Ui, look: Look, item: &SessionItem, part: f64) {
+fn moment_ui(ui: &mut Ui, look: Look, item: &RecordingItem, part: f64) {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -354,7 +357,7 @@ fn moment_ui(ui: &mut Ui, look: Look, item: &SessionItem, part: f64) {
     let force = item.strip.get(column).filter(|force| force.is_finite());
     let force = force.map_or_else(|| format::UNKNOWN.into(), |force| format!("{force:.0}"));
     let clock = marks::clock(at.since(item.first));
-    let words = look.fill(sessions::AT_MOMENT, &[&clock, &force]);
+    let words = look.fill(recordings::AT_MOMENT, &[&clock, &force]);
     Label::new(&words, look.palette.text).number().ui(ui);
     let near = item.length.mul_f64(1.5 / f64::from(STRIP.1));
     let is_near = |moment: Moment| at.since(moment).max(moment.since(at)) <= near;

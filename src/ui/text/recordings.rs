@@ -1,6 +1,6 @@
 //! Sentences of recordings: the list, the time line, the lamp in the header.
 
-use crate::app::sessions::{SessionForm, SessionItem};
+use crate::app::recordings::{RecordingForm, RecordingItem};
 use crate::app::settings::{Language, Settings};
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
@@ -117,18 +117,18 @@ texts! {
     DELETED: "Recordings deleted:", "已删除录制：";
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their recordings are marked.", "仿真手也会被录制，其录制会有标记。";
 
-    /// The formats that a session can be exported in.
-    fn form(SessionForm) {
-        SessionForm::Csv => "Table (CSV)", "表格（CSV）";
-        SessionForm::Parquet => "Table (Parquet)", "表格（Parquet）";
-        SessionForm::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
-        SessionForm::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
-        SessionForm::Mcap => "Recording file (MCAP)", "录制文件（MCAP）";
+    /// The formats that a recording can be exported in.
+    fn form(RecordingForm) {
+        RecordingForm::Csv => "Table (CSV)", "表格（CSV）";
+        RecordingForm::Parquet => "Table (Parquet)", "表格（Parquet）";
+        RecordingForm::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
+        RecordingForm::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
+        RecordingForm::Mcap => "Recording file (MCAP)", "录制文件（MCAP）";
     }
 }
 
 /// What a recording is of: its own name, else what was done in it or with which hand.
-pub(crate) fn what(look: Look, settings: &Settings, item: &SessionItem) -> String {
+pub(crate) fn what(look: Look, settings: &Settings, item: &RecordingItem) -> String {
     if !item.about.name.is_empty() {
         return item.about.name.clone();
     }
@@ -154,7 +154,7 @@ pub(crate) fn what(look: Look, settings: &Settings, item: &SessionItem) -> Strin
 }
 
 /// When a recording began on the clock here, `today 20:21`; `None` if nobody knows.
-pub(crate) fn when(look: Look, item: &SessionItem, now_since_1970: Duration) -> Option<String> {
+pub(crate) fn when(look: Look, item: &RecordingItem, now_since_1970: Duration) -> Option<String> {
     if item.opening.is_imported() {
         return None;
     }
@@ -171,9 +171,9 @@ pub(crate) fn when(look: Look, item: &SessionItem, now_since_1970: Duration) -> 
 }
 
 /// Both in one line.
-pub(crate) fn title(look: Look, state: &State, item: &SessionItem) -> String {
+pub(crate) fn title(look: Look, state: &State, item: &RecordingItem) -> String {
     let what = what(look, &state.settings, item);
-    let when = when(look, item, state.sessions.looked_at);
+    let when = when(look, item, state.recordings.looked_at);
     let all: Vec<String> = std::iter::once(what).chain(when).collect();
     listed(look, &all)
 }
@@ -188,17 +188,17 @@ fn listed(look: Look, all: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::sessions::SessionAbout;
+    use crate::app::recordings::RecordingAbout;
     use crate::hand::Moment;
     use crate::record::file::{Counts, FileMark, Opening};
 
-    fn item(began_s: u64, trials: &[&str]) -> SessionItem {
+    fn item(began_s: u64, trials: &[&str]) -> RecordingItem {
         let mark = |words: &&str| FileMark {
             at: Moment::ZERO,
             kind: EventKind::Trial,
             words: (*words).to_owned(),
         };
-        SessionItem {
+        RecordingItem {
             path: "file.mcap".into(),
             files: Vec::new(),
             bytes: 0,
@@ -215,7 +215,7 @@ mod tests {
             strip: Vec::new(),
             poses: std::sync::Arc::default(),
             closed: true,
-            about: SessionAbout::default(),
+            about: RecordingAbout::default(),
         }
     }
 
@@ -223,7 +223,7 @@ mod tests {
     fn a_recording_is_named_by_what_was_done_and_when_on_the_clock_here() {
         const DAY_S: u64 = 24 * 3600;
         let mut state = State::default();
-        state.sessions.looked_at = Duration::from_secs(20_000 * DAY_S);
+        state.recordings.looked_at = Duration::from_secs(20_000 * DAY_S);
         let look = Look::of(&state);
         let time = |began_s| calendar::local(Duration::from_secs(began_s)).1;
         let now = 20_000 * DAY_S;

@@ -1,4 +1,4 @@
-//! The view of sessions: which are on disk, found, named, starred, replayed and deleted.
+//! The view of recordings: which are on disk, found, named, starred, replayed and deleted.
 pub(crate) mod beside;
 pub(crate) mod marks;
 pub(crate) mod stretch;
@@ -6,7 +6,7 @@ pub(crate) mod strip;
 pub(crate) mod table;
 
 use crate::app::action::Action;
-use crate::app::sessions::{SessionAction, SessionItem};
+use crate::app::recordings::{RecordingAction, RecordingItem};
 use crate::app::state::State;
 use crate::hand::PerDof;
 use crate::ui::hand::panel;
@@ -14,8 +14,8 @@ use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{
     self, Button, ButtonRole, Card, Choice, Label, Look, Pane, ViewRequest, Weight, format,
 };
-use crate::ui::sessions::table::{MarkedStretch, SessionTable};
-use crate::ui::text::sessions;
+use crate::ui::recordings::table::{MarkedStretch, RecordingTable};
+use crate::ui::text::recordings;
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{ProgressBar, Ui, vec2};
@@ -28,7 +28,7 @@ const PROGRESS_EACH: Duration = Duration::from_millis(100);
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
-pub(crate) struct SessionsView {
+pub(crate) struct RecordingsView {
     find: String,
     /// When the list was asked for last, in seconds of the window's time.
     looked: Option<f64>,
@@ -38,7 +38,7 @@ pub(crate) struct SessionsView {
     marked: Option<MarkedStretch>,
 }
 
-impl SessionsView {
+impl RecordingsView {
     /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let now = ui.input(|input| input.time);
@@ -47,7 +47,7 @@ impl SessionsView {
             .is_none_or(|at| now - at >= LOOK_EACH.as_secs_f64())
         {
             self.looked = Some(now);
-            pane.actions.push(Action::Session(SessionAction::Look));
+            pane.actions.push(Action::Recording(RecordingAction::Look));
             ui.ctx().request_repaint_after(LOOK_EACH);
         }
         kit::full_card_ui(ui, pane.look, |ui| {
@@ -55,8 +55,8 @@ impl SessionsView {
             if self.other
                 && let Some(path) = path_ui(ui, pane.look, "session")
             {
-                let open = SessionAction::Open(path);
-                pane.actions.push(Action::Session(open));
+                let open = RecordingAction::Open(path);
+                pane.actions.push(Action::Recording(open));
             }
             folder_ui(ui, pane);
             foot_ui(ui, pane);
@@ -72,36 +72,36 @@ impl SessionsView {
 
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(sessions::TITLE), |ui| {
-            let other = Button::said(look, sessions::OPEN_OTHER).switch(self.other);
+        kit::head_ui(ui, look, look.say(recordings::TITLE), |ui| {
+            let other = Button::said(look, recordings::OPEN_OTHER).switch(self.other);
             if other.ui(ui, look).clicked() {
                 self.other = !self.other;
             }
-            let mut simulated = pane.state.settings.sessions.record_simulated;
-            let text = look.say(sessions::SIM_TOO);
+            let mut simulated = pane.state.settings.recordings.record_simulated;
+            let text = look.say(recordings::SIM_TOO);
             let tick = ui.checkbox(&mut simulated, text);
-            if tick.on_hover_text(look.tip(sessions::SIM_TOO)).changed() {
-                let action = SessionAction::RecordSimulated(simulated);
-                pane.actions.push(Action::Session(action));
+            if tick.on_hover_text(look.tip(recordings::SIM_TOO)).changed() {
+                let action = RecordingAction::RecordSimulated(simulated);
+                pane.actions.push(Action::Recording(action));
             }
             ui.scope(|ui| {
                 ui.set_max_width(260.0);
-                kit::edit_ui(ui, look.both(sessions::FIND), &mut self.find);
+                kit::edit_ui(ui, look.both(recordings::FIND), &mut self.find);
             });
         });
     }
 
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let state = &pane.state.sessions;
+        let state = &pane.state.recordings;
         let all = state.items.iter();
-        let shown: Vec<&SessionItem> = all.filter(|item| item.matches(&self.find)).collect();
+        let shown: Vec<&RecordingItem> = all.filter(|item| item.matches(&self.find)).collect();
         let empty = match (state.items.is_empty(), shown.is_empty()) {
             (true, _) if state.looks || state.looked == 0 && state.folder.is_some() => {
-                Some(sessions::LOOKS)
+                Some(recordings::LOOKS)
             }
             (true, _) => return empty_ui(ui, pane),
-            (false, true) => Some(sessions::FIND_NONE),
+            (false, true) => Some(recordings::FIND_NONE),
             (false, false) => None,
         };
         match empty {
@@ -110,7 +110,7 @@ impl SessionsView {
             }
             None => {
                 let marked = &mut self.marked;
-                SessionTable { marked }.ui(ui, pane, &shown);
+                RecordingTable { marked }.ui(ui, pane, &shown);
             }
         }
     }
@@ -123,19 +123,19 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.add_space(ui.available_height() * 0.2);
         let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
         panel::pose_ui(ui, look, picture, &PerDof::splat(Some(0.5)));
-        let title = Label::said(look, sessions::NONE_TITLE);
+        let title = Label::said(look, recordings::NONE_TITLE);
         title.font(theme::title()).ui(ui);
-        if pane.state.sessions.folder.is_none() {
-            Label::muted(look, sessions::NOWHERE).wrap().ui(ui);
+        if pane.state.recordings.folder.is_none() {
+            Label::muted(look, recordings::NOWHERE).wrap().ui(ui);
             ui.add_space(theme::GAP);
-            let choose = Button::said(look, sessions::FOLDER_CHANGE);
+            let choose = Button::said(look, recordings::FOLDER_CHANGE);
             let choose = choose.weight(Weight::Strong).large();
-            let action = SessionAction::ChooseFolder(None);
-            return choose.on_click(ui, pane, Action::Session(action));
+            let action = RecordingAction::ChooseFolder(None);
+            return choose.on_click(ui, pane, Action::Recording(action));
         }
-        Label::muted(look, sessions::NONE).wrap().ui(ui);
+        Label::muted(look, recordings::NONE).wrap().ui(ui);
         ui.add_space(theme::GAP);
-        let connect = Button::said(look, sessions::NONE_BUTTON);
+        let connect = Button::said(look, recordings::NONE_BUTTON);
         if connect
             .weight(Weight::Strong)
             .large()
@@ -150,16 +150,16 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// What is being written in formats of others, and how far that is.
 fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    for running in &pane.state.sessions.exports {
-        let mut items = pane.state.sessions.items.iter();
+    for running in &pane.state.recordings.exports {
+        let mut items = pane.state.recordings.items.iter();
         let item = items.find(|item| item.path == running.export.path);
         let name = item.map_or_else(
             || running.export.path.display().to_string(),
-            |item| sessions::title(look, pane.state, item),
+            |item| recordings::title(look, pane.state, item),
         );
-        let form = look.say(sessions::form(running.export.form));
+        let form = look.say(recordings::form(running.export.form));
         let parts: [&dyn std::fmt::Display; 2] = [&look.pair(&name, form), &running.percent];
-        let words = look.fill(sessions::EXPORTING, &parts);
+        let words = look.fill(recordings::EXPORTING, &parts);
         ui.horizontal(|ui| {
             let bar = ProgressBar::new(f32::from(running.percent) / 100.0);
             ui.add(bar.desired_width(160.0).desired_height(theme::GAP));
@@ -169,54 +169,54 @@ fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-/// Where sessions lie, and what changes that.
+/// Where recordings lie, and what changes that.
 fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.horizontal(|ui| {
         kit::right_ui(ui, |ui| {
-            let is_default = pane.state.settings.sessions.folder.is_none();
-            let default = Button::said(look, sessions::FOLDER_DEFAULT);
-            let default = default.disabled_if(is_default, look.say(sessions::FOLDER_IS_DEFAULT));
-            let action = Action::Session(SessionAction::DefaultFolder);
+            let is_default = pane.state.settings.recordings.folder.is_none();
+            let default = Button::said(look, recordings::FOLDER_DEFAULT);
+            let default = default.disabled_if(is_default, look.say(recordings::FOLDER_IS_DEFAULT));
+            let action = Action::Recording(RecordingAction::DefaultFolder);
             default.on_click(ui, pane, action);
-            let change = Button::said(look, sessions::FOLDER_CHANGE);
-            let action = Action::Session(SessionAction::ChooseFolder(None));
+            let change = Button::said(look, recordings::FOLDER_CHANGE);
+            let action = Action::Recording(RecordingAction::ChooseFolder(None));
             change.on_click(ui, pane, action);
             kit::left_ui(ui, |ui| {
-                Label::muted(look, sessions::FOLDER).ui(ui);
-                let folder = pane.state.sessions.folder.as_ref();
+                Label::muted(look, recordings::FOLDER).ui(ui);
+                let folder = pane.state.recordings.folder.as_ref();
                 let folder = folder.map(|folder| folder.display().to_string());
                 let folder = folder.unwrap_or_else(|| "-".into());
                 let label = Label::new(&folder, look.palette.text);
-                let label = label.named(look.say(sessions::FOLDER)).ui(ui);
-                label.on_hover_text(look.tip(sessions::FOLDER));
+                let label = label.named(look.say(recordings::FOLDER)).ui(ui);
+                label.on_hover_text(look.tip(recordings::FOLDER));
             });
         });
     });
-    if pane.state.sessions.asks_folder
+    if pane.state.recordings.asks_folder
         && let Some(path) = folder_path_ui(ui, look)
     {
-        let choose = SessionAction::ChooseFolder(Some(path));
-        pane.actions.push(Action::Session(choose));
+        let choose = RecordingAction::ChooseFolder(Some(path));
+        pane.actions.push(Action::Recording(choose));
     }
 }
 
-/// How much room the sessions need, and what can go.
+/// How much room the recordings need, and what can go.
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let state = &pane.state.sessions;
+    let state = &pane.state.recordings;
     if state.items.is_empty() && state.unread.is_empty() {
         return;
     }
     let bytes: u64 = state.items.iter().map(|item| item.bytes).sum();
-    let budget = pane.state.settings.sessions.budget_gb;
+    let budget = pane.state.settings.recordings.budget_gb;
     let used = format::size(bytes);
     ui.horizontal_wrapped(|ui| {
         let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
-        let total = look.fill(sessions::TOTAL, &parts);
+        let total = look.fill(recordings::TOTAL, &parts);
         Label::new(&total, look.palette.muted).small().ui(ui);
         if !state.unread.is_empty() {
-            let words = look.fill(sessions::UNREAD, &[&state.unread.len()]);
+            let words = look.fill(recordings::UNREAD, &[&state.unread.len()]);
             let why = state.unread.iter().take(8);
             let why = why.map(|(path, why)| format!("{}: {why}", path.display()));
             let why: Vec<String> = why.collect();
@@ -229,36 +229,36 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// What goes to make room, and how that is kept from happening.
 fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, state) = (pane.look, &pane.state.sessions);
+    let (look, state) = (pane.look, &pane.state.recordings);
     let Some(first) = state.planned.iter().min_by_key(|one| one.due_unix_s()) else {
         return;
     };
     let bytes = state.planned.iter().map(|one| one.bytes).sum();
     let parts: [&dyn std::fmt::Display; 3] =
         [&state.planned.len(), &format::size(bytes), &first.due()];
-    let words = look.fill(sessions::BEYOND, &parts);
+    let words = look.fill(recordings::BEYOND, &parts);
     Label::new(&words, look.palette.warn).small().ui(ui);
     for (text, action) in [
-        (sessions::ROOM_KEEP, SessionAction::KeepPlanned),
-        (sessions::ROOM_NOW, SessionAction::MakeRoom),
+        (recordings::ROOM_KEEP, RecordingAction::KeepPlanned),
+        (recordings::ROOM_NOW, RecordingAction::MakeRoom),
     ] {
-        Button::said(look, text).on_click(ui, pane, Action::Session(action));
+        Button::said(look, text).on_click(ui, pane, Action::Recording(action));
     }
 }
 
-/// The question before a session is deleted.
+/// The question before a recording is deleted.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
-    let path = state.sessions.to_delete.as_ref()?;
-    let mut all = state.sessions.items.iter();
+    let path = state.recordings.to_delete.as_ref()?;
+    let mut all = state.recordings.items.iter();
     let title = all
         .find(|item| item.path == *path)
-        .map(|item| sessions::title(look, state, item));
+        .map(|item| recordings::title(look, state, item));
     let title = title.unwrap_or_else(|| path.display().to_string());
-    let back = Choice::new(sessions::DELETE_NOT, ButtonRole::Safe);
-    let delete = Choice::new(sessions::DELETE_SURE, ButtonRole::Danger);
-    let card = Card::new(look, sessions::DELETE_TITLE)
-        .warning(look.fill(sessions::DELETE_WHAT, &[&title]))
-        .choice(back.does(Action::Session(SessionAction::KeepIt)))
-        .choice(delete.does(Action::Session(SessionAction::Delete)));
+    let back = Choice::new(recordings::DELETE_NOT, ButtonRole::Safe);
+    let delete = Choice::new(recordings::DELETE_SURE, ButtonRole::Danger);
+    let card = Card::new(look, recordings::DELETE_TITLE)
+        .warning(look.fill(recordings::DELETE_WHAT, &[&title]))
+        .choice(back.does(Action::Recording(RecordingAction::KeepIt)))
+        .choice(delete.does(Action::Recording(RecordingAction::Delete)));
     Some(card)
 }
