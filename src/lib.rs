@@ -7,7 +7,7 @@
 //! | floor | module | what lives there |
 //! |---|---|---|
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
-//! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the person at the hand |
+//! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the user at the hand |
 //! | 0 | [`system`] | what the operating system said, as a value |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
@@ -38,10 +38,10 @@
 //! # What always holds
 //!
 //! * Only [`hand::HandCommand`], [`hand::Setting`] and [`hand::Trigger`] make register writes, and none leaves the manual's addresses and ranges.
-//! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while a person has armed the hand;
+//! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while the user has armed the hand;
 //!   a stop, faults, link loss, old feedback, another controller and sleep disarm it.
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not.
-//! * One owner at a time may move a hand, by a [`link::Lease`] that a person granted; a stop, a fault, a lost link and silence end it,
+//! * One owner at a time may move a hand, by a [`link::Lease`] that the user granted; a stop, a fault, a lost link and silence end it,
 //!   and what the one before asked for is dropped.
 //! * A hand that follows another program, a gamepad or another hand begins where it is, and stays within a lead and a rate.
 //! * Parameters are written at rest and disarmed, read back, and reported as applied, refused, altered or not known. A SAVE has
@@ -50,10 +50,10 @@
 //! * Whatever ends the program stops the hands first ([`link::guard`]); where it cannot, as it is killed, a process of its own does
 //!   ([`link::holder`]).
 //! * No request outlives a lost link.
-//! * A fault stays unseen until a person acknowledges it; what happened around it is kept in memory, bounded, and in the session.
+//! * A fault stays unseen until the user acknowledges it; what happened around it is kept in memory, bounded, and in the session.
 //! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN, or a visitor
 //!   held a tile where the file allows that; a stop, a lost link, a page that is not drawn or
-//!   a fault that needs a person ends that.
+//!   a fault that needs the user ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;
 pub mod cli;

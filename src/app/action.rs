@@ -1,4 +1,4 @@
-//! Everything a person can ask for, as one closed list. Says nothing about how it is done.
+//! Everything the user can ask for, as one closed list. Says nothing about how it is done.
 
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
@@ -27,7 +27,7 @@ use crate::poses::library::{PoseId, SequenceId};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
-/// One thing a person asked for. Returned by the views, carried out by `App::act`.
+/// One thing the user asked for. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Action {
     /// Hold every hand now, from anywhere, armed or not.
@@ -70,7 +70,7 @@ pub enum Action {
     DryRun(Option<SequenceId>),
     /// What is asked about recordings.
     Recording(RecordingAction),
-    /// What a person does at an exhibition, or to begin one.
+    /// What the user does at an exhibition, or to begin one.
     Exhibit(ExhibitAction),
     /// What is asked of inputs and of the gateway.
     Input(InputAction),
@@ -92,7 +92,7 @@ pub enum Action {
     FactoryReset,
     /// Calibrate the force sensors. Checks first, under a card.
     CalibrateForce,
-    /// What a person decides on such a card.
+    /// What the user decides on such a card.
     Procedure(ProcedureAction),
     /// Talk to this hand from now on.
     Connect(Endpoint),
@@ -108,9 +108,9 @@ pub enum Action {
     CancelScan,
     /// Listen for hands that other Handscopes share, at this network interface, or no more.
     FindShared(Option<String>),
-    /// This fault was seen by a person.
+    /// This fault was seen by the user.
     SeenFault(Dof, FaultKind),
-    /// All faults were seen by a person.
+    /// All faults were seen by the user.
     SeenFaults,
     /// Ask where a file should go, and write it.
     Save(Export),

@@ -12,7 +12,7 @@ pub(crate) struct Ctx<'a> {
 }
 
 impl Ctx<'_> {
-    /// Tells a person this, about this hand.
+    /// Tells the user this, about this hand.
     pub(crate) fn tell(&mut self, what: NoticeKind) {
         self.notices.push(self.now, what);
     }

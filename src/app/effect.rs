@@ -16,7 +16,7 @@ pub enum Effect {
     StopsAll,
     /// Stops or disarms a hand, or takes the right to move it away.
     Stops,
-    /// Moves a hand, or lets a person or a program move it.
+    /// Moves a hand, or lets the user or a program move it.
     Moves,
     /// Sets how a hand moves once something moves it, or clears its errors.
     Adjusts,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct FleetState {
     /// The hands that are there, by computer and name.
     pub hands: Vec<FleetHand>,
-    /// Why nobody listens, although a person wanted it.
+    /// Why nobody listens, although the user wanted it.
     pub refused: Option<DdsError>,
     list: Option<FleetList>,
 }

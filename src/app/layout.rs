@@ -1,4 +1,4 @@
-//! Where a person put the borders between the rooms of the window, which rooms are shut, and how large the window is.
+//! Where the user put the borders between the rooms of the window, which rooms are shut, and how large the window is.
 //! Shares and flags only: what a room shows, and how small it may become, is the window's matter.
 
 use serde::{Deserialize, Deserializer, Serialize};

@@ -1,4 +1,4 @@
-//! What a person should read, as typed causes. The words, in every language, are the views'.
+//! What the user should read, as typed causes. The words, in every language, are the views'.
 
 use crate::app::readings::faults::FaultKind;
 use crate::app::slot::HandLabel;
@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Notices that ask for attention: more than a person reads. The oldest go first.
+/// Notices that ask for attention: more than the user reads. The oldest go first.
 pub const NOTICES_MAX: usize = 64;
 /// Entries of the log: a trouble a minute for a working day, with as much room again. The oldest go first.
 pub const LOG_MAX: usize = 1000;
@@ -70,7 +70,7 @@ pub enum NoticeKind {
         /// What presses it, in newtons.
         newtons: f32,
     },
-    /// The hand is not armed any more, and no person asked for it.
+    /// The hand is not armed any more, and no user asked for it.
     Disarmed(Disarmed),
     /// The hand is not armed any more, for another controller wrote this.
     DisarmedByOther(SetpointConflict),
@@ -157,7 +157,7 @@ pub enum NoticeKind {
     },
     /// Something happened to the file that a hand is recorded into.
     Recording(RecorderNotice),
-    /// A recording was to be shown while something goes on at the hand that a person must see.
+    /// A recording was to be shown while something goes on at the hand that the user must see.
     NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.
     Recorded,
@@ -332,7 +332,7 @@ impl<'a> About<'a> {
     }
 }
 
-/// What a person should read, and the log of all that was to be read; both bounded.
+/// What the user should read, and the log of all that was to be read; both bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
     kept: VecDeque<Notice>,

@@ -13,10 +13,10 @@ use crate::poses::preview::Preview;
 use crate::poses::starter::starter;
 use std::collections::BTreeSet;
 
-/// The poses of a person beside those that are shipped, and what goes on with them.
+/// The poses of the user beside those that are shipped, and what goes on with them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PoseState {
-    /// The person's own.
+    /// The user's own.
     pub library: PoseLibrary,
     /// The dry run, if there is one.
     pub preview: Option<Preview>,
@@ -40,23 +40,23 @@ impl PoseState {
         }
     }
 
-    /// A pose of the person's or a shipped one.
+    /// A pose of the user's or a shipped one.
     pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.library.pose(id).or_else(|| starter().pose(id))
     }
 
-    /// A sequence of the person's or a shipped one.
+    /// A sequence of the user's or a shipped one.
     pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
         self.library_of(id).sequence(id)
     }
 
-    /// A reaction of the person's or a shipped one.
+    /// A reaction of the user's or a shipped one.
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         let shipped = || starter().reaction(id);
         self.library.reaction(id).or_else(shipped)
     }
 
-    /// The library that has this sequence: the person's, or what is shipped.
+    /// The library that has this sequence: the user's, or what is shipped.
     pub fn library_of(&self, id: SequenceId) -> &PoseLibrary {
         match self.library.sequence(id) {
             Some(_) => &self.library,
@@ -64,19 +64,19 @@ impl PoseState {
         }
     }
 
-    /// What is needed to play an entry of the person's or a shipped one.
+    /// What is needed to play an entry of the user's or a shipped one.
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let shipped = || starter().plan(entry);
         self.library.plan(entry).or_else(shipped)
     }
 
-    /// What an entry of the person's or a shipped one is called.
+    /// What an entry of the user's or a shipped one is called.
     pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
         let shipped = || starter().named(entry);
         self.library.named(entry).or_else(shipped)
     }
 
-    /// What is shipped and neither hidden nor overridden by one of the person's own by the same name.
+    /// What is shipped and neither hidden nor overridden by one of the user's own by the same name.
     pub fn shipped(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = EntryId> {
         let name = |entry| starter().named(entry).map_or("", |names| names.text);
         let is_overridden = move |entry: EntryId| {
@@ -87,7 +87,7 @@ impl PoseState {
         all.filter(move |entry| !hidden.contains(name(*entry)) && !is_overridden(*entry))
     }
 
-    /// All poses: a person's own, then those that are shipped and shown.
+    /// All poses: the user's own, then those that are shipped and shown.
     pub fn poses(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = &LibraryPose> {
         let shipped = self.shipped(hidden).filter_map(|entry| match entry {
             EntryId::Pose(id) => starter().pose(id),
@@ -106,7 +106,7 @@ impl PoseState {
         named.collect()
     }
 
-    /// What can be started with one press: poses but those that only demos need, then sequences and reactions; a person's own
+    /// What can be started with one press: poses but those that only demos need, then sequences and reactions; the user's own
     /// before those that are shipped.
     pub fn ready(&self, hidden: &BTreeSet<String>) -> Vec<EntryId> {
         let is_demo = |entry: &EntryId| match entry {

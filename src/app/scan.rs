@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Hands kept: every id on one bus, and some more.
 const FOUND_MAX: usize = 512;
-/// Remarks kept; a person reads a few.
+/// Remarks kept; the user reads a few.
 const REMARKS_MAX: usize = 32;
 /// Events taken in one frame; the rest waits, and the scan waits for it.
 const EVENTS_PER_FRAME: usize = 64;
@@ -28,7 +28,7 @@ pub enum IdRange {
     All,
 }
 
-/// What a person wants to be looked through.
+/// What the user wants to be looked through.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScanTarget {
     /// All serial ports and CAN interfaces of this computer.
@@ -51,7 +51,7 @@ pub enum ScanStage {
     Running,
     /// All was looked at.
     Done(ScanSummary),
-    /// The person ended it.
+    /// The user ended it.
     Cancelled,
 }
 

@@ -1,4 +1,4 @@
-//! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before a person arms and starts it.
+//! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before the user arms and starts it.
 
 use crate::app::env::day_folder;
 use crate::app::layout::Layout;
@@ -278,7 +278,7 @@ pub const KNOWN_MAX: usize = 64;
 /// Hands whose taring is kept; the oldest goes first.
 pub const TARES_MAX: usize = 20;
 
-/// What a person says of one hand.
+/// What the user says of one hand.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KnownHand {
@@ -288,7 +288,7 @@ pub struct KnownHand {
     /// Left or right; `None` = as [`Settings::side`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
-    /// The day on which a person connected to it last, such as `2026-11-24`; empty if that is not known.
+    /// The day on which the user connected to it last, such as `2026-11-24`; empty if that is not known.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub last_day: String,
     /// Keys of a newer version, kept as they are.
@@ -304,7 +304,7 @@ pub struct RecordingSettings {
     pub record: bool,
     /// Built-in hands, too.
     pub record_simulated: bool,
-    /// Where recordings lie; `None` = in the person's documents.
+    /// Where recordings lie; `None` = in the user's documents.
     pub folder: Option<PathBuf>,
     /// What all recordings together may need, gigabytes.
     pub budget_gb: f64,
@@ -340,13 +340,13 @@ impl RecordingSettings {
 pub struct Settings {
     /// The hand of last time, in the spelling of endpoints.
     pub endpoint: Option<String>,
-    /// Hands that a person connected to, the newest first, in the same spelling.
+    /// Hands that the user connected to, the newest first, in the same spelling.
     pub recent: Vec<String>,
     /// Dark or light.
     pub theme: Theme,
     /// The hand that is drawn where nobody said another of it: no register says which one it is.
     pub side: Side,
-    /// What a person says of each hand, by its endpoint.
+    /// What the user says of each hand, by its endpoint.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub hands: BTreeMap<String, KnownHand>,
     /// Language of the window.
@@ -361,7 +361,7 @@ pub struct Settings {
     pub tall_plots: TallPlots,
     /// How gestures are started.
     pub gesture_route: GestureRoute,
-    /// Names that a person gave to gestures, by number.
+    /// Names that the user gave to gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
     /// Names of shipped poses, sequences and reactions that are not shown.
     pub hidden_poses: BTreeSet<String>,
@@ -369,20 +369,20 @@ pub struct Settings {
     pub layout: Layout,
     /// How much larger than designed everything is drawn.
     pub zoom: Zoom,
-    /// What a person tared last, by the place and id of the hand.
+    /// What the user tared last, by the place and id of the hand.
     pub tares: BTreeMap<String, KeptTare>,
     /// What is read first while something moves.
     pub read_first: PollPriority,
     /// What is recorded, and where.
     #[serde(rename = "sessions")]
     pub recordings: RecordingSettings,
-    /// The hand moves only while a person holds a key.
+    /// The hand moves only while the user holds a key.
     pub hold_to_run: bool,
     /// An armed hand that is asked nothing for some minutes is disarmed.
     pub disarm_idle: bool,
     /// How far and how fast a hand follows a source.
     pub follow: FollowLimits,
-    /// The first client of the gateway that writes may move the hand, without a person here who lets it. Only who edits the file
+    /// The first client of the gateway that writes may move the hand, without the user here who lets it. Only who edits the file
     /// says so.
     pub first_client_moves: bool,
     /// What the controls of a gamepad do, as a file of it says; as delivered if nothing changed that.
@@ -423,24 +423,24 @@ impl Settings {
         self.endpoint = Some(text);
     }
 
-    /// The day on which a person connected to this hand last.
+    /// The day on which the user connected to this hand last.
     pub fn last_day(&self, endpoint: &Endpoint) -> Option<&str> {
         let day = &self.hands.get(&endpoint.to_string())?.last_day;
         (!day.is_empty()).then_some(day)
     }
 
-    /// Says on which day a person connected to a hand.
+    /// Says on which day the user connected to a hand.
     pub(crate) fn used_on(&mut self, endpoint: &Endpoint, day: String) {
         self.know_hand(endpoint, |known| known.last_day = day);
     }
 
-    /// Left or right, as the person said of this hand, or last of any.
+    /// Left or right, as the user said of this hand, or last of any.
     pub fn side_of(&self, endpoint: Option<&Endpoint>) -> Side {
         let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
         known.and_then(|known| known.side).unwrap_or(self.side)
     }
 
-    /// What a person calls this hand.
+    /// What the user calls this hand.
     pub fn hand_name(&self, endpoint: &Endpoint) -> Option<&str> {
         let name = &self.hands.get(&endpoint.to_string())?.name;
         (!name.is_empty()).then_some(name)
@@ -467,7 +467,7 @@ impl Settings {
         }
     }
 
-    /// Keeps what a person tared at a hand, or lets go of it.
+    /// Keeps what the user tared at a hand, or lets go of it.
     pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<KeptTare>) {
         match kept {
             Some(kept) => self.tares.insert(hand, kept),
@@ -480,7 +480,7 @@ impl Settings {
         }
     }
 
-    /// The name that a person gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
+    /// The name that the user gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
     pub fn gesture_name(&self, gesture: Gesture) -> Option<&str> {
         let name = self.gesture_names.get(&gesture.get().to_string())?.trim();
         (!name.is_empty()).then_some(name)

@@ -14,7 +14,7 @@ impl SlotId {
     }
 }
 
-/// Which hand, and what it is called: the person's name for it, else where it is.
+/// Which hand, and what it is called: the user's name for it, else where it is.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct HandLabel {
     pub slot: SlotId,

@@ -29,9 +29,9 @@ pub struct State {
     pub now: Moment,
     /// The hands. There is always one, connected or not.
     pub hands: HandList,
-    /// What a person should read.
+    /// What the user should read.
     pub notices: Notices,
-    /// The person's own poses and sequences.
+    /// The user's own poses and sequences.
     pub poses: PoseState,
     /// Grasp trials: the plan, and the sessions.
     pub trials: TrialsState,
@@ -43,7 +43,7 @@ pub struct State {
     pub fleet: FleetState,
     /// Recordings.
     pub recordings: RecordingsState,
-    /// What would be lost if the window closed now, once a person tried to.
+    /// What would be lost if the window closed now, once the user tried to.
     pub leave: Option<LeaveQuestion>,
     /// The exhibition that is shown in place of the window.
     pub exhibit: Option<ExhibitState>,

@@ -1,4 +1,4 @@
-//! Addresses that a command listens at: how they are written, and what a person is told of them.
+//! Addresses that a command listens at: how they are written, and what the user is told of them.
 
 use crate::cli::out::say;
 use anyhow::anyhow;

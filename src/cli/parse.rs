@@ -1,4 +1,4 @@
-//! Values as a person types them on the command line. The error is the sentence that clap shows.
+//! Values as the user types them on the command line. The error is the sentence that clap shows.
 
 use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};

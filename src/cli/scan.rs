@@ -187,7 +187,7 @@ impl ScanPrinter<'_> {
         self.out.object(&json!({ what: trouble }))
     }
 
-    /// Reports the outcome; without a summary, a person ended the scan.
+    /// Reports the outcome; without a summary, the user ended the scan.
     fn end(self, summary: Option<ScanSummary>) -> anyhow::Result<()> {
         let found = self.found;
         if self.args.json {

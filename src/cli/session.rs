@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
-/// A hand that is there answers long before; after this the person is told why nothing comes.
+/// A hand that is there answers long before; after this the user is told why nothing comes.
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
 /// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);

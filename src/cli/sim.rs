@@ -13,7 +13,7 @@ use tokio::time::{Instant, interval};
 /// The hand goes on when nobody asks, so that its first answer after an hour has nothing to catch up on.
 const LIVE_EACH: Duration = Duration::from_millis(10);
 
-/// How long a hand stays silent during a power cycle. The manual gives no start-up time; a person at the switch takes about as
+/// How long a hand stays silent during a power cycle. The manual gives no start-up time; the user at the switch takes about as
 /// long.
 const STARTS_UP: Duration = Duration::from_secs(1);
 
@@ -44,7 +44,7 @@ pub(crate) fn help() -> String {
     format!("{SIM_HELP}\n\n{}", quirk_list())
 }
 
-/// Serves the hand until a person ends it.
+/// Serves the hand until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;

@@ -1,4 +1,4 @@
-//! The wires that a hand is served on for other programs: which a person asks for, and a server on each.
+//! The wires that a hand is served on for other programs: which the user asks for, and a server on each.
 
 use crate::cli::listen;
 use crate::cli::parse::number;

@@ -90,7 +90,7 @@ impl PinGate {
     }
 
     /// The same after wrong PINs in an earlier run of the program. A wait that was not over then begins anew: no clock tells how
-    /// much of it passed that a person could not have set.
+    /// much of it passed that the user could not have set.
     pub fn resumed(pin: Pin, earlier: WrongPins, now: Moment) -> Self {
         let wait = earlier.wait().filter(|_| !earlier.waited);
         Self {

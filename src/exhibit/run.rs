@@ -44,7 +44,7 @@ pub enum HaltReason {
     NoFeedback,
     /// Somebody pressed STOP.
     Stopped,
-    /// A fault that only a person can end, or too many.
+    /// A fault that only the user can end, or too many.
     Fault,
     /// Another controller talks to the hand.
     OtherController,
@@ -105,7 +105,7 @@ impl Default for ExhibitView {
     }
 }
 
-/// What a person does.
+/// What the user does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExhibitWish {
     /// Touches the page, anywhere.
@@ -125,7 +125,7 @@ pub enum ExhibitWish {
 /// What is to be done at the hand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExhibitOrder {
-    /// A person gave the exhibition the right to move the hand.
+    /// The user gave the exhibition the right to move the hand.
     Grant,
     /// Let setpoints pass, with these limits.
     Arm(ArmRequest),
@@ -198,7 +198,7 @@ enum Playback {
 #[derive(Debug)]
 pub struct ExhibitRun {
     plan: Arc<ExhibitPlan>,
-    /// A person armed for the exhibition, and nothing ended that since.
+    /// The user armed for the exhibition, and nothing ended that since.
     permitted: bool,
     phase: Phase,
     motion: Playback,
@@ -209,7 +209,7 @@ pub struct ExhibitRun {
     asked: Option<Moment>,
     /// The link's arming that was asked for here.
     epoch: Option<ArmEpoch>,
-    /// A person permitted it just now.
+    /// The user permitted it just now.
     grants: bool,
     /// The hand is to be stopped.
     stops: bool,
@@ -297,7 +297,7 @@ impl ExhibitRun {
         std::mem::take(&mut self.events)
     }
 
-    /// Takes in what a person did.
+    /// Takes in what the user did.
     pub fn wish(&mut self, wish: ExhibitWish, now: Moment) {
         match wish {
             ExhibitWish::Stop => {
@@ -322,7 +322,7 @@ impl ExhibitRun {
         }
     }
 
-    /// A person arms for the exhibition; the hand opens.
+    /// The user arms for the exhibition; the hand opens.
     fn permit(&mut self, now: Moment) {
         if self.is_live {
             self.permitted = true;
@@ -332,7 +332,7 @@ impl ExhibitRun {
         }
     }
 
-    /// Nothing moves any more before a person arms again.
+    /// Nothing moves any more before the user arms again.
     fn halt(&mut self, why: HaltReason) {
         if self.permitted || !matches!(self.phase, Phase::Halted(_)) {
             self.phase = Phase::Halted(why);
@@ -499,7 +499,7 @@ impl ExhibitRun {
         }
     }
 
-    /// Faults are cleared by themselves where that may be, and need a person where not.
+    /// Faults are cleared by themselves where that may be, and need the user where not.
     fn watch_faults(&mut self, seen: ExhibitInput<'_>, now: Moment) {
         if seen.status.state != LinkState::Fault {
             // A stop in a fault does not end it.

@@ -6,9 +6,9 @@ use crate::hand::moment::Moment;
 use std::fmt;
 use std::time::Duration;
 
-/// From here on a person is warned, °C.
+/// From here on the user is warned, °C.
 pub const WARM: u8 = 60;
-/// From here on nothing moves the hand that no person watches over, °C.
+/// From here on nothing moves the hand that no user watches over, °C.
 pub const HOT: u8 = 70;
 /// A temperature older than this is unknown.
 pub const FRESH_FOR: Duration = Duration::from_secs(5);

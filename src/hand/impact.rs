@@ -58,7 +58,7 @@ pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     peak * (speed / SLOWEST).clamp(0.0, 1.0) * lighter
 }
 
-/// An overshoot that a person should know of before it happens: as much again as the gentle threshold.
+/// An overshoot that the user should know of before it happens: as much again as the gentle threshold.
 pub const NOTABLE_G: f64 = 500.0;
 
 /// The smallest speed at which a contact on a rigid block goes [`NOTABLE_G`] past this threshold, if any does.

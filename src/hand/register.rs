@@ -487,7 +487,7 @@ impl BytePacking {
     /// All byte packings.
     pub const ALL: [Self; 3] = [Self::LowFirst, Self::HighFirst, Self::OnePerWord];
 
-    /// As a person writes it in an endpoint.
+    /// As the user writes it in an endpoint.
     pub const fn key(self) -> &'static str {
         match self {
             Self::LowFirst => "low",

@@ -121,14 +121,14 @@ impl Angle {
 }
 
 impl Force {
-    /// The rated grip of a finger, 20 N (manual 1.2), in grams; more needs a person's consent.
+    /// The rated grip of a finger, 20 N (manual 1.2), in grams; more needs the user's consent.
     pub const RATED: Self = Self(2000);
-    /// Where a person starts: gentle.
+    /// Where the user starts: gentle.
     pub const GENTLE: Self = Self(500);
 }
 
 impl Speed {
-    /// Where a person starts: slow enough that the threshold means something.
+    /// Where the user starts: slow enough that the threshold means something.
     pub const GENTLE: Self = Self(200);
     /// The slowest at which overshoot was measured ([`crate::hand::impact`]): a few grams.
     pub const SLOWEST_MEASURED: Self = Self(25);

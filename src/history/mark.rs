@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Marks that are kept: one every two seconds for an hour is more than a person looks at.
+/// Marks that are kept: one every two seconds for an hour is more than the user looks at.
 pub const MARKS_MAX: usize = 2048;
 /// Characters of a note: one line of the window.
 pub const NOTE_MAX: usize = 80;
@@ -28,7 +28,7 @@ pub enum MarkKind {
     Reconnected,
     /// A gesture was started, by number.
     Gesture(u8),
-    /// What a person noted, at most [`NOTE_MAX`] characters on one line.
+    /// What the user noted, at most [`NOTE_MAX`] characters on one line.
     Note(Arc<str>),
 }
 

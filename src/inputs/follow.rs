@@ -81,7 +81,7 @@ pub struct FollowInput {
     pub state: LinkState,
     /// Where the joints are; `None` where that is not known freshly.
     pub pose: PerDof<Option<Angle>>,
-    /// Whether a person here holds what has to be held, if that has to be.
+    /// Whether the user here holds what has to be held, if that has to be.
     pub held: Option<bool>,
 }
 

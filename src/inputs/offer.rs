@@ -39,7 +39,7 @@ impl OfferLimits {
         speed: PerDof::splat(None),
     };
 
-    /// Whether no joint goes faster or firmer than a person allowed.
+    /// Whether no joint goes faster or firmer than the user allowed.
     pub fn within(&self, allowed: &ArmRequest) -> bool {
         let mut forces = self.force.iter();
         let mut speeds = self.speed.iter();

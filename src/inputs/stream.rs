@@ -59,7 +59,7 @@ pub struct StreamView {
     pub intake: IntakeView,
     /// The newest target.
     pub newest: Option<Offer>,
-    /// Targets that nobody followed, as no person granted it.
+    /// Targets that nobody followed, as no user granted it.
     pub not_granted: u64,
     /// Connections at once, of TCP.
     pub connections: usize,

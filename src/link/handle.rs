@@ -17,7 +17,7 @@ use crate::record::{Calibrated, Disarmed, Record, Reset, Saved, Written};
 use std::sync::{Arc, Weak};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
-/// Requests that may wait: a person cannot ask faster than this drains.
+/// Requests that may wait: the user cannot ask faster than this drains.
 pub const REQUESTS_MAX: usize = 16;
 /// Records that may wait for a reader: ten seconds of samples at full rate of a serial line.
 pub const RECORDS_MAX: usize = 1024;
@@ -136,7 +136,7 @@ impl LinkHandle {
         });
     }
 
-    /// Grants the right to move the hand. A person must have asked for it. Nothing that the holder before sent passes any more;
+    /// Grants the right to move the hand. The user must have asked for it. Nothing that the holder before sent passes any more;
     /// an armed hand stays armed.
     pub fn grant(&self, owner: Owner) -> Lease {
         let mut granted = None;
@@ -172,7 +172,7 @@ impl LinkHandle {
         self.under(lease, |wanted| wanted.set(setpoints))
     }
 
-    /// From now on the hand is stopped at this moment, unless it is put off before: while a person holds what has to be held.
+    /// From now on the hand is stopped at this moment, unless it is put off before: while the user holds what has to be held.
     /// The lease outlasts that, so that who holds again may arm again.
     ///
     /// # Errors
@@ -181,7 +181,7 @@ impl LinkHandle {
         self.under(lease, |wanted| wanted.runs_until = Some(until))
     }
 
-    /// Whether a person has to hold something while the hand moves. Let go, an armed hand is stopped and disarmed before anything
+    /// Whether the user has to hold something while the hand moves. Let go, an armed hand is stopped and disarmed before anything
     /// else; leases outlast that.
     pub fn hold_to_run(&self, hold: HoldToRun) {
         self.0
@@ -205,7 +205,7 @@ impl LinkHandle {
         self.under(lease, |wanted| wanted.disarm(Disarmed::Released))
     }
 
-    /// Ends a lease for this reason: the hand is stopped and disarmed, and a person has to grant it again.
+    /// Ends a lease for this reason: the hand is stopped and disarmed, and the user has to grant it again.
     ///
     /// # Errors
     /// Nothing is stopped under a lease that does not hold.

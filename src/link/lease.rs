@@ -1,4 +1,4 @@
-//! Who may move a hand: one at a time, granted by a person, seen by everyone. Pure; the slot of what is wanted holds it, so that
+//! Who may move a hand: one at a time, granted by the user, seen by everyone. Pure; the slot of what is wanted holds it, so that
 //! a grant, an end and what is sent under it happen in one order.
 
 use crate::hand::Moment;
@@ -9,9 +9,9 @@ use std::net::SocketAddr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Owner {
-    /// A person at this program: its window, or its command line.
+    /// The user at this program: its window, or its command line.
     Person,
-    /// A sequence, a series of trials or another task that a person started here.
+    /// A sequence, a series of trials or another task that the user started here.
     Task,
     /// An exhibition: strangers, within its file.
     Exhibition,
@@ -33,7 +33,7 @@ impl Owner {
         !matches!(self, Self::Person | Self::Task | Self::Exhibition)
     }
 
-    /// True if it may go on after this without a person. An exhibition clears what can be cleared, and counts it.
+    /// True if it may go on after this without the user. An exhibition clears what can be cleared, and counts it.
     const fn outlives(self, end: Disarmed) -> bool {
         matches!((self, end), (Self::Exhibition, Disarmed::Fault))
     }
@@ -43,7 +43,7 @@ impl Owner {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Lease(u64);
 
-/// Whether motion passes only while a person holds a key: whoever has the right.
+/// Whether motion passes only while the user holds a key: whoever has the right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HoldToRun {
     /// Nothing has to be held.
@@ -86,7 +86,7 @@ pub enum LeaseRefusal {
     /// Another has the right now.
     #[error("another may move the hand now: nothing was sent")]
     Taken(Owner),
-    /// It ended, and a person has to grant it again.
+    /// It ended, and the user has to grant it again.
     #[error("nobody may move the hand now, a person has to grant it: nothing was sent")]
     Ended(Disarmed),
 }
@@ -110,7 +110,7 @@ impl Default for LeaseBook {
 }
 
 impl LeaseBook {
-    /// A person grants the right; whoever had it has it no more.
+    /// The user grants the right; whoever had it has it no more.
     pub(crate) const fn grant(&mut self, owner: Owner) -> Lease {
         self.granted += 1;
         let lease = Lease(self.granted);

@@ -127,7 +127,7 @@ pub enum LinkTrouble {
     },
 }
 
-/// What a person arms with: the first write that leaves the armed hand is this, never an angle.
+/// What the user arms with: the first write that leaves the armed hand is this, never an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArmRequest {
     /// Speeds to set before anything moves.

@@ -5,7 +5,7 @@ use crate::hand::{Dof, Force};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 
-/// A joint whose defaults a person should know of before they are written or saved.
+/// A joint whose defaults the user should know of before they are written or saved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Danger {
     /// The joint.

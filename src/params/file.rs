@@ -186,7 +186,7 @@ pub fn read(text: &str) -> Result<ParamsFile, FileError> {
     Ok(file)
 }
 
-/// Reads a file that a person chose.
+/// Reads a file that the user chose.
 ///
 /// # Errors
 /// The first thing that is wrong.

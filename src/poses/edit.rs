@@ -1,4 +1,4 @@
-//! How a person changes the library. Every change leaves it whole: names differ, steps name poses that exist.
+//! How the user changes the library. Every change leaves it whole: names differ, steps name poses that exist.
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
@@ -264,7 +264,7 @@ impl PoseLibrary {
 }
 
 impl SequenceStep {
-    /// A step with the waiting times that a person starts from.
+    /// A step with the waiting times that the user starts from.
     pub fn new(pose: PoseId, speed: Speed) -> Self {
         Self {
             pose,

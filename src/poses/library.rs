@@ -5,7 +5,7 @@ use crate::poses::reaction::TouchForce;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Poses and sequences that a library holds, each: more than a person finds again.
+/// Poses and sequences that a library holds, each: more than the user finds again.
 pub const ENTRIES_MAX: usize = 500;
 /// Steps of a sequence.
 pub const STEPS_MAX: usize = 200;
@@ -84,7 +84,7 @@ impl From<EntryKey> for String {
 /// What an entry of the library is called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EntryNames<'a> {
-    /// In English, or in the person's own words.
+    /// In English, or in the user's own words.
     pub text: &'a str,
     /// In Chinese; empty if there is no other name.
     pub zh: &'a str,
@@ -239,7 +239,7 @@ pub struct Reaction {
     pub others: toml::Table,
 }
 
-/// All poses and sequences, in the person's order.
+/// All poses and sequences, in the user's order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PoseLibrary {
     pub poses: Vec<LibraryPose>,

@@ -126,19 +126,19 @@ impl PoseLibrary {
     }
 }
 
-/// Why a sequence is over. Nothing starts it again but a person.
+/// Why a sequence is over. Nothing starts it again but the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlayEnd {
     /// Every step was played.
     Finished,
-    /// A person ended it.
+    /// The user ended it.
     Person,
     /// Stop, or disarming.
     Disarmed,
     /// A drive reported a fault.
     Fault,
     LinkLost,
-    /// A person moved the hand in another way.
+    /// The user moved the hand in another way.
     TakenOver,
 }
 
@@ -149,7 +149,7 @@ pub enum PlayPhase {
     Moving { since: Moment },
     /// At a pose.
     Dwelling { since: Moment },
-    /// A person paused it, or the one step that was asked for is done.
+    /// The user paused it, or the one step that was asked for is done.
     Paused,
     /// Over.
     Ended(PlayEnd),
@@ -229,7 +229,7 @@ impl Player {
         matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
-    /// True while a person can resume it.
+    /// True while the user can resume it.
     pub const fn is_paused(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Paused)
     }
@@ -311,7 +311,7 @@ impl Player {
         self.arrived = false;
     }
 
-    /// Waits for a person. True if it ran.
+    /// Waits for the user. True if it ran.
     pub const fn pause(&mut self) -> bool {
         let ran = matches!(
             self.view.phase,

@@ -1,4 +1,4 @@
-//! The poses, sequences and reactions that every installation has. They cannot be changed: a person copies or hides them.
+//! The poses, sequences and reactions that every installation has. They cannot be changed: the user copies or hides them.
 
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;

@@ -1,4 +1,4 @@
-//! What a person asks for besides single joints: poses that every hand knows, and entries of the library that are played.
+//! What the user asks for besides single joints: poses that every hand knows, and entries of the library that are played.
 
 use crate::hand::{Angle, Dof};
 use crate::poses::library::{EntryId, SequenceId};
@@ -26,7 +26,7 @@ impl Preset {
     }
 }
 
-/// What a person does with a sequence.
+/// What the user does with a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Play {
     /// Run a sequence or a reaction from its start. Needs arming.

@@ -56,11 +56,11 @@ pub struct Event {
 /// What happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EventKind {
-    /// A person noted something.
+    /// The user noted something.
     Note,
-    /// A person took that note back.
+    /// The user took that note back.
     NoteRemoved,
-    /// A person did something that was sent to the hand.
+    /// The user did something that was sent to the hand.
     Person,
     /// A grasp trial began; the words say which.
     Trial,

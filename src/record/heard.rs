@@ -39,7 +39,7 @@ pub enum Record {
         /// What became of it.
         fate: WriteFate,
     },
-    /// A person asked to arm and may not yet.
+    /// The user asked to arm and may not yet.
     ArmRefused {
         at: Moment,
         /// Why.

@@ -15,7 +15,7 @@ pub enum LinkState {
     Identifying,
     /// The hand answers; nothing is written.
     Monitoring,
-    /// A person armed it: setpoints pass.
+    /// The user armed it: setpoints pass.
     Armed,
     /// Stop was pressed: hold is repeated until the hand rests.
     Holding,
@@ -79,7 +79,7 @@ pub enum Hold {
 #[serde(rename_all = "snake_case")]
 pub enum Disarmed {
     Stop,
-    /// The person disarmed it.
+    /// The user disarmed it.
     Person,
     /// A drive reports a fault.
     Fault,
@@ -101,7 +101,7 @@ pub enum Disarmed {
 }
 
 impl Disarmed {
-    /// True if whoever might move the hand, or a person, wanted it so.
+    /// True if whoever might move the hand, or the user, wanted it so.
     pub const fn is_asked_for(self) -> bool {
         matches!(
             self,

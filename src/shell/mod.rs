@@ -64,7 +64,7 @@ impl DesktopApp {
         self.app.logic(now);
     }
 
-    /// Draws one frame and carries out what the person asked for in it.
+    /// Draws one frame and carries out what the user asked for in it.
     pub fn ui(&mut self, ui: &mut egui::Ui, now: Moment) {
         if self.window.view() == View::Traffic {
             self.app.read_traffic(now);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// One switch as a person spells it.
+/// One switch as the user spells it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Switch {
     /// Its name.

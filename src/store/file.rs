@@ -1,4 +1,4 @@
-//! Files replaced whole or not at all, and read within a limit. What this program keeps by itself is for the person alone who runs
+//! Files replaced whole or not at all, and read within a limit. What this program keeps by itself is for the user alone who runs
 //! it: files of ours can be read by nobody else, folders that we make be entered by nobody else. A folder that is there stays as
 //! it is.
 

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 pub struct Apply {
     /// The rows and their new values.
     pub wanted: Params,
-    /// What a person agreed to.
+    /// What the user agreed to.
     pub consent: Consent,
     /// Where a backup goes before anything is written; none is made without.
     pub backups: Option<Backups>,
@@ -105,7 +105,7 @@ pub async fn apply<H: TaskHand>(
     Ok(applied)
 }
 
-/// Writes all settings of a plan. What did not go out because a person armed meanwhile does not go out for the next group
+/// Writes all settings of a plan. What did not go out because the user armed meanwhile does not go out for the next group
 /// either.
 async fn write<H: TaskHand>(
     hand: &H,

@@ -46,7 +46,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// All, in the order in which a person sees to them.
+    /// All, in the order in which the user sees to them.
     pub const ALL: [Self; 6] = [
         Self::Disarmed,
         Self::NoFault,

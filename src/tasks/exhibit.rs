@@ -61,7 +61,7 @@ pub enum ExhibitStep {
     Event(ExhibitEvent),
 }
 
-/// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before a person arms.
+/// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before the user arms.
 pub async fn exhibit<H: TaskHand>(
     hand: &H,
     start: ExhibitStart,
@@ -138,7 +138,7 @@ struct ExhibitTask<'a, H> {
     locked: PerDof<bool>,
     sample: HandSample,
     playing: Option<PlayingPiece>,
-    /// What a person granted; it may have ended.
+    /// What the user granted; it may have ended.
     lease: Option<Lease>,
     told: mpsc::UnboundedSender<Setpoints>,
     clock: Clock,

@@ -1,4 +1,4 @@
-//! A hand that follows a source under a lease that a person granted: gamepad, stream, another hand. When it moves, and how far, is decided
+//! A hand that follows a source under a lease that the user granted: gamepad, stream, another hand. When it moves, and how far, is decided
 //! in `inputs`; here it is done.
 
 use crate::hand::{
@@ -25,23 +25,23 @@ const DELAYS: usize = 512;
 /// How often the view is told while only its figures change.
 const TELL_EACH: Duration = Duration::from_millis(100);
 
-/// What a person allows a source.
+/// What the user allows a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FollowTerms {
     /// How far and how fast.
     pub limits: FollowLimits,
     /// Joints that stay where they are.
     pub locked: PerDof<bool>,
-    /// What a person here has to hold.
+    /// What the user here has to hold.
     pub hold: HoldToRun,
 }
 
 /// Settings and rights with which following begins.
 #[derive(Debug, Clone)]
 pub struct FollowStart {
-    /// The right to move the hand, granted by a person for this source.
+    /// The right to move the hand, granted by the user for this source.
     pub lease: Lease,
-    /// What a person allows, also while it goes on.
+    /// What the user allows, also while it goes on.
     pub terms: watch::Receiver<FollowTerms>,
     /// Speeds and forces to arm with.
     pub arm: ArmRequest,

@@ -47,7 +47,7 @@ pub trait TaskHand: Clone + Send + Sync + 'static {
     fn stop(&self);
     /// Lets no setpoint pass any more.
     fn disarm(&self);
-    /// Grants the right to move the hand. A person must have asked for it.
+    /// Grants the right to move the hand. The user must have asked for it.
     fn grant(&self, owner: Owner) -> Lease;
     /// Whether a lease still holds.
     fn check(&self, lease: Lease) -> Result<(), LeaseRefusal>;

@@ -1,5 +1,5 @@
 //! What takes several steps at a hand, each task written once as an async function. The window and the command line call the
-//! same. A task tells its steps as they begin and gives its result at the end; it asks a person nothing itself and draws nothing.
+//! same. A task tells its steps as they begin and gives its result at the end; it asks the user nothing itself and draws nothing.
 #![warn(missing_docs)]
 
 pub mod apply;
@@ -68,7 +68,7 @@ pub enum BackupError {
 pub enum ParamStep {
     /// A group was read.
     Read(Span, Vec<u8>),
-    /// What a person agreed to.
+    /// What the user agreed to.
     Meant(Risks),
     /// Rows are written from now on.
     Writing,
@@ -80,7 +80,7 @@ pub enum ParamStep {
     Saving,
 }
 
-/// What a person should mean before a task does it.
+/// What the user should mean before a task does it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Risks {
     /// Joints that will hit harder than before.
@@ -89,7 +89,7 @@ pub struct Risks {
     pub places: Params,
 }
 
-/// What a person agreed to.
+/// What the user agreed to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Consent {
     /// To every risk of the task.

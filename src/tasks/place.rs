@@ -1,5 +1,5 @@
 //! A change of what a hand is found by, so that nobody is left with a hand they cannot reach: backup, look whether the new place
-//! is free, write, look at both places, let a person keep it or take it back, and save it if they want.
+//! is free, write, look at both places, let the user keep it or take it back, and save it if they want.
 
 use crate::hand::{Moment, Refusal};
 use crate::link::RequestError;
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// A person has this long to say that the hand is where it should be.
+/// The user has this long to say that the hand is where it should be.
 pub const KEEP_WITHIN: Duration = Duration::from_secs(15);
 /// Rounds of looking for a hand: one that changes its speed may need a moment.
 const ROUNDS: u8 = 3;
@@ -37,7 +37,7 @@ pub struct PlaceChange {
     pub is_followed: bool,
 }
 
-/// What a person decides. Neither is waited for before the hand was found again.
+/// What the user decides. Neither is waited for before the hand was found again.
 pub struct Decisions {
     /// Whether the change stays; false takes it back.
     pub keeps: BoxFuture<'static, bool>,
@@ -56,11 +56,11 @@ pub enum PlaceStep {
     Looking(WhichPlace),
     /// The value is written there.
     Writing(WhichPlace),
-    /// There, or held and waiting for power: a person says whether it stays, within [`KEEP_WITHIN`].
+    /// There, or held and waiting for power: the user says whether it stays, within [`KEEP_WITHIN`].
     Keeping(WhichPlace),
     /// The old value is being written back.
     Returning,
-    /// Kept: a person says whether it goes into flash.
+    /// Kept: the user says whether it goes into flash.
     Offering(WhichPlace),
     /// SAVE is under way.
     Saving(WhichPlace),
@@ -137,7 +137,7 @@ pub async fn change_place<R: Reach>(
     let hand = hand.ok_or(TaskError::NotReached)?;
     let params = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     drop(hand);
-    // What a person was shown may be older: what the hand holds now is what it gets back.
+    // What the user was shown may be older: what the hand holds now is what it gets back.
     let change = &PlaceChange {
         before: params.get(change.id).unwrap_or(change.before),
         ..change.clone()
@@ -238,7 +238,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         Some(Moved::Nowhere)
     }
 
-    /// The hand answers: a person keeps the change, or it is taken back.
+    /// The hand answers: the user keeps the change, or it is taken back.
     async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.tell)(PlaceStep::Keeping(at));
         let keeps = timeout(KEEP_WITHIN, decisions.keeps).await;
@@ -349,7 +349,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 }
 
-/// When a change that waits for a person is taken back, if the question was asked at this moment.
+/// When a change that waits for the user is taken back, if the question was asked at this moment.
 pub fn taken_back_at(asked: Moment) -> Moment {
     asked.plus(KEEP_WITHIN)
 }

@@ -1,4 +1,4 @@
-//! A sequence of poses on a hand that a person armed: each pose with its speed and force, then its dwell. Whoever else moves
+//! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. Whoever else moves
 //! the hand ends it.
 
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
@@ -24,7 +24,7 @@ pub struct PlayStart {
     pub plan: PlayPlan,
     /// Plays to the end, or stops after each step.
     pub pace: PlayMode,
-    /// The arming that a person gave for it.
+    /// The arming that the user gave for it.
     pub epoch: ArmEpoch,
     /// The right to move the hand.
     pub lease: Lease,
@@ -36,7 +36,7 @@ pub struct PlayStart {
     pub clock: Clock,
 }
 
-/// What a person may want while it runs.
+/// What the user may want while it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlayCommand {
     /// Hold where the hand is, until resumed.

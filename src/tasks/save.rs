@@ -26,7 +26,7 @@ pub struct Save {
     pub backups: Backups,
     /// What the hand would wake up with so far: only what hits harder than this has to be meant.
     pub before: Params,
-    /// What a person agreed to.
+    /// What the user agreed to.
     pub consent: Consent,
 }
 

@@ -1,4 +1,4 @@
-//! A series of grasp trials on a hand that a person armed: readings in, setpoints out, every reading judged as it comes, and
+//! A series of grasp trials on a hand that the user armed: readings in, setpoints out, every reading judged as it comes, and
 //! every stop looked after until feedback shows rest. Decides nothing about trials.
 
 use crate::hand::{ArmEpoch, HandSample, PerDof, Speed};
@@ -61,7 +61,7 @@ pub struct SeriesReport {
 pub struct SeriesStart {
     /// Plan of the series, already checked.
     pub plan: TrialPlan,
-    /// The arming that a person gave for it.
+    /// The arming that the user gave for it.
     pub epoch: ArmEpoch,
     /// The right to move the hand.
     pub lease: Lease,
@@ -71,7 +71,7 @@ pub struct SeriesStart {
     pub clock: Clock,
 }
 
-/// Runs a series. `tell` says whether it could keep what it was told; else the series ends. `ended` resolves when a person ends it. At the end the hand is not armed any more.
+/// Runs a series. `tell` says whether it could keep what it was told; else the series ends. `ended` resolves when the user ends it. At the end the hand is not armed any more.
 ///
 /// # Errors
 /// [`PlanError`]: the plan makes no sense, and nothing was sent.

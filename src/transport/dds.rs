@@ -34,7 +34,7 @@ pub enum DdsError {
         "there is no network interface {name} with an IPv4 address here; 'ip address' lists them"
     )]
     NoInterface {
-        /// As the person named it.
+        /// As the user named it.
         name: String,
     },
     /// The system did not let it listen or ask for interfaces.

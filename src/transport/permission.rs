@@ -3,12 +3,12 @@
 use std::fmt;
 use std::path::Path;
 
-/// What lets a person open a port.
+/// What lets the user open a port.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Remedy {
     /// Become a member of the group that owns it.
     JoinGroup(String),
-    /// The person is a member already, but not in this session.
+    /// The user is a member already, but not in this session.
     LogInAgain(String),
     /// Its group has no right either: the right must be given.
     GiveRight(String),
@@ -44,7 +44,7 @@ struct Rights {
     mode: u32,
     /// The group that owns it; none if it has no name or is root's own.
     group: Option<String>,
-    /// Whether the person is named in the list of that group's members.
+    /// Whether the user is named in the list of that group's members.
     is_member: bool,
 }
 

@@ -43,7 +43,7 @@ fn instead(alike: &[String]) -> String {
     )
 }
 
-/// Why a wire could not be opened, or broke. Each kind has its own words for a person.
+/// Why a wire could not be opened, or broke. Each kind has its own words for the user.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 pub enum TransportError {
     /// The port or interface is not there.

@@ -1,4 +1,4 @@
-//! About how long trials take, before they are run. Pure; a rough number for a person, never a rule.
+//! About how long trials take, before they are run. Pure; a rough number for the user, never a rule.
 
 use crate::hand::{Angle, Speed};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};

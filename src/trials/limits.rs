@@ -12,10 +12,10 @@ pub const FAULT_BLIND_AFTER: Duration = Duration::from_secs(2);
 /// Temperatures are read more seldom.
 pub const HEAT_BLIND_AFTER: Duration = Duration::from_secs(3);
 
-/// Why a trial, and its series, ended early. Only a person who arms starts another.
+/// Why a trial, and its series, ended early. Only the user who arms starts another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Abort {
-    /// A person ended it.
+    /// The user ended it.
     #[error("ended by a person")]
     Person,
     /// Stop, disarming, or another arming.

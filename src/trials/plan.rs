@@ -55,7 +55,7 @@ pub struct TrialPlan {
     /// Angle that each joint closes to; `None` leaves it out.
     #[serde(with = "by_joint")]
     pub close: PerDof<Option<Angle>>,
-    /// In the words of a person.
+    /// In the words of the user.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
     /// Words to find it by.
@@ -353,7 +353,7 @@ mod by_joint {
     }
 }
 
-/// A part of a plan that a person may have to change.
+/// A part of a plan that the user may have to change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlanField {
     /// The choice of joints.
@@ -609,7 +609,7 @@ impl TrialPlan {
         Dof::ALL.into_iter().find(|dof| moves(dof) && locked[*dof])
     }
 
-    /// What a person should expect at most above the threshold on a rigid object, g, and the setting it is of.
+    /// What the user should expect at most above the threshold on a rigid object, g, and the setting it is of.
     pub fn expected(&self) -> Option<(TrialSetting, f64)> {
         let peak = |setting: TrialSetting| {
             let (speed, force) = (setting.speed.get().into(), setting.force.get().into());

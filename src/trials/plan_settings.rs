@@ -1,5 +1,5 @@
-//! The plan that a person was writing, as a table of the settings: read back from one start of the program to the next.
-//! Opens no file; a plan that is read back moves nothing before a person arms and starts it.
+//! The plan that the user was writing, as a table of the settings: read back from one start of the program to the next.
+//! Opens no file; a plan that is read back moves nothing before the user arms and starts it.
 
 use crate::trials::plan::{TRIALS_MAX, TrialPlan};
 use toml::{Table, Value};

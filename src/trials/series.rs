@@ -68,7 +68,7 @@ pub struct TrialSeries {
 }
 
 impl TrialSeries {
-    /// Starts a series in an arming that a person gave. Nothing is sent before the first [`Self::tick`].
+    /// Starts a series in an arming that the user gave. Nothing is sent before the first [`Self::tick`].
     ///
     /// # Errors
     /// [`PlanError`]: the plan makes no sense, and nothing begins.

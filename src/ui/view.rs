@@ -63,7 +63,7 @@ pub enum View {
     Compare,
     /// Faults, statuses and messages, in place of the plots.
     Faults,
-    /// The person's poses, sequences of them, and the gestures in the hand, in place of the plots.
+    /// The user's poses, sequences of them, and the gestures in the hand, in place of the plots.
     Poses,
     /// What the hand keeps: live, staged, saved; its flash.
     Device,

@@ -1,9 +1,9 @@
-//! How a person is asked where a file is or should go.
+//! How the user is asked where a file is or should go.
 
 use futures::future::BoxFuture;
 use std::path::PathBuf;
 
-/// Asks a person where a file should go. Called on the window's thread; what it gives is awaited elsewhere.
+/// Asks the user where a file should go. Called on the window's thread; what it gives is awaited elsewhere.
 pub trait ChooseFile: Send + Sync + 'static {
     /// Resolves to the chosen place; `None` if there was no choice. `suggested` is a file name.
     fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;

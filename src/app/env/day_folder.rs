@@ -1,12 +1,12 @@
-//! Where files go that nobody is asked about: a folder of the day in the person's documents. Writes nothing.
+//! Where files go that nobody is asked about: a folder of the day in the user's documents. Writes nothing.
 
 use directories::UserDirs;
 use std::path::{Path, PathBuf};
 
-/// Names another folder in place of the person's documents.
+/// Names another folder in place of the user's documents.
 const VARIABLE: &str = "HANDSCOPE_DOCUMENTS";
 
-/// The person's documents; `None` if they have no home.
+/// The user's documents; `None` if they have no home.
 pub fn documents() -> Option<PathBuf> {
     if let Some(own) = std::env::var_os(VARIABLE).filter(|own| !own.is_empty()) {
         return Some(own.into());

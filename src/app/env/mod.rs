@@ -23,12 +23,12 @@ pub struct Env {
     pub dial: Arc<dyn Dial>,
     /// Called when something new is there.
     pub wake: Wake,
-    /// How a person is asked where a file should go.
+    /// How the user is asked where a file should go.
     pub files: Arc<dyn ChooseFile>,
     /// How a file is shown in the system's file manager.
     pub reveal: Reveal,
     /// Where settings are kept; `None` = nowhere.
     pub settings_path: Option<PathBuf>,
-    /// The person's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.
+    /// The user's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.
     pub documents: Option<PathBuf>,
 }

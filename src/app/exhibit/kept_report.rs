@@ -21,7 +21,7 @@ const WRITE_EVERY: Duration = Duration::from_secs(60);
 /// A day of a hundred pieces is a tenth of this; anything longer is no report.
 const FILE_LEN_MAX: u64 = 256 * 1024;
 
-/// What lies there of the day, and what a person should know about the file.
+/// What lies there of the day, and what the user should know about the file.
 type ReadReport = (Option<DayReport>, Option<NoticeKind>);
 
 /// The report of today, and what its file holds of it. Without documents nothing is kept.

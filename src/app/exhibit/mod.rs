@@ -1,4 +1,4 @@
-//! The exhibition that is shown in place of the window: what it shows, what a person may do in it.
+//! The exhibition that is shown in place of the window: what it shows, what the user may do in it.
 
 pub mod exhibit_file;
 pub mod kept_report;

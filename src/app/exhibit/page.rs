@@ -1,4 +1,4 @@
-//! What a person does on the page of an exhibition, and what it tells.
+//! What the user does on the page of an exhibition, and what it tells.
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
-/// Wishes that may wait: persons cannot press faster than a task takes them.
+/// Wishes that may wait: users cannot press faster than a task takes them.
 const WISHES_MAX: usize = 64;
 /// What staff see closes by itself after this: nobody leaves it open for visitors.
 const STAFF_FOR: Duration = Duration::from_secs(30);
@@ -113,7 +113,7 @@ impl ExhibitState {
         let _kept = self.wrong_pins.tick(&gate.wrong_pins(now), since_start);
     }
 
-    /// Does what a person asked for. True if the exhibition is to end.
+    /// Does what the user asked for. True if the exhibition is to end.
     pub(crate) fn act(&mut self, action: ExhibitAction, now: Moment) -> bool {
         let is_staff = matches!(self.staff, StaffPanel::Open { .. });
         match action {
@@ -136,7 +136,7 @@ impl ExhibitState {
         false
     }
 
-    /// Passes on what a person did.
+    /// Passes on what the user did.
     pub(crate) fn wish(&mut self, wish: ExhibitWish) {
         // What does not fit is one of very many touches within a moment; a stop goes to the hand by another way, too.
         let _taken = self.wishes.try_send(wish);

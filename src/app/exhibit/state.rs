@@ -1,4 +1,4 @@
-//! What an exhibition shows, as plain values, and what a person may do in it.
+//! What an exhibition shows, as plain values, and what the user may do in it.
 
 use crate::app::env::running::Running;
 use crate::app::exhibit::kept_report::KeptReport;
@@ -58,7 +58,7 @@ pub enum StaffPanel {
     },
 }
 
-/// What a person does at an exhibition.
+/// What the user does at an exhibition.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ExhibitAction {
     /// Staff, in the window: show the exhibition that is built in.

@@ -1,4 +1,4 @@
-//! Saving to a file that a person chooses: how the place is asked for, and what is written there. Never blocks the window.
+//! Saving to a file that the user chooses: how the place is asked for, and what is written there. Never blocks the window.
 
 use crate::app::env::Env;
 use crate::app::env::day_folder;
@@ -88,8 +88,8 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
     text
 }
 
-/// Writes into the folder of the day in the person's documents, under a name that is free; where there are none, asks for
-/// a place. What to tell a person of it.
+/// Writes into the folder of the day in the user's documents, under a name that is free; where there are none, asks for
+/// a place. What to tell the user of it.
 pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
     let is_chosen = env.documents.is_none();
     let chosen = match &env.documents {
@@ -107,7 +107,7 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
         let place = path.clone();
         let work = move || {
             let bytes = content.bytes()?;
-            // Where a person chose the place, who can read it is as the system has it for new files.
+            // Where the user chose the place, who can read it is as the system has it for new files.
             let written = if is_chosen {
                 std::fs::write(&place, bytes)
             } else {

@@ -1,4 +1,4 @@
-//! Files of the program: settings, poses, what was found about hands, and what a person exports.
+//! Files of the program: settings, poses, what was found about hands, and what the user exports.
 
 pub mod export;
 pub(crate) mod open;

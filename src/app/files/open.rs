@@ -1,4 +1,4 @@
-//! Opening a file that a person chooses, away from the window's thread, and what becomes of one that cannot be read.
+//! Opening a file that the user chooses, away from the window's thread, and what becomes of one that cannot be read.
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;

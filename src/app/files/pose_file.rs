@@ -33,7 +33,7 @@ pub fn text(library: &PoseLibrary) -> std::io::Result<String> {
     file::write(library).map_err(std::io::Error::other)
 }
 
-/// The library that was kept, and what a person should know about its file. An unreadable file is put aside and the
+/// The library that was kept, and what the user should know about its file. An unreadable file is put aside and the
 /// last good one taken.
 pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
     if !path.exists() {

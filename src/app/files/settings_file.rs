@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// A settings file is a page of text; anything longer is not ours.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
-/// Where settings lie on this system; `None` if the person has no home.
+/// Where settings lie on this system; `None` if the user has no home.
 pub fn default_path() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "handscope")?;
     Some(folders.config_dir().join("settings.toml"))
@@ -19,7 +19,7 @@ pub fn default_path() -> Option<PathBuf> {
 pub struct Loaded {
     /// The settings in force.
     pub settings: Settings,
-    /// What a person should know about the file.
+    /// What the user should know about the file.
     pub notice: Option<NoticeKind>,
 }
 

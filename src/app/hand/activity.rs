@@ -11,20 +11,20 @@ pub enum Activity {
     Procedure,
     /// A series of trials runs.
     Series,
-    /// It follows another than this window, which a person let.
+    /// It follows another than this window, which the user let.
     Following(Owner),
-    /// An entry of the library is played. A person takes the hand from it by moving it.
+    /// An entry of the library is played. The user takes the hand from it by moving it.
     Playing,
     Idle,
 }
 
 impl Activity {
-    /// Whether the person at this window may move an armed hand: joints, poses, sequences, gestures.
+    /// Whether the user at this window may move an armed hand: joints, poses, sequences, gestures.
     pub const fn lets_person_move(self) -> bool {
         matches!(self, Self::Playing | Self::Idle)
     }
 
-    /// Whether a person may arm the hand. One that follows is taken back by that.
+    /// Whether the user may arm the hand. One that follows is taken back by that.
     pub const fn lets_arm(self) -> bool {
         matches!(
             self,
@@ -32,7 +32,7 @@ impl Activity {
         )
     }
 
-    /// Whether a person may let another than this window move it.
+    /// Whether the user may let another than this window move it.
     pub const fn lets_grant(self) -> bool {
         matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
     }

@@ -146,14 +146,14 @@ impl Connection {
         }
     }
 
-    /// The person at this window moves the hand from now on.
+    /// The user at this window moves the hand from now on.
     pub(crate) fn take_over(&mut self) {
         if let Some(open) = &mut self.open {
             let _lease = open.take_lease();
         }
     }
 
-    /// Asks the link to let setpoints of the person at this window pass.
+    /// Asks the link to let setpoints of the user at this window pass.
     pub(crate) fn arm(&mut self, request: ArmRequest) {
         if let Some(open) = &mut self.open {
             let lease = open.take_lease();
@@ -194,9 +194,17 @@ impl Connection {
         self.status.armed = None;
     }
 
+    /// What has to be held now. A gamepad has a button of its own for that, and an exhibition is for strangers.
+    pub(crate) fn holds(&self, held: HoldToRun) -> HoldToRun {
+        match self.status.holder.map(|holder| holder.owner) {
+            Some(Owner::Gamepad | Owner::Exhibition) => HoldToRun::Off,
+            _ => held,
+        }
+    }
+
     pub(crate) fn hold_to_run(&self, held: HoldToRun) {
         if let Some(link) = self.link() {
-            link.hold_to_run(held);
+            link.hold_to_run(self.holds(held));
         }
     }
 

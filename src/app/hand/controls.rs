@@ -1,4 +1,4 @@
-//! What a person sets for the joints: changes in, setpoints out. Knows no link and no clock.
+//! What the user sets for the joints: changes in, setpoints out. Knows no link and no clock.
 
 use crate::app::hand::held_key::HeldKey;
 use crate::hand::{
@@ -8,12 +8,12 @@ use crate::hand::{
 use crate::link::ArmRequest;
 use crate::record::Record;
 
-/// One joint as a person sets it.
+/// One joint as the user sets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct JointControl {
-    /// Where the slider stands: the actual angle while not armed, the person's target while armed. `None` = not known.
+    /// Where the slider stands: the actual angle while not armed, the user's target while armed. `None` = not known.
     pub target: Option<Angle>,
-    /// Force threshold: what the hand was found with, gentle at most, until the person sets another; sent at arming and when
+    /// Force threshold: what the hand was found with, gentle at most, until the user sets another; sent at arming and when
     /// changed while armed. `None` = not known.
     pub force: Option<Force>,
     /// Speed, in the same way.
@@ -22,14 +22,14 @@ pub struct JointControl {
     pub locked: bool,
 }
 
-/// A change that a person makes to one joint.
+/// A change that the user makes to one joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum JointChange {
-    /// Where it should go. Nothing while the person may not move it.
+    /// Where it should go. Nothing while the user may not move it.
     Target(Angle),
-    /// Force threshold; kept, and sent while the person may move it.
+    /// Force threshold; kept, and sent while the user may move it.
     Force(Force),
-    /// Speed; kept, and sent while the person may move it.
+    /// Speed; kept, and sent while the user may move it.
     Speed(Speed),
     /// Leave it alone, or not any more.
     Lock(bool),
@@ -46,13 +46,13 @@ pub struct HeldOtherwise {
     pub target: Option<Angle>,
 }
 
-/// The six joints as a person sets them.
+/// The six joints as the user sets them.
 #[derive(Debug, Default)]
 pub struct Controls {
     pub joints: PerDof<JointControl>,
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
-    /// What a person holds to let the hand move.
+    /// What the user holds to let the hand move.
     pub(crate) held: HeldKey,
     /// Sliders that show where the joint was sent; the others show the actual angle.
     steered: PerDof<bool>,
@@ -71,7 +71,7 @@ impl Controls {
         }
     }
 
-    /// Takes what the hand was found with for what the person wants, where they set nothing themselves; but nothing faster or
+    /// Takes what the hand was found with for what the user wants, where they set nothing themselves; but nothing faster or
     /// firmer than gentle, as a hand comes with the most there is.
     pub(crate) fn adopt(&mut self, found: &HandSample) {
         for (dof, joint) in self.joints.iter_mut() {
@@ -117,7 +117,7 @@ impl Controls {
         }
     }
 
-    /// The limits that the person set, and gentle ones where they know of none.
+    /// The limits that the user set, and gentle ones where they know of none.
     pub(crate) fn limits(&self) -> ArmRequest {
         ArmRequest {
             speed: self
@@ -129,7 +129,7 @@ impl Controls {
         }
     }
 
-    /// The limits that arming sets: the person's, for good. A locked joint keeps what it holds.
+    /// The limits that arming sets: the user's, for good. A locked joint keeps what it holds.
     pub(crate) fn arm_request(&mut self, holds: &HandSample) -> ArmRequest {
         let mut request = self.limits();
         for (dof, joint) in self.joints.iter_mut() {
@@ -153,7 +153,7 @@ impl Controls {
         }
     }
 
-    /// Adds the person's own speed and force to what is sent, for the free joints that have others from what was played.
+    /// Adds the user's own speed and force to what is sent, for the free joints that have others from what was played.
     pub(crate) fn restore_limits(&mut self, sent: &mut Setpoints) {
         for (dof, joint) in self.joints.iter().filter(|(_, joint)| !joint.locked) {
             if std::mem::take(&mut self.overridden[dof]) {
@@ -175,7 +175,12 @@ impl Controls {
         }
     }
 
-    /// Takes a change. `epoch` is the arming in which the person may move the hand; gives what is to be sent in it.
+    /// The threshold that stops a joint: what the hand holds, else what the user wants.
+    pub fn stops_at(&self, dof: Dof, held: HeldOtherwise) -> Option<Force> {
+        held.force.or(self.joints[dof].force)
+    }
+
+    /// Takes a change. `epoch` is the arming in which the user may move the hand; gives what is to be sent in it.
     pub(crate) fn take(
         &mut self,
         dof: Dof,
@@ -258,7 +263,7 @@ impl Controls {
         (self.steered, self.sent) = (PerDof::default(), PerDof::default());
     }
 
-    /// Sliders that no person holds stand at the actual angle, so that arming and taking over never jump.
+    /// Sliders that no user holds stand at the actual angle, so that arming and taking over never jump.
     pub(crate) fn follow(&mut self, actual: Option<&PerDof<AngleReading>>, is_armed: bool) {
         if !is_armed {
             self.let_go();

@@ -1,4 +1,4 @@
-//! Hold to run: motion passes only while a person holds a key. Let go, out of focus or in a window that hangs, the hand is stopped.
+//! Hold to run: motion passes only while the user holds a key. Let go, out of focus or in a window that hangs, the hand is stopped.
 
 use crate::hand::Moment;
 use crate::link::HoldToRun;
@@ -7,10 +7,10 @@ use std::time::Duration;
 /// A key that was held is believed for so long: a window that draws slowly does not stop the hand, one that hangs does.
 const HELD_FOR: Duration = Duration::from_millis(250);
 
-/// What a person does with the key.
+/// What the user does with the key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HoldKey {
-    /// It was pressed just now: a person's wish to arm.
+    /// It was pressed just now: the user's wish to arm.
     Pressed,
     /// It is still held.
     Held,
@@ -18,7 +18,7 @@ pub enum HoldKey {
     LetGo,
 }
 
-/// What a person holds.
+/// What the user holds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HeldKey {
     is_needed: bool,
@@ -43,7 +43,7 @@ impl HeldKey {
         self.is_needed = is_needed;
     }
 
-    /// What a person does with it; true while somebody who pressed it waits to be armed.
+    /// What the user does with it; true while somebody who pressed it waits to be armed.
     pub(crate) fn take(&mut self, key: HoldKey, now: Moment) -> bool {
         let until = now.plus(HELD_FOR);
         (self.until, self.is_pressed) = match key {

@@ -10,7 +10,7 @@ use crate::transport::Endpoint;
 pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,
     pub(crate) records: Records,
-    /// The right to move the hand that the person at this window, or their task, had last.
+    /// The right to move the hand that the user at this window, or their task, had last.
     pub(crate) lease: Option<Lease>,
 }
 
@@ -24,7 +24,7 @@ impl OpenLink {
         }
     }
 
-    /// The right of the person at this window to move the hand; granted anew if another has it, or none.
+    /// The right of the user at this window to move the hand; granted anew if another has it, or none.
     pub(crate) fn take_lease(&mut self) -> Lease {
         let held = self.link.status().holder;
         let held = held.filter(|holder| holder.owner == Owner::Person);

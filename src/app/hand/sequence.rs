@@ -1,4 +1,4 @@
-//! A sequence that runs, or ran last, and what a person does with one.
+//! A sequence that runs, or ran last, and what the user does with one.
 
 use crate::app::env::running::Running;
 use crate::hand::Setpoints;
@@ -13,7 +13,7 @@ pub struct SequenceRun {
     pub entry: EntryId,
     /// Where it stands.
     pub view: PlayView,
-    /// `None` once a person moves the hand in another way.
+    /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
     pub(crate) task: Option<Running<PlayStep, PlayEnd>>,
 }
@@ -24,7 +24,7 @@ impl SequenceRun {
         !matches!(self.view.phase, PlayPhase::Ended(_))
     }
 
-    /// True while it waits for a person.
+    /// True while it waits for the user.
     pub const fn is_paused(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Paused)
     }

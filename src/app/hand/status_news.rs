@@ -1,4 +1,4 @@
-//! What a changed status of a link means: marks in the history, and what a person is told.
+//! What a changed status of a link means: marks in the history, and what the user is told.
 
 use crate::app::hand::connection::Connection;
 use crate::app::notices::{HandNotices, NoticeKind};

@@ -1,8 +1,8 @@
-//! What a person does with the list of hands.
+//! What the user does with the list of hands.
 
 use crate::app::slot::SlotId;
 
-/// What a person does with the list of hands. None of it moves a hand.
+/// What the user does with the list of hands. None of it moves a hand.
 #[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HandsAction {
     /// Another slot, without a hand so far, that is shown from now on.

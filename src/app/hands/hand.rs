@@ -11,7 +11,7 @@ use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
 use crate::app::procedures::Procedures;
-use crate::app::readings::{Freshness, Measured, Readings};
+use crate::app::readings::{Measured, Readings};
 use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
@@ -19,12 +19,11 @@ use crate::app::trials::work::start_refusal;
 use crate::app::trials::{SeriesRun, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
-    Angle, ArmEpoch, Dof, Finger, Force, Gesture, GestureRoute, HandCommand, Moment, PerDof,
-    Setpoints,
+    Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
-use crate::link::{HoldToRun, LeaseRefusal, LinkStatus, Owner, RequestError};
+use crate::link::{LeaseRefusal, LinkStatus, RequestError};
 use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::{ArmRefusal, LinkState, Record};
 use crate::tasks::play::{self, PlayCommand, PlayStart};
@@ -36,7 +35,7 @@ use tokio::sync::mpsc;
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
 /// which the link itself gives the alarm, and a little.
 pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
-/// Commands to a sequence that may wait: a person cannot press faster than a task takes them.
+/// Commands to a sequence that may wait: the user cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
 
 /// Everything about one hand.
@@ -44,7 +43,7 @@ const COMMANDS_MAX: usize = 16;
 pub struct Hand {
     /// Which of several, and what it is called.
     pub label: HandLabel,
-    /// Left or right, as the person says: no register does.
+    /// Left or right, as the user says: no register does.
     pub side: Side,
     pub connection: Connection,
     pub readings: Readings,
@@ -55,7 +54,7 @@ pub struct Hand {
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
     /// The plan that begins once the arming that was asked for with it holds, and when that was.
-    pub(crate) series_asked: Option<(TrialPlan, Moment)>,
+    pub series_asked: Option<(TrialPlan, Moment)>,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
@@ -97,18 +96,6 @@ impl Hand {
         start_refusal(plan, self.series.is_some(), armed, &self.controls.locked())
     }
 
-    /// How fresh a value asked for at `asked` is now.
-    pub fn freshness(&self, asked: Option<Moment>, now: Moment) -> Freshness {
-        let is_live = self.connection.is_live();
-        self.readings.freshness(asked, is_live, now)
-    }
-
-    /// The same for a reading of a fingertip.
-    pub fn tip_freshness(&self, finger: Finger, now: Moment) -> Freshness {
-        let is_live = self.connection.is_live();
-        self.readings.tip_freshness(finger, is_live, now)
-    }
-
     /// What a live hand holds of a joint, where that is not what was set.
     pub fn held_otherwise(&self, dof: Dof) -> HeldOtherwise {
         if self.connection.is_live() {
@@ -116,12 +103,6 @@ impl Hand {
         } else {
             HeldOtherwise::default()
         }
-    }
-
-    /// The threshold that stops a joint: what the hand holds, else what the person wants.
-    pub fn stops_at(&self, dof: Dof) -> Option<Force> {
-        let wanted = self.controls.joints[dof].force;
-        self.held_otherwise(dof).force.or(wanted)
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.
@@ -274,7 +255,7 @@ impl Hand {
         }
     }
 
-    /// Sliders that no person holds stand at the actual angle.
+    /// Sliders that no user holds stand at the actual angle.
     pub(crate) fn follow(&mut self) {
         let angles = self.connection.angles(&self.readings.sample);
         self.controls.follow(angles, self.connection.is_armed());
@@ -321,11 +302,6 @@ impl Hand {
         self.series_asked = may_arm.then_some((plan, ctx.now));
     }
 
-    /// Whether a series begins as soon as the hand is armed for it.
-    pub const fn arms_for_series(&self) -> bool {
-        self.series_asked.is_some()
-    }
-
     /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
     /// nothing could be sent.
     pub(crate) fn stop(&mut self, ctx: &mut Ctx<'_>) {
@@ -352,7 +328,8 @@ impl Hand {
     /// What is done with the key that lets the hand move. Who presses is armed as soon as a stop before is confirmed.
     pub(crate) fn hold_key(&mut self, key: HoldKey, ctx: &mut Ctx<'_>) {
         let wants_to_arm = self.controls.held.take(key, ctx.now);
-        self.connection.hold_to_run(self.hold_to_run());
+        self.connection
+            .hold_to_run(self.controls.held.hold_to_run());
         if !wants_to_arm || self.arm_refusal(ctx.now) == Some(ArmRefusal::Holding) {
             return;
         }
@@ -366,24 +343,17 @@ impl Hand {
     /// Whether the key has to be held may have been changed, and time goes on.
     pub(crate) fn need_key(&mut self, is_needed: bool) {
         self.controls.held.need(is_needed);
-        self.connection.hold_to_run(self.hold_to_run());
+        self.connection
+            .hold_to_run(self.controls.held.hold_to_run());
     }
 
-    /// What has to be held now. A gamepad has a button of its own for that, and an exhibition is for strangers.
-    pub(crate) fn hold_to_run(&self) -> HoldToRun {
-        match self.connection.status.holder.map(|holder| holder.owner) {
-            Some(Owner::Gamepad | Owner::Exhibition) => HoldToRun::Off,
-            _ => self.controls.held.hold_to_run(),
-        }
-    }
-
-    /// The arming in which the person at this window may move the hand now.
+    /// The arming in which the user at this window may move the hand now.
     pub(crate) fn own_epoch(&self) -> Option<ArmEpoch> {
         let may_move = self.connection.is_armed() && self.activity().lets_person_move();
         self.connection.status.armed.filter(|_| may_move)
     }
 
-    /// Changes what a person set for a joint. Speed and force are kept where they cannot be sent.
+    /// Changes what the user set for a joint. Speed and force are kept where they cannot be sent.
     pub(crate) fn change_joint(&mut self, dof: Dof, change: JointChange) {
         let wanted = self.controls.take(dof, change, self.own_epoch());
         if let JointChange::Lock(_) = change {
@@ -401,7 +371,7 @@ impl Hand {
         }
     }
 
-    /// What was played is over: the person's own speed and force are in force again.
+    /// What was played is over: the user's own speed and force are in force again.
     pub(crate) fn restore_limits(&mut self) {
         let Some(epoch) = self.own_epoch() else {
             return;
@@ -430,7 +400,7 @@ impl Hand {
         true
     }
 
-    /// A person moves the hand: what moved it before does not any more.
+    /// The user moves the hand: what moved it before does not any more.
     pub(crate) fn take_over(&mut self) {
         if let Some(run) = &mut self.sequence {
             run.leave();
@@ -438,7 +408,7 @@ impl Hand {
         self.connection.take_over();
     }
 
-    /// Starts what a person wants played; without arming, nothing. True if it was started.
+    /// Starts what the user wants played; without arming, nothing. True if it was started.
     pub(crate) fn play(&mut self, plan: PlayPlan, pace: PlayMode, env: &Env, now: Moment) -> bool {
         let Some(epoch) = self.own_epoch() else {
             return false;

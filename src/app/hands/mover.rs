@@ -22,9 +22,9 @@ pub enum Mover {
     Playing(EntryId, usize),
     /// A stored gesture.
     Gesture(Gesture),
-    /// Another than this window, which a person let.
+    /// Another than this window, which the user let.
     Outside(Owner),
-    /// Setpoints of a person.
+    /// Setpoints of the user.
     Setpoints,
     /// A task of this program that a recording does not name.
     Task,
@@ -109,6 +109,7 @@ fn came_to_rest(hand: &Hand, now: Moment) -> bool {
     let Some(status) = status.filter(|_| hand.connection.status.armed.is_none()) else {
         return false;
     };
-    let is_live = hand.freshness(Some(status.asked), now) == Freshness::Live;
+    let is_live = hand.connection.is_live();
+    let is_live = hand.readings.freshness(Some(status.asked), is_live, now) == Freshness::Live;
     is_live && status.value.iter().all(|(_, status)| status.is_stopped())
 }

@@ -83,7 +83,7 @@ impl FollowRun {
     }
 }
 
-/// True if a hand that was led is lost or stopped, so that the one that leads must not go on alone. One that a person took back, or
+/// True if a hand that was led is lost or stopped, so that the one that leads must not go on alone. One that the user took back, or
 /// let another move, may.
 const fn stops_leader(end: FollowEnd) -> bool {
     match end {

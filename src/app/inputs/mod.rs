@@ -1,4 +1,4 @@
-//! What besides the window may move a hand, and who reads it: streams, gamepads, the gateway. Each is opened by a person, and
+//! What besides the window may move a hand, and who reads it: streams, gamepads, the gateway. Each is opened by the user, and
 //! belongs to one connection with one hand.
 
 mod grant;
@@ -26,7 +26,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
 
-/// What a person asks of inputs and of the gateway.
+/// What the user asks of inputs and of the gateway.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum InputAction {
     /// Listen for lines here, or no more.
@@ -53,7 +53,7 @@ pub enum InputAction {
     Map(PadMap),
 }
 
-/// A source that a person may let move the hand.
+/// A source that the user may let move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputSource {
     /// Whoever sends lines.

@@ -1,9 +1,9 @@
-//! What a person may request in the Device view.
+//! What the user may request in the Device view.
 
 use crate::params::rows::ParamId;
 use std::path::PathBuf;
 
-/// One thing that a person asks for.
+/// One thing that the user asks for.
 #[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ParamAction {
     /// Read all rows. Writes nothing.

@@ -15,7 +15,7 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Ticks the rows in which the hand differs. A row that says where a hand is found belongs to one hand, so only a person ticks it.
+    /// Ticks the rows in which the hand differs. A row that says where a hand is found belongs to one hand, so only the user ticks it.
     pub fn new(name: String, file: ParamsFile, live: &Params) -> Self {
         let differ = live.differences(&file.params).into_iter();
         let ticked = differ.map(|row| row.id).filter(|id| !id.is_place());

@@ -1,4 +1,4 @@
-//! Why nothing can be read, written or saved now, as a reason that a person is told. The link asks the same again.
+//! Why nothing can be read, written or saved now, as a reason that the user is told. The link asks the same again.
 
 use crate::link::LinkStatus;
 use crate::record::{LinkState, Rest};

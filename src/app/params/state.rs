@@ -46,7 +46,7 @@ pub enum Doing {
     Saving,
 }
 
-/// What waits for a person's confirmation.
+/// What waits for the user's confirmation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WriteQuestion {
     /// What would be done.
@@ -55,7 +55,7 @@ pub struct WriteQuestion {
     pub dangers: Vec<Danger>,
 }
 
-/// What a person asked to write.
+/// What the user asked to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WriteRequest {
     /// These rows, into the hand's memory.
@@ -97,7 +97,7 @@ pub struct ParamsState {
     pub doing: Doing,
     /// Why the last reading is incomplete.
     pub trouble: Option<RequestError>,
-    /// What waits for a person's confirmation.
+    /// What waits for the user's confirmation.
     pub question: Option<WriteQuestion>,
     /// The values that undo the last apply.
     pub undo: Params,
@@ -288,7 +288,7 @@ impl ParamsState {
         others.iter().flatten().any(differs)
     }
 
-    /// Notes that a person looks at the rows. True if they should now be read: when the view is opened, and when a hand is found
+    /// Notes that the user looks at the rows. True if they should now be read: when the view is opened, and when a hand is found
     /// while it is open.
     pub(crate) fn look(&mut self, now: Moment) -> bool {
         let before = self.looked_at.replace(now);

@@ -1,4 +1,4 @@
-//! What a person asks about the rows that a hand keeps, and the tasks that do it. Reads before it writes; asks before what
+//! What the user asks about the rows that a hand keeps, and the tasks that do it. Reads before it writes; asks before what
 //! could hurt.
 
 use crate::app::ctx::Ctx;
@@ -38,7 +38,7 @@ struct HandContext<'a> {
 }
 
 impl ParamsState {
-    /// Carries out what a person asked for.
+    /// Carries out what the user asked for.
     pub(crate) fn act(
         &mut self,
         action: ParamAction,

@@ -106,7 +106,7 @@ fn a_gamepad_goes_to_a_persons_own_poses_before_those_that_are_shipped_and_shown
     assert_eq!(on_pad(&book, &shown)["A"], open);
     let shipped = starter().poses.iter().find(|pose| pose.name == "Pinch");
     assert_eq!(on_pad(&book, &shown)["Pinch"], shipped.unwrap().targets());
-    // Another name for it: the button's is gone, and that of a shipped one is a person's own now.
+    // Another name for it: the button's is gone, and that of a shipped one is the user's own now.
     book.edit(LibraryEdit::Pose(a, PoseEdit::Rename("Pinch".into())));
     let poses = on_pad(&book, &shown);
     assert_eq!((poses.get("A"), poses["Pinch"]), (None, open));

@@ -1,4 +1,4 @@
-//! What a card shows and what a person may decide on it. Plain values; asks nobody.
+//! What a card shows and what the user may decide on it. Plain values; asks nobody.
 
 use crate::app::env::running::Running;
 use crate::app::procedures::reach::GoRequest;
@@ -12,7 +12,7 @@ use crate::tasks::reset::{ResetReport, ResetStep};
 use std::path::PathBuf;
 use tokio::sync::{mpsc, oneshot};
 
-/// What a person decides on a card.
+/// What the user decides on a card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ProcedureAction {
     /// Do it.
@@ -32,7 +32,7 @@ pub enum ProcedureAction {
 /// Where a card stands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProcedureStage<S, E> {
-    /// A person is asked.
+    /// The user is asked.
     Asking,
     /// It is under way, since then.
     Doing(S, Moment),

@@ -33,7 +33,7 @@ impl Reach for Asking {
     }
 }
 
-/// What a person decides on the card; a card that is gone decides nothing.
+/// What the user decides on the card; a card that is gone decides nothing.
 pub(crate) fn decided(answer: oneshot::Receiver<bool>) -> BoxFuture<'static, bool> {
     Box::pin(async { answer.await.unwrap_or(false) })
 }

@@ -86,12 +86,12 @@ impl Procedures {
         }
     }
 
-    /// The person goes elsewhere: the card closes, and nothing more is done for it.
+    /// The user goes elsewhere: the card closes, and nothing more is done for it.
     pub(crate) fn close(&mut self) {
         *self = Self::default();
     }
 
-    /// Carries out what a person decided on the card.
+    /// Carries out what the user decided on the card.
     pub(crate) fn act(
         &mut self,
         action: ProcedureAction,

@@ -50,7 +50,7 @@ impl ExhibitWork {
         }
     }
 
-    /// Does what a person asked for. True if the program is to end with the exhibition.
+    /// Does what the user asked for. True if the program is to end with the exhibition.
     pub(crate) fn act(&mut self, action: ExhibitAction, state: &mut State, env: &Env) -> bool {
         let now = state.now;
         let Some(exhibit) = &mut state.exhibit else {

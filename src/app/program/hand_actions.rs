@@ -1,4 +1,4 @@
-//! What a person does with the hand that is shown.
+//! What the user does with the hand that is shown.
 
 use crate::app::env::Env;
 use crate::app::program::hand_tick::record_event;

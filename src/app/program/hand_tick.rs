@@ -175,7 +175,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
             if !params.is_busy() {
                 recording.params(&params.live_params(), ctx.now);
             }
-            // It tells what the hand keeps: that is read once, as soon as the hand rests and nothing else goes on, unless a person
+            // It tells what the hand keeps: that is read once, as soon as the hand rests and nothing else goes on, unless the user
             // looked at it before.
             let may_read = params.write_refusal(&connection.status).is_none();
             let link = link.clone();
@@ -204,7 +204,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Notes in the recording of a hand that a person did something.
+/// Notes in the recording of a hand that the user did something.
 pub(super) fn record_event(hand: &Hand, at: Moment, kind: EventKind, words: String) {
     if let Some(recording) = &hand.recording {
         recording.event(at, kind, words);

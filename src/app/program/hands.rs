@@ -1,4 +1,4 @@
-//! Carries out what a person does with the list of hands. What is done to one hand touches no other.
+//! Carries out what the user does with the list of hands. What is done to one hand touches no other.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -11,7 +11,7 @@ use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::transport::Endpoint;
 
-/// Does what a person asked for.
+/// Does what the user asked for.
 pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
     match action {
         HandsAction::Add => {
@@ -172,7 +172,7 @@ pub(super) fn each_hand(
     }
 }
 
-/// True if a slot, other than the one it is for, has this hand or the port that leads to it; the person is told.
+/// True if a slot, other than the one it is for, has this hand or the port that leads to it; the user is told.
 pub(super) fn is_open_elsewhere(
     state: &mut State,
     endpoint: &Endpoint,

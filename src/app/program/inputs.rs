@@ -15,7 +15,7 @@ use crate::record::{ArmRefusal, Disarmed};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms};
 use crate::transport::dds::DdsPlace;
 
-/// Does what a person asked for at the shown hand.
+/// Does what the user asked for at the shown hand.
 pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
     let (may_be_led, now) = (leading::may_be_led(state), state.now);
     let State {
@@ -32,7 +32,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
             let card = hand.inputs.fleet_card(&hand.label.name, side, settings);
             let domain = 0;
             let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
-            // What a person set here is the most that a message may ask for.
+            // What the user set here is the most that a message may ask for.
             let allowed = hand.controls.limits();
             hand.inputs.join_dds(place, allowed, connection, env);
         }
@@ -75,7 +75,7 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
         return;
     };
     let lease = link.grant(offered.owner);
-    // Of an armed hand that played something: whoever moves it now does so with the person's speed and force.
+    // Of an armed hand that played something: whoever moves it now does so with the user's speed and force.
     let armed = hand.connection.status.armed;
     if let Some(mut own) = armed.map(Setpoints::none) {
         hand.controls.restore_limits(&mut own);
@@ -98,7 +98,7 @@ fn terms(hand: &Hand, settings: &Settings) -> FollowTerms {
     FollowTerms {
         limits: settings.follow,
         locked: hand.controls.locked(),
-        hold: hand.hold_to_run(),
+        hold: hand.connection.holds(hand.controls.held.hold_to_run()),
     }
 }
 

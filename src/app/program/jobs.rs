@@ -1,4 +1,4 @@
-//! What goes on off the window's thread: files that a person asked for, and serial ports that are looked for.
+//! What goes on off the window's thread: files that the user asked for, and serial ports that are looked for.
 
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
@@ -24,14 +24,14 @@ pub(super) struct Jobs {
     finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
     exporting: Option<BackgroundJob<NoticeKind>>,
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
-    /// Sessions of trials that a person opens or saves.
+    /// Sessions of trials that the user opens or saves.
     sessions: Option<BackgroundJob<FilesEnd>>,
     /// A session of trials that is written by itself.
     keeping: Option<BackgroundJob<FilesEnd>>,
 }
 
 impl Jobs {
-    /// Takes in what is done; what a person should know of it.
+    /// Takes in what is done; what the user should know of it.
     pub(super) fn tick(&mut self, state: &mut State, env: &Env) -> Vec<NoticeKind> {
         if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
             state.ports = found;

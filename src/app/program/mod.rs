@@ -94,7 +94,7 @@ impl App {
         self.records = false;
     }
 
-    /// Tells the person something that was found elsewhere, such as an unreadable settings file.
+    /// Tells the user something that was found elsewhere, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
         if let Some(player) = &mut self.recorded.player {
             player.tell(what.clone());
@@ -162,7 +162,7 @@ impl App {
         told.into_iter().for_each(|told| self.tell(told, now));
     }
 
-    /// Carries out one thing that a person asked for.
+    /// Carries out one thing that the user asked for.
     pub fn act(&mut self, action: Action, now: Moment) {
         let action = match &mut self.recorded.player {
             Some(player) => match player.pass(action) {
@@ -236,7 +236,7 @@ impl App {
                     RecordingAction::Record(true),
                     RecordingAction::RecordSimulated(true),
                 ];
-                // A press of a person counts more than how the program was started.
+                // A press of the user counts more than how the program was started.
                 self.records |= on.contains(&action);
                 self.recorded.act(action, state, env);
             }
@@ -318,7 +318,7 @@ impl App {
         }
     }
 
-    /// Keeps with each hand what a person does to it.
+    /// Keeps with each hand what the user does to it.
     fn record_act(&mut self, action: &Action, now: Moment) {
         let State { hands, poses, .. } = &mut self.state;
         let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
@@ -378,7 +378,7 @@ impl App {
         }
     }
 
-    /// A person wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
+    /// The user wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
     pub fn asks_before_closing(&mut self) -> bool {
         // The way out of an exhibition is the PIN.
         if let Some(exhibit) = &mut self.state.exhibit {
@@ -396,7 +396,7 @@ impl App {
         asks
     }
 
-    /// True once a person said that the window should close, whatever is lost.
+    /// True once the user said that the window should close, whatever is lost.
     pub const fn leaves(&self) -> bool {
         self.leaves
     }

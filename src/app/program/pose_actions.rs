@@ -1,4 +1,4 @@
-//! What a person does with poses and sequences.
+//! What the user does with poses and sequences.
 
 use crate::app::env::Env;
 use crate::app::hand::SequenceRun;
@@ -124,12 +124,12 @@ fn next_step(hand: &Hand, play: Play) -> PlayStep {
     }
 }
 
-/// True for a hand that takes a pose which is meant for all: it is armed, and the person at this window moves it.
+/// True for a hand that takes a pose which is meant for all: it is armed, and the user at this window moves it.
 pub(super) fn takes_poses(hand: &Hand) -> bool {
     hand.own_epoch().is_some()
 }
 
-/// True if this hand does what a person asks of the shown one, where that is meant for all. `entry` is what the shown one plays:
+/// True if this hand does what the user asks of the shown one, where that is meant for all. `entry` is what the shown one plays:
 /// nothing else is resumed with it.
 fn plays_along(hand: &Hand, play: Play, entry: Option<EntryId>) -> bool {
     match play {

@@ -1,4 +1,4 @@
-//! Settings and the person's own poses: taken from their files at start, saved off the window's thread when they change.
+//! Settings and the user's own poses: taken from their files at start, saved off the window's thread when they change.
 
 use crate::app::env::Env;
 use crate::app::files::{pose_file, settings_file};

@@ -1,4 +1,4 @@
-//! Taring of the fingertips: by a person, kept for the next time the same hand is connected, and offered then.
+//! Taring of the fingertips: by the user, kept for the next time the same hand is connected, and offered then.
 
 use crate::app::ctx::Ctx;
 use crate::app::hands::Hand;
@@ -30,11 +30,13 @@ pub(super) fn take_kept(hand: &mut Hand, ctx: &mut Ctx<'_>) {
 }
 
 fn fresh_tips(hand: &Hand, now: Moment) -> Vec<Finger> {
-    let is_fresh = |finger: &Finger| hand.tip_freshness(*finger, now) == Freshness::Live;
+    let is_live = hand.connection.is_live();
+    let freshness = |finger| hand.readings.tip_freshness(finger, is_live, now);
+    let is_fresh = |finger: &Finger| freshness(*finger) == Freshness::Live;
     Finger::ALL.into_iter().filter(is_fresh).collect()
 }
 
-/// Puts what a person tared into the settings.
+/// Puts what the user tared into the settings.
 pub(super) fn keep(hand: &Hand, settings: &mut Settings, now: Moment) {
     if let Some(tared) = tared_hand(hand) {
         settings.keep_tare(tared, hand.readings.tare.to_keep(since_1970(), now));

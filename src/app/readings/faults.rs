@@ -1,6 +1,6 @@
-//! Faults now and before, joint by joint, latched until a person has seen them. Words are in `hand`.
+//! Faults now and before, joint by joint, latched until the user has seen them. Words are in `hand`.
 //!
-//! The rule: a new fault is unseen, and only a person's act marks it as seen, one entry or all. Opening the
+//! The rule: a new fault is unseen, and only the user's act marks it as seen, one entry or all. Opening the
 //! list is not enough, and neither is clearing errors: a fault that ended before anybody read it is worth a word. What
 //! comes again is unseen again.
 
@@ -70,7 +70,7 @@ pub struct FaultEntry {
     pub until: Option<Moment>,
     /// Times it came.
     pub count: u32,
-    /// A person said that they have seen it, this time.
+    /// The user said that they have seen it, this time.
     pub seen: bool,
 }
 
@@ -125,21 +125,21 @@ impl FaultList {
         news
     }
 
-    /// A person has seen this one.
+    /// The user has seen this one.
     pub fn see_one(&mut self, dof: Dof, what: FaultKind) {
         for entry in &mut self.entries {
             entry.seen |= entry.dof == dof && entry.what == what;
         }
     }
 
-    /// A person has seen all of them.
+    /// The user has seen all of them.
     pub fn see_all(&mut self) {
         for entry in &mut self.entries {
             entry.seen = true;
         }
     }
 
-    /// Those that no person has seen yet, lasting or over, newest first.
+    /// Those that no user has seen yet, lasting or over, newest first.
     pub fn unseen(&self) -> impl Iterator<Item = &FaultEntry> {
         self.iter().filter(|entry| !entry.seen)
     }

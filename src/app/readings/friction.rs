@@ -1,4 +1,4 @@
-//! How the grip of a fingertip stands against slipping, for a friction that a person chose. Draws nothing.
+//! How the grip of a fingertip stands against slipping, for a friction that the user chose. Draws nothing.
 
 use crate::hand::TactileBlock;
 

@@ -1,4 +1,4 @@
-//! What the tactile channels are counted from: the first reading of an untouched fingertip, or the one that a person chose.
+//! What the tactile channels are counted from: the first reading of an untouched fingertip, or the one that the user chose.
 //! Changes no reading.
 
 use crate::hand::{Finger, HandSample, Moment, PerFinger};
@@ -25,9 +25,9 @@ pub struct TareZero {
 pub enum Source {
     /// The first reading of the untouched fingertip.
     First,
-    /// A person tared it.
+    /// The user tared it.
     Person,
-    /// A person tared it in an earlier session, so long before [`TareZero::at`].
+    /// The user tared it in an earlier session, so long before [`TareZero::at`].
     Kept(Duration),
 }
 
@@ -64,7 +64,7 @@ impl Tare {
         self.zeros[finger]
     }
 
-    /// When a person tared last, if one did and it was not undone.
+    /// When the user tared last, if one did and it was not undone.
     pub fn chosen_at(&self) -> Option<Moment> {
         let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
         let chosen = chosen.filter(|zero| zero.source == Source::Person);
@@ -158,7 +158,7 @@ impl Tare {
         })
     }
 
-    /// What a person chose, to be kept; else what was kept before. `since_1970` and `now` are the same moment.
+    /// What the user chose, to be kept; else what was kept before. `since_1970` and `now` are the same moment.
     pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<KeptTare> {
         let Some(at) = self.chosen_at() else {
             let offer = self.offer.as_ref()?.as_ref();

@@ -1,4 +1,4 @@
-//! What a person says of a recording, in a small file beside it: its name, a star, notes. The recording itself is never changed.
+//! What the user says of a recording, in a small file beside it: its name, a star, notes. The recording itself is never changed.
 
 use crate::hand::Moment;
 use crate::record::EventKind;
@@ -20,7 +20,7 @@ pub struct RecordingNote {
     pub words: String,
 }
 
-/// What a person says of a recording.
+/// What the user says of a recording.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecordingAbout {
@@ -28,7 +28,7 @@ pub struct RecordingAbout {
     pub name: String,
     /// Kept, whatever the budget says.
     pub star: bool,
-    /// The notes as a person left them, in place of those in the recording; `None` if nobody changed them.
+    /// The notes as the user left them, in place of those in the recording; `None` if nobody changed them.
     pub notes: Option<Vec<RecordingNote>>,
     /// Keys of a later version, kept as they are.
     #[serde(flatten)]
@@ -60,13 +60,13 @@ impl RecordingAbout {
     pub fn save(&self, recording: &Path) -> io::Result<()> {
         let text = toml::to_string_pretty(self).map_err(io::Error::other)?;
         if Self::load(recording).is_err() {
-            // Whatever a person wrote there by hand is kept under another name.
+            // Whatever the user wrote there by hand is kept under another name.
             let _aside = set_aside(&Self::path(recording));
         }
         replace(&Self::path(recording), text.as_bytes())
     }
 
-    /// The notes in force: a person's, else those of the recording.
+    /// The notes in force: the user's, else those of the recording.
     pub fn notes(&self, marks: &[FileMark]) -> Vec<RecordingNote> {
         if let Some(notes) = &self.notes {
             return notes.clone();

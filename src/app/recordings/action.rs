@@ -1,19 +1,19 @@
-//! What a person asks about recordings.
+//! What the user asks about recordings.
 
 use crate::app::recordings::export::RecordingExport;
 use crate::hand::Moment;
 use std::path::PathBuf;
 
-/// What a person asks about recordings.
+/// What the user asks about recordings.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum RecordingAction {
     /// Record hands from now on, or no longer.
     Record(bool),
     /// Record built-in hands, too, or no longer.
     RecordSimulated(bool),
-    /// Record into this folder from the next recording on; without a path a person is asked for one.
+    /// Record into this folder from the next recording on; without a path the user is asked for one.
     ChooseFolder(Option<PathBuf>),
-    /// Record into the person's documents again.
+    /// Record into the user's documents again.
     DefaultFolder,
     /// Look again which recordings there are.
     Look,

@@ -1,4 +1,4 @@
-//! Which recordings go when they need more room than they may: the oldest first, none that a person cares for, and by themselves
+//! Which recordings go when they need more room than they may: the oldest first, none that the user cares for, and by themselves
 //! only what was told long enough before.
 
 use crate::app::recordings::about::RecordingAbout;
@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A recording is deleted by itself this long after that was told, at the earliest: a person comes back the next day and can say no.
+/// A recording is deleted by itself this long after that was told, at the earliest: the user comes back the next day and can say no.
 pub const TOLD_FOR: Duration = Duration::from_secs(24 * 3600);
 /// Beside the recordings: what was told of them.
 const FILE_NAME: &str = "to-delete.toml";
@@ -58,7 +58,7 @@ impl PlannedDeletion {
         format!("{day} {time}")
     }
 
-    /// Deletes the files and what was said of it, unless it changed since or a person cares for it by now. True if it is gone.
+    /// Deletes the files and what was said of it, unless it changed since or the user cares for it by now. True if it is gone.
     pub(crate) fn carry_out(&self) -> io::Result<bool> {
         let sizes = parts::of(&self.path).into_iter();
         let sizes = sizes.map(|file| std::fs::metadata(file).map(|about| about.len()));

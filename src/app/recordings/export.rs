@@ -94,7 +94,7 @@ pub struct ExportProgress {
 pub(crate) struct RunningExport {
     export: RecordingExport,
     percent: Arc<AtomicU8>,
-    /// What to tell a person once it is done.
+    /// What to tell the user once it is done.
     pub(crate) job: Option<BackgroundJob<NoticeKind>>,
 }
 
@@ -115,7 +115,7 @@ impl RecordingExport {
         format!("{stem}{part}{}", self.form.ending())
     }
 
-    /// Writes it; what to tell a person of it.
+    /// Writes it; what to tell the user of it.
     fn write(&self, to: PathBuf, percent: &AtomicU8) -> NoticeKind {
         let made = to.parent().map(std::fs::create_dir_all);
         if let Some(Err(error)) = made {

@@ -1,4 +1,4 @@
-//! The folder that recordings go into: chosen by a person, and made if it is not there; and a recording shown in it by the system's
+//! The folder that recordings go into: chosen by the user, and made if it is not there; and a recording shown in it by the system's
 //! file manager.
 
 use crate::app::env::Env;
@@ -29,7 +29,7 @@ pub(crate) fn choose(
     })
 }
 
-/// Shows a file; what to tell a person if that cannot be done.
+/// Shows a file; what to tell the user if that cannot be done.
 pub(crate) fn reveal(path: PathBuf, env: &Env) -> BackgroundJob<Result<(), NoticeKind>> {
     let (reveal, place) = (Arc::clone(&env.reveal), path.clone());
     let shown = on_thread(move || {

@@ -7,7 +7,7 @@ use crate::app::recordings::timeline::Timeline;
 use crate::hand::Moment;
 use std::time::Duration;
 
-/// So much is shown before what a person wants to see.
+/// So much is shown before what the user wants to see.
 const BEFORE: Duration = Duration::from_secs(2);
 
 /// What replays a stretch of a hand again and again, from a little before it; `None` if no recording holds its beginning.

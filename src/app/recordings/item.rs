@@ -39,7 +39,7 @@ pub struct RecordingItem {
     pub poses: Arc<Vec<PerDof<Option<i16>>>>,
     /// True if the recording was ended as it should be.
     pub closed: bool,
-    /// What a person says of it.
+    /// What the user says of it.
     pub about: RecordingAbout,
 }
 
@@ -48,7 +48,7 @@ impl RecordingItem {
     pub fn read(files: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
         let (file, unread) = RecordingFile::open_all(files);
         let item = file.map(|file| {
-            // What a person said of it must not keep the recording from being seen.
+            // What the user said of it must not keep the recording from being seen.
             let about = RecordingAbout::load(file.path()).unwrap_or_default();
             Self::of(&file, about)
         });

@@ -55,7 +55,7 @@ pub struct RecordingsState {
     pub looks: bool,
     /// Files there that could not be read, and why.
     pub unread: Arc<Vec<(PathBuf, String)>>,
-    /// The recording that is to be deleted, once a person agrees.
+    /// The recording that is to be deleted, once the user agrees.
     pub to_delete: Option<PathBuf>,
     /// What the budget has no room for, the oldest first.
     pub planned: Vec<PlannedDeletion>,

@@ -1,4 +1,4 @@
-//! The recording being made of a hand: begun when a link opens, ended when it closes or a person wants none.
+//! The recording being made of a hand: begun when a link opens, ended when it closes or the user wants none.
 
 use crate::app::env::Env;
 use crate::app::files::settings_file;
@@ -52,7 +52,7 @@ pub(crate) struct RecordingTarget<'a> {
     pub(crate) folder: PathBuf,
     /// The hand.
     pub(crate) endpoint: &'a Endpoint,
-    /// Its side, as the person says.
+    /// Its side, as the user says.
     pub(crate) side: Side,
 }
 

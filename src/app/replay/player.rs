@@ -196,7 +196,7 @@ impl RecordingPlayer {
         self.file.path()
     }
 
-    /// What a person says of it, where it is in no list.
+    /// What the user says of it, where it is in no list.
     pub(crate) const fn about_mut(&mut self) -> &mut RecordingAbout {
         &mut self.about
     }
@@ -219,7 +219,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// Tells the person something while this is shown.
+    /// Tells the user something while this is shown.
     pub(crate) fn tell(&mut self, what: NoticeKind) {
         self.state.notices.push(self.state.now, what);
     }
@@ -369,7 +369,7 @@ impl RecordingPlayer {
         self.reading = Some((wanted, job));
     }
 
-    /// Carries out what a person asks about the replayed recording.
+    /// Carries out what the user asks about the replayed recording.
     pub(crate) fn act(&mut self, action: &RecordingAction, env: &Env) {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);

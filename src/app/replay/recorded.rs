@@ -16,7 +16,7 @@ use std::io;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// So much before the moment is taken in reading by reading: the longest a person looks at closely. What is older comes from the
+/// So much before the moment is taken in reading by reading: the longest the user looks at closely. What is older comes from the
 /// overview, second by second.
 const CLOSE: Duration = Duration::from_secs(30);
 /// A recording of this length is drawn reading by reading over another.

@@ -32,7 +32,7 @@ pub(crate) struct ReplayWork {
     makes_room: bool,
     /// What is to go was told in this run of the program.
     has_told: bool,
-    /// The files that a person opened last, to be replayed and beside it.
+    /// The files that the user opened last, to be replayed and beside it.
     opened: [Option<PathBuf>; 2],
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
@@ -45,7 +45,7 @@ pub(crate) struct ReplayWork {
 
 /// One thing that is to be done with files.
 enum FileWork {
-    /// Write what a person says of this recording.
+    /// Write what the user says of this recording.
     Save(PathBuf, RecordingAbout),
     /// Delete this recording.
     Delete(PathBuf),
@@ -140,7 +140,7 @@ impl ReplayWork {
         }
     }
 
-    /// What a person should know of what is planned: when that changes, and once in each run of the program.
+    /// What the user should know of what is planned: when that changes, and once in each run of the program.
     fn what_to_tell(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
         let planned = &state.recordings.planned;
         if !is_new && self.has_told {
@@ -187,7 +187,7 @@ impl ReplayWork {
         }
     }
 
-    /// What was written is told where a person looks: in the live window or in the replay.
+    /// What was written is told where the user looks: in the live window or in the replay.
     fn take_exported(&mut self, state: &mut State) {
         let mut told = Vec::new();
         self.exporting.retain_mut(|running| {
@@ -237,12 +237,12 @@ impl ReplayWork {
         }
     }
 
-    /// True once everything that a person said of recordings is in its file.
+    /// True once everything that the user said of recordings is in its file.
     pub(crate) fn is_written(&self) -> bool {
         self.writing.is_none() && self.to_write.is_empty()
     }
 
-    /// Carries out what a person asks.
+    /// Carries out what the user asks.
     pub(crate) fn act(&mut self, action: RecordingAction, state: &mut State, env: &Env) {
         match action {
             RecordingAction::Record(on) => state.settings.recordings.record = on,
@@ -330,7 +330,7 @@ impl ReplayWork {
         }
     }
 
-    /// Changes what a person says of a recording, on screen at once and in its file.
+    /// Changes what the user says of a recording, on screen at once and in its file.
     fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut RecordingAbout)) {
         let items: &mut Vec<RecordingItem> = Arc::make_mut(&mut state.recordings.items);
         let listed = items.iter_mut().find(|item| item.path == path);
@@ -387,7 +387,7 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
-/// True while something goes on at a live hand that a person must see.
+/// True while something goes on at a live hand that the user must see.
 fn is_busy(state: &State) -> bool {
     let is_busy = |hand: &Hand| {
         let asks = hand.procedures.card.is_some() || hand.params.question.is_some();

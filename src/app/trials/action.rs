@@ -1,10 +1,10 @@
-//! What a person may ask about grasp trials. Says nothing about how it is done.
+//! What the user may ask about grasp trials. Says nothing about how it is done.
 
 use crate::app::trials::state::SessionId;
 use crate::trials::{Criterion, TrialPlan};
 use std::path::PathBuf;
 
-/// What a person asks for about trials.
+/// What the user asks for about trials.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum TrialAction {
     /// This is the plan now. Sends nothing.

@@ -133,7 +133,7 @@ pub struct TrialsState {
     pub refused: Option<NoticeKind>,
     /// A session was to be read and was not: its path may be typed.
     pub asks_path: bool,
-    /// A person asked for that, and it is not over.
+    /// The user asked for that, and it is not over.
     pub(crate) is_opening: bool,
     /// Sessions that are to be written without asking, the oldest wish first.
     pub(crate) to_keep: VecDeque<SessionId>,

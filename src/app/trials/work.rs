@@ -1,4 +1,4 @@
-//! What a person asks about grasp trials, and the series that runs on the hand.
+//! What the user asks about grasp trials, and the series that runs on the hand.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
@@ -23,7 +23,7 @@ use tokio::sync::oneshot;
 /// Why a series cannot begin, besides its plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StartRefusal {
-    /// A person arms first.
+    /// The user arms first.
     NotArmed,
     /// A joint that would have to move is locked.
     Locked(Dof),

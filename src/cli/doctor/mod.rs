@@ -57,7 +57,7 @@ const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
 const TIPS: Span = Span::new(register::TOUCH.address, 232);
 const LAST_TIP: Span = Span::new(register::TOUCH.address + TIPS.len, 58);
 
-/// Checks the connection, then the hand, until the time is up or a person ends it.
+/// Checks the connection, then the hand, until the time is up or the user ends it.
 async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Checkup> {
     let interrupt = Interrupt::listen()?;
     let connection = connection(hand).await;

@@ -1,9 +1,9 @@
-//! Consent of a person: a line that was entered after it was asked for. What was typed, piped or repeated before does not count.
+//! Consent of the user: a line that was entered after it was asked for. What was typed, piped or repeated before does not count.
 
 use std::io::{self, IsTerminal as _};
 use tokio::task::spawn_blocking;
 
-/// What a person said that answers may come from, where that is not their terminal.
+/// What the user said that answers may come from, where that is not their terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum ConsentFrom {
     /// A line of standard input, whatever that is.

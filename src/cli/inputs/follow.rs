@@ -1,4 +1,4 @@
-//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, a gamepad or another hand, once a person lets it.
+//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, a gamepad or another hand, once the user lets it.
 
 use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
@@ -94,7 +94,7 @@ impl FollowArgs {
     }
 }
 
-/// Follows until a person ends it.
+/// Follows until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> {
     if let Some(why) = args.from.wrong(&args.hand) {
         return Err(WrongUsage::error(why));
@@ -196,7 +196,7 @@ struct FollowCommand<'a> {
 }
 
 impl FollowCommand<'_> {
-    /// Follows whoever sends, each time that a person lets it.
+    /// Follows whoever sends, each time that the user lets it.
     async fn go_on(&mut self) -> anyhow::Result<Infallible> {
         self.teller.out.line(&self.source.ready())?;
         self.teller.out.flush()?;
@@ -333,7 +333,7 @@ fn ended(end: FollowEnd, sender: &str) -> String {
 struct ProgressPrinter<'a> {
     out: &'a mut Out,
     json: bool,
-    /// What a person is asked now: why the hand does not move.
+    /// What the user is asked now: why the hand does not move.
     question: Option<String>,
     /// The warmest drive, if one is warm.
     heat: Option<DriveHeat>,

@@ -36,7 +36,7 @@ pub(crate) struct InputsArgs {
     json: bool,
 }
 
-/// Lists the gamepads, or prints what one does until a person ends it.
+/// Lists the gamepads, or prints what one does until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     if args.watch {
         watch(out, args).await

@@ -85,7 +85,7 @@ impl SourceArgs {
     }
 }
 
-/// What a person lets a source do.
+/// What the user lets a source do.
 #[derive(Clone, Copy)]
 pub(super) struct Allowed {
     /// Speeds and forces at most.
@@ -103,7 +103,7 @@ pub(super) enum FollowSource {
 }
 
 impl FollowSource {
-    /// Opens what the person named; nothing it takes goes beyond what is allowed, and nothing moves where nothing is.
+    /// Opens what the user named; nothing it takes goes beyond what is allowed, and nothing moves where nothing is.
     pub(super) async fn open(
         args: &SourceArgs,
         hand: &Endpoint,

@@ -1,4 +1,4 @@
-//! How far a long command is, on a terminal; and whether a person wishes its end.
+//! How far a long command is, on a terminal; and whether the user wishes its end.
 
 use crate::cli::interrupt::Interrupt;
 use anyhow::Context as _;
@@ -15,7 +15,7 @@ const QUIET_FOR: Duration = Duration::from_secs(2);
 /// Between two lines.
 const TELL_EACH: Duration = Duration::from_millis(250);
 
-/// Set once a person wishes the end of a command that looks at it.
+/// Set once the user wishes the end of a command that looks at it.
 #[derive(Debug, Clone)]
 pub(crate) struct EndWished(Arc<AtomicBool>);
 

@@ -13,7 +13,7 @@ use crate::tasks::{ParamStep, TaskError};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 
-/// What is not known if a person does not wait.
+/// What is not known if the user does not wait.
 pub(crate) const UNKNOWN: &str = "it is not known what the hand holds: see with 'handscope params dump'; 'handscope params backups' names what it held before";
 
 /// Applies. Fails unless every chosen row is in effect.

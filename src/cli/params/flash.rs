@@ -14,7 +14,7 @@ use crate::tasks::{Consent, ParamStep};
 use anyhow::bail;
 use serde_json::json;
 
-/// What is not known if a person does not wait.
+/// What is not known if the user does not wait.
 const UNKNOWN_SAVE: &str = "it is not known whether the parameters are in flash: switch the hand off and on, then compare with 'handscope params diff'";
 const UNKNOWN_RESET: &str = "it is not known whether the hand was reset, and where it answers: look for it with 'handscope scan'; 'handscope params backups' names what it held before";
 

@@ -7,7 +7,7 @@ use anyhow::bail;
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// Listens for a person, or the system, that wants the command to end.
+/// Listens for the user, or the system, that wants the command to end.
 pub(crate) struct Patience {
     interrupt: Interrupt,
     is_written: Rc<Cell<bool>>,
@@ -27,7 +27,7 @@ impl Patience {
         Rc::clone(&self.is_written)
     }
 
-    /// Waits for what may write, also if a person wants to end it meanwhile. `unknown` says what is not known if they do so twice.
+    /// Waits for what may write, also if the user wants to end it meanwhile. `unknown` says what is not known if they do so twice.
     pub(crate) async fn see_through<T>(
         &mut self,
         work: impl Future<Output = T>,

@@ -15,7 +15,7 @@ use anyhow::bail;
 use serde_json::json;
 use std::path::Path;
 
-/// What is not known if a person does not wait.
+/// What is not known if the user does not wait.
 const UNKNOWN: &str = "it is not known at which of both places the hand answers: look for it with 'handscope scan --all-ids'; nothing is in flash, so switched off and on it is where it was";
 
 /// Changes it, and says where the hand answers then. Whether it is there, or will be after a SAVE or a power-up; `None` if the

@@ -1,4 +1,4 @@
-//! `record`: everything that a hand reports, into a recording file, until the time is up or a person ends it. Writes nothing to the
+//! `record`: everything that a hand reports, into a recording file, until the time is up or the user ends it. Writes nothing to the
 //! hand.
 
 use crate::app::env::day_folder;

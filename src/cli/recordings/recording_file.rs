@@ -1,4 +1,4 @@
-//! Recording files that a person names: how one is opened, its moments in seconds from its start, and what is missing in words.
+//! Recording files that the user names: how one is opened, its moments in seconds from its start, and what is missing in words.
 
 use crate::cli::out::{WrongUsage, say};
 use crate::cli::parse::{RecordingTime, recording_time};

@@ -47,7 +47,7 @@ fn times(text: &str) -> Result<f64, String> {
     number(text, 0.1..=100.0, "a number between 0.1 and 100")
 }
 
-/// Serves the recorded hand until the recording ends, or a person ends it.
+/// Serves the recorded hand until the recording ends, or the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let path = &args.file.file;
@@ -168,7 +168,7 @@ fn steps(entry: &Entry) -> Vec<Step> {
     }
 }
 
-/// What the hand kept, but its id, which is the person's to choose.
+/// What the hand kept, but its id, which is the user's to choose.
 fn parameters(toml: &str) -> Vec<Step> {
     let Ok(file) = file::read(toml) else {
         return Vec::new();

@@ -8,7 +8,7 @@ use crate::share::fleet::{self, FleetCard};
 use crate::transport::Endpoint;
 use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
 
-/// Nobody outside of this computer, unless a person says so.
+/// Nobody outside of this computer, unless the user says so.
 pub(crate) const LOOPBACK: &str = "127.0.0.1";
 
 #[derive(Debug, clap::Args)]
@@ -48,7 +48,7 @@ impl DdsArgs {
         }
     }
 
-    /// Joins, if the person wants it; tells nothing yet. Others there can do that.
+    /// Joins, if the user wants it; tells nothing yet. Others there can do that.
     pub(crate) fn join(&self, can: &str) -> anyhow::Result<Option<DdsNode>> {
         let Some(interface) = &self.dds else {
             return Ok(None);

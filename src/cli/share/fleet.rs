@@ -30,7 +30,7 @@ pub(crate) struct FleetArgs {
     json: bool,
 }
 
-/// Looks until a person ends it, or the time is up.
+/// Looks until the user ends it, or the time is up.
 pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let node = DdsNode::open(&DdsPlace {

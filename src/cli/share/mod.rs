@@ -1,4 +1,4 @@
-//! `share`: one hand for several programs, over Modbus TCP, DDS and for live viewers, until a person ends it.
+//! `share`: one hand for several programs, over Modbus TCP, DDS and for live viewers, until the user ends it.
 
 pub(crate) mod dds;
 pub(crate) mod fleet;
@@ -62,7 +62,7 @@ pub(crate) struct ShareArgs {
     record: Option<PathBuf>,
 }
 
-/// Shares the hand until a person ends it.
+/// Shares the hand until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let rates = if args.full_rate {
@@ -171,7 +171,7 @@ fn show(link: &LinkHandle, address: SocketAddr, hand: &Endpoint) -> anyhow::Resu
     Ok(server)
 }
 
-/// Tells what a person has to know, for as long as it is shared.
+/// Tells what the user has to know, for as long as it is shared.
 async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     let mut told = Told::default();
     let mut tick = interval(LOOK_EACH);

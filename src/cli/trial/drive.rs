@@ -1,4 +1,4 @@
-//! A series on a real link: the person's word to arm, Ctrl-C as a stop, and the trials as they end. Decides nothing about
+//! A series on a real link: the user's word to arm, Ctrl-C as a stop, and the trials as they end. Decides nothing about
 //! trials.
 
 use crate::cli::interrupt::Interrupt;
@@ -83,7 +83,7 @@ async fn disarm(link: &LinkHandle) {
     }
 }
 
-/// Waits until the hand tells where it is, and arms it as the person asked for.
+/// Waits until the hand tells where it is, and arms it as the user asked for.
 async fn make_ready(
     link: &LinkHandle,
     records: &mut Records,

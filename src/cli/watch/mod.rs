@@ -26,7 +26,7 @@ const FLUSH_EACH: Duration = Duration::from_millis(50);
 /// People read no more than ten lines a second.
 const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 
-/// Watches until the time is up or a person ends it. Fails if the hand never answered.
+/// Watches until the time is up or the user ends it. Fails if the hand never answered.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
     Watch::new(out, args)?.run(interrupt).await

@@ -1,4 +1,4 @@
-//! The report of a day as one HTML page for a person: no script, nothing from elsewhere; how it looks stands in `page.html`
+//! The report of a day as one HTML page for the user: no script, nothing from elsewhere; how it looks stands in `page.html`
 //! beside this file. Writes no file itself.
 
 use crate::exhibit::heat::HOT;

@@ -144,7 +144,7 @@ pub struct Words {
     pub title: &'static str,
     /// What happened, as one sentence.
     pub cause: &'static str,
-    /// What a person should do.
+    /// What the user should do.
     pub advice: &'static str,
 }
 

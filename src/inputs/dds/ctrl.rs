@@ -60,7 +60,7 @@ pub enum CtrlFault {
     /// A value that the register does not take.
     #[error("a value is outside the register's range")]
     Range,
-    /// Faster or firmer than the person who let the hand follow allowed.
+    /// Faster or firmer than the user who let the hand follow allowed.
     #[error("a speed or force is above --speed or --force")]
     AboveLimit,
     /// Another sender is followed.
@@ -100,7 +100,7 @@ struct Raw {
 }
 
 impl CtrlMessage {
-    /// Reads a message in CDR with its head, within what a person allowed.
+    /// Reads a message in CDR with its head, within what the user allowed.
     ///
     /// # Errors
     /// [`CtrlFault`]: why it is refused whole.

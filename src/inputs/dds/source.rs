@@ -38,7 +38,7 @@ pub struct DdsView {
     pub taken: u64,
     /// Messages that were refused, by reason.
     pub refused: BTreeMap<CtrlFault, u64>,
-    /// Messages that nobody followed, as no person granted it.
+    /// Messages that nobody followed, as no user granted it.
     pub not_granted: u64,
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Something on a gamepad that a person presses or moves. Letters are those of an Xbox pad.
+/// Something on a gamepad that the user presses or moves. Letters are those of an Xbox pad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PadControl {

@@ -25,7 +25,7 @@ const PARTS: i64 = 1_000_000;
 /// The poses that buttons go to, by name; `None` leaves a joint alone.
 pub type PadPoses = BTreeMap<String, PerDof<Option<Angle>>>;
 
-/// What a person did that is no aim.
+/// What the user did that is no aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PadEvent {
     /// STOP was pressed. It counts without the dead-man.

@@ -69,7 +69,7 @@ impl PadAction {
 }
 
 impl PadMap {
-    /// What a gamepad does before a person changes it. The poses are shipped ones.
+    /// What a gamepad does before the user changes it. The poses are shipped ones.
     pub fn usual() -> Self {
         let pose = |name: &str| PadAction::Pose(name.into());
         Self {

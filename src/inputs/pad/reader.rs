@@ -306,7 +306,7 @@ fn mark(about: &Metadata) -> FileMark {
     (about.ino(), about.ctime(), about.ctime_nsec())
 }
 
-/// Keeps in mind a device that a person may not open. Other errors come from devices that are just going.
+/// Keeps in mind a device that the user may not open. Other errors come from devices that are just going.
 fn note_refused(refused: &mut BTreeSet<PathBuf>, path: &Path, error: &io::Error) {
     if error.kind() == io::ErrorKind::PermissionDenied {
         refused.insert(path.to_owned());

@@ -111,7 +111,7 @@ pub enum PadTrouble {
         path: PathBuf,
         /// How many there are.
         count: usize,
-        /// What lets the person open it.
+        /// What lets the user open it.
         remedy: Remedy,
     },
     /// The thread that reads them did not start.

@@ -26,7 +26,7 @@ pub(crate) enum ReadPiece {
     },
 }
 
-/// How one bus takes bytes for words: what a person said, and what the hand was found to do.
+/// How one bus takes bytes for words: what the user said, and what the hand was found to do.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WordUse {
     chosen: Option<BytePacking>,
@@ -80,7 +80,7 @@ impl WordUse {
     }
 
     /// Refuses writes of single bytes where they could change a neighbour: SAVE stands beside RESET_PARA. They pass
-    /// only where the hand was found to put the low byte first, or could not be judged and a person says so.
+    /// only where the hand was found to put the low byte first, or could not be judged and the user says so.
     pub(crate) fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
         if !is_bytes(write) {
             return Ok(());
@@ -97,7 +97,7 @@ impl WordUse {
     }
 }
 
-/// What a person said in the endpoint.
+/// What the user said in the endpoint.
 pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
     match endpoint {
         Endpoint::Tcp { packing, .. } => *packing,

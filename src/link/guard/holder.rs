@@ -18,7 +18,7 @@ pub const RESTS: u8 = b'r';
 /// The program that is started; none in a process that is not this program, such as a test.
 static PROGRAM: OnceLock<(PathBuf, Complain)> = OnceLock::new();
 
-/// Tells a person something.
+/// Tells the user something.
 type Complain = fn(&str);
 
 /// From now on this process has a holder started for each hand that it arms: itself once more. Where that fails, it is told.
@@ -28,7 +28,7 @@ pub fn use_this_program(complain: Complain) {
     let _set_before = PROGRAM.set((own.unwrap_or_else(|| "/proc/self/exe".into()), complain));
 }
 
-/// What a person is told where no holder could be started.
+/// What the user is told where no holder could be started.
 pub fn unguarded(why: &str) -> String {
     format!(
         "no process could be started that stops the hand if this program is killed ({why}): then only the 24 V switch does"

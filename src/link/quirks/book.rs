@@ -183,7 +183,7 @@ mod tests {
         let other = sheet("rtu:/dev/x?id=2", &quirks(), "2026-11-20");
         assert_eq!(QuirkBook::keep(&path, other).unwrap(), None);
         let unlearnt = Quirks::default();
-        // The person's reading of words is part of the address, but not of the place.
+        // The user's reading of words is part of the address, but not of the place.
         let again = sheet("rtu:/dev/x?id=1&packing=low", &unlearnt, "2026-11-21");
         assert_eq!(QuirkBook::keep(&path, again).unwrap(), Some(first));
         let book = QuirkBook::load(&path).unwrap();

@@ -1,4 +1,4 @@
-//! Addresses to look at as a person writes them: one host, or a range of them. Resolves no name, connects to nothing.
+//! Addresses to look at as the user writes them: one host, or a range of them. Resolves no name, connects to nothing.
 
 use crate::transport::endpoint::{DEFAULT_TCP_PORT, Endpoint, EndpointError};
 use std::net::Ipv4Addr;

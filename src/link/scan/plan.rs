@@ -16,7 +16,7 @@ pub const BITRATES: [u32; 2] = [DEFAULT_BITRATE, 500_000];
 pub const UNITS: [u8; 2] = [DEFAULT_UNIT, 1];
 /// A hand answers within 15 ms, behind a USB adapter twice 16 ms later; this leaves room.
 pub const REPLY_WAIT: Duration = Duration::from_millis(60);
-/// A reply through a network that the person named, which may be a slow one.
+/// A reply through a network that the user named, which may be a slow one.
 const TCP_REPLY_WAIT: Duration = Duration::from_millis(500);
 /// Time in which a serial CAN adapter is put on the bus.
 const ADAPTER_TIME: Duration = Duration::from_millis(30);
@@ -85,7 +85,7 @@ pub(crate) struct Try {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Lane {
     pub(crate) kind: LaneKind,
-    /// As a person knows it.
+    /// As the user knows it.
     pub(crate) place: String,
     pub(crate) usb: Option<UsbFound>,
     /// One of a range: that nobody is there is not worth a word.

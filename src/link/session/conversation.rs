@@ -414,7 +414,7 @@ impl Session {
 }
 
 impl Drop for Session {
-    /// A link that ends in good order ends with a hand that nobody moves, or that a person was told of.
+    /// A link that ends in good order ends with a hand that nobody moves, or that the user was told of.
     fn drop(&mut self) {
         let is_held = self.motion.hold.is_none_or(|hold| hold.alarmed);
         if self.status.armed.is_none() && is_held {

@@ -4,7 +4,7 @@ use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, 
 use crate::record::Rest;
 use std::time::Duration;
 
-/// After the last sign of motion the hand counts as moving for this long: a person who drags pauses, and a hand acts
+/// After the last sign of motion the hand counts as moving for this long: the user who drags pauses, and a hand acts
 /// late.
 const MOVES_FOR: Duration = Duration::from_secs(1);
 /// A joint that is no more than this many counts from where it was rests: readings swing by so much.

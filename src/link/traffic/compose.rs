@@ -1,4 +1,4 @@
-//! A frame that passed over the wire, as code that a person can paste. Sends nothing.
+//! A frame that passed over the wire, as code that the user can paste. Sends nothing.
 
 use crate::link::traffic::frame::hex;
 use crate::transport::Endpoint;

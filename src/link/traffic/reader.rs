@@ -8,7 +8,7 @@ use crate::transport::Endpoint;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Frames kept: half a minute of the fastest wire, and as much as a person looks through.
+/// Frames kept: half a minute of the fastest wire, and as much as the user looks through.
 pub const FRAMES_MAX: usize = 10_000;
 /// Requests are marked "no reply" this far back: the next request comes right behind.
 const LOOK_BACK: usize = 64;

@@ -72,7 +72,7 @@ impl Frame {
         text
     }
 
-    /// One line for a person.
+    /// One line for the user.
     pub fn text_line(&self) -> String {
         let id = self.hand.map(|id| format!("id {id}")).unwrap_or_default();
         let mut line = format!(

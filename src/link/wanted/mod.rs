@@ -32,9 +32,9 @@ pub(crate) struct PendingControl {
     pub(crate) closed: bool,
     /// Who may move the hand.
     pub(crate) book: LeaseBook,
-    /// Motion passes only until then; it is put off while a person holds what has to be held.
+    /// Motion passes only until then; it is put off while the user holds what has to be held.
     pub(crate) runs_until: Option<Moment>,
-    /// What a person at the window has to hold, whoever moves the hand.
+    /// What the user at the window has to hold, whoever moves the hand.
     pub(crate) hold_to_run: HoldToRun,
     /// What is read first while something moves.
     pub(crate) priority: PollPriority,
@@ -80,7 +80,7 @@ impl PendingControl {
         }
     }
 
-    /// A person grants the right to move the hand. Nothing of the one before is sent any more.
+    /// The user grants the right to move the hand. Nothing of the one before is sent any more.
     pub(crate) fn grant(&mut self, owner: Owner) -> Lease {
         self.forget_motion();
         self.handed_over = true;

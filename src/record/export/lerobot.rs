@@ -39,7 +39,7 @@ const TASK: &str = "grasp";
 pub enum EpisodeStart {
     /// Where a recording begins, and after each silence.
     Gap,
-    /// At each note that a person made; what is before the first is left out.
+    /// At each note that the user made; what is before the first is left out.
     Note,
 }
 
@@ -158,7 +158,7 @@ fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exp
     })
 }
 
-/// Notes of persons in the stretch.
+/// Notes of users in the stretch.
 fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
     let within = source.stretch.from..=source.stretch.to;
     let marks = source.file.overview().marks.iter();

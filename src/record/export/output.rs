@@ -33,7 +33,7 @@ pub enum ExportError {
         "a left and a right hand cannot be in one data set, because their joints have other names"
     )]
     BothSides,
-    /// A person broke it off.
+    /// The user broke it off.
     #[error("interrupted")]
     Interrupted,
     /// Whoever read standard output does not read on.

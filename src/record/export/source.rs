@@ -34,7 +34,7 @@ pub(crate) enum Broken {
     Output(io::Error),
     /// The same of a table.
     Table(ParquetError),
-    /// A person wished it.
+    /// The user wished it.
     Interrupted,
 }
 

@@ -52,7 +52,7 @@ pub enum FilePlace {
     Removed,
 }
 
-/// The system's disk. Nobody but the person who records can read the files, or enter the folders that are made for them.
+/// The system's disk. Nobody but the user who records can read the files, or enter the folders that are made for them.
 #[derive(Debug, Clone, Copy)]
 pub struct SystemDisk;
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Quantities of a row: those of the six joints, and both of the five fingertips.
 pub const LINES: usize =
     Quantity::ALL.len() * Dof::ALL.len() + Touch::ALL.len() * Finger::ALL.len();
-/// Marks kept of one file: more than a person looks at, and a bound for a damaged file.
+/// Marks kept of one file: more than the user looks at, and a bound for a damaged file.
 pub const MARKS_MAX: usize = 100_000;
 /// Seconds kept of one file: two days, in 56 MB; a longer one is drawn without its end.
 pub const SECONDS_MAX: usize = 2 * 86_400;
@@ -72,7 +72,7 @@ pub struct Counts {
     pub writes: u64,
     /// Faults that came.
     pub faults: u64,
-    /// Notes of a person.
+    /// Notes of the user.
     pub notes: u64,
     /// Entries that the recorder could not take.
     pub missing: u64,

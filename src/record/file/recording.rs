@@ -45,7 +45,7 @@ pub struct RecordingPlan {
     pub part_length: Duration,
 }
 
-/// Something that a person must know of a recording under way.
+/// Something that the user must know of a recording under way.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RecorderNotice {
     /// Its file or a folder above has another name now. It is written on.

@@ -528,7 +528,7 @@ fn moment(cell: &str) -> Option<Moment> {
     Some(Moment::from_micros(micros))
 }
 
-/// What happened, and its words. What is none of our kinds is a person's note.
+/// What happened, and its words. What is none of our kinds is the user's note.
 fn event(cell: &str) -> (EventKind, String) {
     let (key, words) = cell.split_once(": ").unwrap_or((cell, ""));
     let kind = match key {

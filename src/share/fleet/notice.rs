@@ -27,7 +27,7 @@ pub struct FleetCard {
     pub side: Side,
     /// Where its gateway is; `None` if it has none that others reach.
     pub at: Option<SocketAddr>,
-    /// Whether the first client that writes may move it, without a person there who lets it.
+    /// Whether the first client that writes may move it, without the user there who lets it.
     pub first_may_move: bool,
     /// Whether it follows what programs send here to a hand of its side.
     #[serde(default)]

@@ -11,7 +11,7 @@ pub const VIEWERS_MAX: usize = 8;
 /// Messages that wait for the slowest viewer: more than a second of a hand with everything that goes over its wire.
 pub const BACKLOG_MAX: usize = 1024;
 
-/// One viewer as a person sees it.
+/// One viewer as the user sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Viewer {
     pub address: SocketAddr,

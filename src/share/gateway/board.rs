@@ -25,7 +25,7 @@ const EVENTS_MAX: usize = 256;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ClientId(u64);
 
-/// One client as a person sees it.
+/// One client as the user sees it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GatewayClient {
     /// By which it is named.
@@ -116,7 +116,7 @@ pub(crate) struct Row {
     pace: Pace,
     /// When it asked something last.
     heard: Moment,
-    /// A person grants it the right to move the hand.
+    /// The user grants it the right to move the hand.
     pub(crate) granted: Arc<Notify>,
 }
 
@@ -132,7 +132,7 @@ impl Row {
         &mut self.shown.lease
     }
 
-    /// A grant by a person came to nothing.
+    /// A grant by the user came to nothing.
     pub(crate) fn not_granted(&mut self, refusal: WriteRefusal) {
         self.shown.refusal = Some(refusal);
     }

@@ -16,9 +16,9 @@ const ARMS_WITHIN: Duration = Duration::from_secs(2);
 /// Which clients may move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writers {
-    /// Only the one to which a person grants it.
+    /// Only the one to which the user grants it.
     Granted,
-    /// The first that writes while nobody may: a person grants it to whoever comes.
+    /// The first that writes while nobody may: the user grants it to whoever comes.
     First,
 }
 
@@ -26,7 +26,7 @@ pub enum Writers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Claim {
     Wrote,
-    /// A person chose it.
+    /// The user chose it.
     Chosen,
 }
 
@@ -73,7 +73,7 @@ impl ClientLeases {
         Ok(self.link.write_as(lease, command).await?)
     }
 
-    /// A person grants the right to this client.
+    /// The user grants the right to this client.
     pub(crate) async fn granted(&self, client: ClientId) {
         if let Err(refusal) = self.take(client, Claim::Chosen).await {
             self.board

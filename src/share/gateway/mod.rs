@@ -1,5 +1,5 @@
 //! A gateway: several Modbus TCP clients at one hand, at the addresses that the hand itself has. What they read comes from
-//! what the link reads anyway, so that many cost no more than one; one of them at a time may move the hand, if a person lets it.
+//! what the link reads anyway, so that many cost no more than one; one of them at a time may move the hand, if the user lets it.
 
 mod allowed;
 pub mod board;
@@ -26,7 +26,7 @@ use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep};
 use tokio_util::task::AbortOnDropHandle;
 
-/// A client that may move the hand and asks nothing for so long may no more, unless a person says otherwise.
+/// A client that may move the hand and asks nothing for so long may no more, unless the user says otherwise.
 pub const SILENCE: Duration = Duration::from_secs(10);
 /// How often silence is looked for.
 const LOOK_EACH: Duration = Duration::from_millis(100);
@@ -98,7 +98,7 @@ impl Gateway {
     }
 
     /// Lets this client move the hand: whoever may now may no more, and the hand is armed with the speeds and forces that it
-    /// has. A person must have asked for it. What came of it is the client's [`GatewayClient::lease`], or its refusal.
+    /// has. The user must have asked for it. What came of it is the client's [`GatewayClient::lease`], or its refusal.
     pub fn grant(&self, client: ClientId) {
         let tell = |row: &mut board::Row| row.granted.notify_one();
         self.leases.board.with(|board| board.row(client).map(tell));

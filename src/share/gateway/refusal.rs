@@ -1,4 +1,4 @@
-//! Why a gateway does not do what a client asks, in words for a person and as a Modbus exception.
+//! Why a gateway does not do what a client asks, in words for the user and as a Modbus exception.
 
 use crate::hand::{ModbusException, Refusal};
 use crate::link::RequestError;

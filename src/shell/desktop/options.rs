@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub enum Drawing {
     #[default]
     OpenGl,
-    /// This program itself, on the processor, as a person asked for it.
+    /// This program itself, on the processor, as the user asked for it.
     Software,
     /// The same, because OpenGL did not start, for this reason.
     InPlaceOfOpenGl(String),

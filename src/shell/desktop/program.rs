@@ -263,7 +263,7 @@ impl Program {
         }
     }
 
-    /// Keeps the size that a person gave the window, and whether it is maximised; what the system made of it full screen or
+    /// Keeps the size that the user gave the window, and whether it is maximised; what the system made of it full screen or
     /// minimised is not kept.
     fn keep_size(&mut self, ctx: &egui::Context, now: Moment) {
         let (shown, maximized) = ctx.input(|input| {

@@ -1,4 +1,4 @@
-//! Cards over the window, brought there as a person brings them. Draws nothing.
+//! Cards over the window, brought there as the user brings them. Draws nothing.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;

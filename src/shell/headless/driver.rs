@@ -266,7 +266,7 @@ impl Driver {
         }
     }
 
-    /// Asks for something as a person does.
+    /// Asks for something as the user does.
     pub(crate) fn act(&mut self, action: Action) {
         let now = self.now();
         let _inside = self.runtime.enter();

@@ -48,7 +48,7 @@ pub(crate) struct BoothFacts {
     /// What may be sent at all.
     allowed: PerDof<BTreeSet<Angle>>,
     limits: MotionLimits,
-    /// A person armed it, and nothing ended that since.
+    /// The user armed it, and nothing ended that since.
     pub(crate) person_armed: bool,
     /// What should never have been sent.
     pub(crate) wrong: Vec<String>,

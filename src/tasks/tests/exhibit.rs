@@ -780,7 +780,7 @@ async fn step(booth: &Booth, chance: &mut fastrand::Rng) {
         26..=60 => {
             booth.hand.fails(dof, Fault::Stall);
             sleep(s(1)).await;
-            // More than three of them need a person.
+            // More than three of them need the user.
             if matches!(booth.stage(), ExhibitStage::Halted(_)) {
                 booth.hand.facts().person_armed = false;
             }

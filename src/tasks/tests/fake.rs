@@ -154,7 +154,7 @@ impl FakeHand {
         facts.memory = facts.flash.clone();
     }
 
-    /// A person armed it.
+    /// The user armed it.
     pub(crate) fn arm_as(&self, epoch: u64) {
         let mut facts = self.facts();
         facts.status.state = LinkState::Armed;

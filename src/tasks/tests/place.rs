@@ -329,7 +329,7 @@ fn however_answers_and_power_are_lost_the_end_is_true() {
 /// Losses and power cuts that may be, and the most orders that are tried of them: all of few losses, some of many.
 const LOSSES: [(usize, usize, usize); 3] = [(0, 1, 1000), (1, 0, 40), (7, 1, 250)];
 
-/// A change without any trouble but this script, and a person who wants this.
+/// A change without any trouble but this script, and the user who wants this.
 async fn told(
     change: &PlaceChange,
     hand: &FakeHand,
@@ -406,7 +406,7 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
     assert_eq!(report.end, PlaceEnd::Occupied);
     assert!(!hand.asked().iter().any(is_write));
 
-    // Another hand comes to the old id while the person thinks.
+    // Another hand comes to the old id while the user thinks.
     let hand = FakeHand::new();
     let mut own = at_its_place(&hand, &change.places);
     let asked = hand.clone();

@@ -1,4 +1,4 @@
-//! Why a text is no endpoint, in words for the person who wrote it. Reads no text.
+//! Why a text is no endpoint, in words for the user who wrote it. Reads no text.
 
 use std::fmt;
 

@@ -64,7 +64,7 @@ pub enum Endpoint {
         port: u16,
         /// Modbus unit id.
         unit: u8,
-        /// How single bytes stand in words, where a person says so; else the link finds out.
+        /// How single bytes stand in words, where the user says so; else the link finds out.
         packing: Option<BytePacking>,
     },
     /// `can:can0?id=1`: SocketCAN.
@@ -144,7 +144,7 @@ impl Endpoint {
         )
     }
 
-    /// What a person looks at when it fails: the port, the address, the interface.
+    /// What the user looks at when it fails: the port, the address, the interface.
     pub fn place(&self) -> String {
         match self {
             Self::Sim { .. } => "the simulated hand".into(),

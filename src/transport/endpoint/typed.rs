@@ -1,4 +1,4 @@
-//! An address as a person types it, with or without the kind of link before it. Opens nothing, asks nobody.
+//! An address as the user types it, with or without the kind of link before it. Opens nothing, asks nobody.
 
 use crate::transport::endpoint::{Endpoint, EndpointError};
 use crate::transport::found::PortFound;

@@ -1,4 +1,4 @@
-//! A session as one HTML page for a person: parameters, metrics, curves, the hand's quirks. One file, no script, nothing
+//! A session as one HTML page for the user: parameters, metrics, curves, the hand's quirks. One file, no script, nothing
 //! from elsewhere; how it looks stands in `report.html` and `plot.svg` beside this file. Writes no file itself.
 
 pub(crate) mod overlay;

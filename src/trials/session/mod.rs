@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `session.toml` | what was planned, the hand, and for each trial its setting and what was measured ([`TrialSessionFile`]) |
 //! | `trial-001.csv` … | what was read, [`crate::trials::recording::csv`]: `time_s` from the closing command, an empty cell where nothing was read |
-//! | `report.html` | all of it for a person, in one file without links ([`crate::trials::report`]) |
+//! | `report.html` | all of it for the user, in one file without links ([`crate::trials::report`]) |
 //!
 //! A value that is not known has no key in TOML. Keys of a later version survive.
 
@@ -41,7 +41,7 @@ pub struct SessionHead {
     pub day: String,
     /// Its beginning, seconds since 1970.
     pub begun_unix_s: u64,
-    /// In the words of a person.
+    /// In the words of the user.
     #[serde(default)]
     pub note: String,
     /// Words to find it by.

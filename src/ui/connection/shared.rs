@@ -15,7 +15,7 @@ pub(crate) struct SharedPanel {
 }
 
 impl Default for SharedPanel {
-    /// This computer only, unless a person says otherwise.
+    /// This computer only, unless the user says otherwise.
     fn default() -> Self {
         Self {
             interface: "127.0.0.1".into(),

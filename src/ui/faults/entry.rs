@@ -1,4 +1,4 @@
-//! One fault as a person reads it: what, since when, why, what to do, and whether clearing errors can help. Clears nothing.
+//! One fault as the user reads it: what, since when, why, what to do, and whether clearing errors can help. Clears nothing.
 
 use crate::app::action::Action;
 use crate::app::readings::Freshness;

@@ -1,4 +1,4 @@
-//! What happened in a recording, as lines of words: what a person did, how drives changed, what the link did.
+//! What happened in a recording, as lines of words: what the user did, how drives changed, what the link did.
 
 use crate::app::readings::fault_recorder::{FaultEventKind, FaultRecording, PersonAct};
 use crate::hand::{Dof, Faults};

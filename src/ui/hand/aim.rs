@@ -1,4 +1,4 @@
-//! Where a person sends a joint, with its track or on the drawn hand: one rule for both.
+//! Where the user sends a joint, with its track or on the drawn hand: one rule for both.
 
 use crate::app::action::Action;
 use crate::hand::{Angle, Dof};
@@ -38,7 +38,7 @@ pub(crate) fn link(ui: &Ui) {
     ui.data_mut(|data| data.insert_temp(Id::unique("fingers linked"), now));
 }
 
-/// Whether a person sees that the fingers are linked.
+/// Whether the user sees that the fingers are linked.
 pub(crate) fn is_linked(ui: &Ui) -> bool {
     let now = ui.ctx().cumulative_pass_nr();
     let last = ui.data(|data| data.get_temp::<u64>(Id::unique("fingers linked")));

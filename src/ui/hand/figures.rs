@@ -134,7 +134,7 @@ fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
     let (force, freshness) = pane.newest(dof, hand.readings.sample.force);
     let raw = force.map(|force| i64::from(force.raw()));
     let known = force.and_then(|force| force.documented());
-    let over = known.zip(hand.stops_at(dof));
+    let over = known.zip(hand.controls.stops_at(dof, hand.held_otherwise(dof)));
     let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
     (
         format::with_unit(raw, 0, Quantity::Force.row().unit),

@@ -15,7 +15,7 @@ const ACROSS_PART: f32 = 0.05;
 /// How much faster than the pointer the place may go along its way: where the way turns back it catches up smoothly.
 const CATCH_UP: f32 = 3.0;
 
-/// A place of a finger that a person holds.
+/// A place of a finger that the user holds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FingerDrag {
     /// The joint that is dragged.

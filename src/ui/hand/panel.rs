@@ -20,7 +20,7 @@ use crate::ui::text::{main, panels, window, words};
 use crate::ui::theme;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
-/// The drawn hand, turned as a person wants it.
+/// The drawn hand, turned as the user wants it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandPanel(HandView);
 
@@ -114,9 +114,11 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
             .filter(|_| state.connection.is_armed())?;
         Some(f32::from(target.get()) / 1000.0)
     });
+    let is_live = state.connection.is_live();
+    let asked = angle.map(|angle| angle.asked);
     HandPicture {
         target,
-        is_stale: state.freshness(angle.map(|angle| angle.asked), now) == Freshness::Stale,
+        is_stale: state.readings.freshness(asked, is_live, now) == Freshness::Stale,
         tips: tips.map(|tip| tip.as_ref().map(load).unwrap_or_default()),
         held: state.connection.endpoint.as_ref().and_then(held),
         hurts: hurts(state, now),
@@ -127,7 +129,9 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
 /// What hurts the drives; nothing of old values.
 fn hurts(state: &Hand, now: Moment) -> PerDof<Hurt> {
     let sample = &state.readings.sample;
-    let is_live = |asked: Moment| state.freshness(Some(asked), now) == Freshness::Live;
+    let connected = state.connection.is_live();
+    let freshness = |asked| state.readings.freshness(Some(asked), connected, now);
+    let is_live = |asked: Moment| freshness(asked) == Freshness::Live;
     let faults = sample.faults.filter(|group| is_live(group.asked));
     let status = sample.status.filter(|group| is_live(group.asked));
     let heat = sample.temperature.filter(|group| is_live(group.asked));

@@ -75,7 +75,7 @@ pub(crate) struct HandStage<'a> {
     pub(crate) movable: PerDof<bool>,
 }
 
-/// What a person does with the picture.
+/// What the user does with the picture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HandUse {
     /// The joint under the pointer, or the one that is dragged.

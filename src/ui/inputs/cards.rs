@@ -29,7 +29,7 @@ pub(crate) struct SourceCards {
 }
 
 impl Default for SourceCards {
-    /// This computer only, unless a person says otherwise.
+    /// This computer only, unless the user says otherwise.
     fn default() -> Self {
         Self {
             stream: "127.0.0.1:6010".into(),

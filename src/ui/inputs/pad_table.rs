@@ -1,4 +1,4 @@
-//! What every control of a gamepad does, as a list in which a person changes it.
+//! What every control of a gamepad does, as a list in which the user changes it.
 
 use crate::inputs::pad::{PadAction, PadControl, PadMap};
 use crate::ui::inputs::pad_picture::PadShown;

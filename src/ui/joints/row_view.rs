@@ -142,7 +142,7 @@ pub(crate) fn explain_ui(
         .on_hover_cursor(CursorIcon::PointingHand);
 }
 
-/// A sign where the hand holds another speed or force than the person set, whose lines are not shown.
+/// A sign where the hand holds another speed or force than the user set, whose lines are not shown.
 fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let (look, hand) = (pane.look, pane.state.hand());
     let joint = hand.controls.joints[row.dof];

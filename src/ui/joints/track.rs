@@ -46,7 +46,7 @@ pub(crate) struct SlideTrack<'a> {
     pub(crate) color: Color32,
     /// A value worth a small tick.
     pub(crate) tick: Option<i16>,
-    /// From here to the end a person should think twice; painted on the rail.
+    /// From here to the end the user should think twice; painted on the rail.
     pub(crate) rough_from: Option<i16>,
     /// The highest measured value of late.
     pub(crate) peak: Option<i16>,
@@ -71,7 +71,7 @@ impl<'a> SlideTrack<'a> {
         }
     }
 
-    /// Draws the track. The value that the person moved it to, if they did in this frame.
+    /// Draws the track. The value that the user moved it to, if they did in this frame.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Option<i16> {
         let sense = match self.disabled {
             None => Sense::click_and_drag(),

@@ -1,4 +1,4 @@
-//! What a person sets of a joint: target angle, force threshold, speed, and the last two for all joints at once.
+//! What the user sets of a joint: target angle, force threshold, speed, and the last two for all joints at once.
 
 use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
@@ -26,7 +26,7 @@ struct TrackRow<'a> {
 }
 
 impl TrackRow<'_> {
-    /// Draws it. What the person set in this frame.
+    /// Draws it. What the user set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
         let caption = Label::new(look.say(self.caption), look.palette.muted);
@@ -128,7 +128,10 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         let joint = joints[row.dof];
         let (force, freshness) = pane.newest(row.dof, hand.readings.sample.force);
         track.actual = force.and_then(|force| force.documented());
-        let over = track.actual.zip(hand.stops_at(row.dof));
+        let over = track.actual.zip(
+            hand.controls
+                .stops_at(row.dof, hand.held_otherwise(row.dof)),
+        );
         let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
         let live = if over { look.palette.warn } else { row.color };
         track.color = look.value(freshness, live);
@@ -200,7 +203,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Each trial of a series sets its own force and speed: what a person set is not in force then.
+/// Each trial of a series sets its own force and speed: what the user set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
     let runs = pane.state.hand().series.is_some();
     runs.then(|| pane.look.say(main::SERIES_RUNS))
@@ -256,7 +259,7 @@ impl NumberScale {
         }
     }
 
-    /// Angles of one joint in the unit that the person chose.
+    /// Angles of one joint in the unit that the user chose.
     fn of_angle(unit: AngleUnit, dof: Dof) -> Self {
         let whole = Self::whole(Angle::MAX.get());
         let (low, high) = match unit {

@@ -208,7 +208,7 @@ impl CardView {
         self.informs
     }
 
-    /// Draws the card, if there is one, over `shade`; what the person asked for in it.
+    /// Draws the card, if there is one, over `shade`; what the user asked for in it.
     pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Vec<Action> {
         let Some(card) = card else {
             self.shown = None;

@@ -5,7 +5,7 @@ use crate::app::effect::Effect;
 use crate::app::layout::{Breakpoint, Layout, RoomLayouts};
 use crate::app::readings::Freshness;
 use crate::app::state::State;
-use crate::hand::{Dof, Moment, PerDof, Timed};
+use crate::hand::{Dof, Finger, Moment, PerDof, Timed};
 use crate::record::ArmRefusal;
 use crate::ui::style::Look;
 use crate::ui::text::{inputs, main};
@@ -17,7 +17,7 @@ pub(crate) struct Pane<'a> {
     /// What is shown.
     pub(crate) state: &'a State,
     pub(crate) look: Look,
-    /// What the person asked for.
+    /// What the user asked for.
     pub(crate) actions: &'a mut Vec<Action>,
     /// The field being typed into.
     pub(crate) typing: &'a mut Typing,
@@ -25,7 +25,7 @@ pub(crate) struct Pane<'a> {
     pub(crate) opens: &'a mut Option<ViewRequest>,
 }
 
-/// What a person opens from another part of the window.
+/// What the user opens from another part of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ViewRequest {
     View(View),
@@ -90,7 +90,16 @@ impl Pane<'_> {
 
     /// How fresh something asked for at `asked` is.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
-        self.state.hand().freshness(asked, self.state.now)
+        let hand = self.state.hand();
+        hand.readings
+            .freshness(asked, hand.connection.is_live(), self.state.now)
+    }
+
+    /// The same for the reading of a fingertip.
+    pub(crate) fn tip_freshness(&self, finger: Finger) -> Freshness {
+        let hand = self.state.hand();
+        hand.readings
+            .tip_freshness(finger, hand.connection.is_live(), self.state.now)
     }
 
     /// The newest value of one joint, and how fresh it is.

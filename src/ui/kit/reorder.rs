@@ -1,4 +1,4 @@
-//! Things that a person puts in another order, by dragging one to the place of another.
+//! Things that the user puts in another order, by dragging one to the place of another.
 //! Knows nothing of what they are.
 
 use crate::ui::style::Look;

@@ -210,7 +210,7 @@ pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
     format!("{name} {}", pane.look.say(column).to_lowercase())
 }
 
-/// A value as a person says it: the serial speed in baud, not as its code.
+/// A value as the user says it: the serial speed in baud, not as its code.
 pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     let speed = match (id, value) {
         (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::of_code(code.into()),

@@ -113,7 +113,7 @@ type Traces = HashMap<(bool, Series), Trace>;
 pub(crate) struct ChartView {
     /// What is shown of the time.
     pub(crate) time: TimeWindow,
-    /// Scales that a person chose.
+    /// Scales that the user chose.
     pub(crate) scales: Scales,
     /// Points of lines; of a line that goes on only the newest are fetched.
     traces: Traces,

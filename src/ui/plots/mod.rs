@@ -317,7 +317,7 @@ impl PlotView {
         if self.thresholds && panel.kind == PlotKind::Force {
             let shown = Dof::ALL.into_iter().filter(|dof| !self.hidden[*dof]);
             let level = |dof: Dof| {
-                let stops_at = hand.stops_at(dof)?;
+                let stops_at = hand.controls.stops_at(dof, hand.held_otherwise(dof))?;
                 Some((stops_at.get().into(), look.palette.dof[dof]))
             };
             levels.extend(shown.filter_map(level));

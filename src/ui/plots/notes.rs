@@ -1,4 +1,4 @@
-//! The notes of a person as a list: a click shows the moment of one, and each can be taken away.
+//! The notes of the user as a list: a click shows the moment of one, and each can be taken away.
 
 use crate::app::action::Action;
 use crate::history::{Mark, MarkKind};

@@ -1,4 +1,4 @@
-//! Value scales: round by themselves, or as a person set them by dragging or by the wheel.
+//! Value scales: round by themselves, or as the user set them by dragging or by the wheel.
 
 use crate::ui::kit::Look;
 use crate::ui::text::{Text, panels};
@@ -115,7 +115,7 @@ struct SettledScale {
     roomy_since: Option<f64>,
 }
 
-/// The scales that a person chose; others follow their values.
+/// The scales that the user chose; others follow their values.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
     chosen: BTreeMap<&'static str, (f64, f64)>,
@@ -123,7 +123,7 @@ pub(crate) struct Scales {
 }
 
 impl Scales {
-    /// The ends that a person chose.
+    /// The ends that the user chose.
     pub(crate) fn chosen(&self, title: Text) -> Option<(f64, f64)> {
         self.chosen.get(title.en).copied()
     }

@@ -1,4 +1,4 @@
-//! Which stretch of time is shown: the newest, or one that a person chose. Knows no curve and no pixel.
+//! Which stretch of time is shown: the newest, or one that the user chose. Knows no curve and no pixel.
 
 /// The shortest stretch: two measurements of a fast link.
 const SHORTEST_S: f64 = 0.02;

@@ -1,4 +1,4 @@
-//! The stored gestures as tiles, the names a person gives them, and in a drawer how they are started. Starts nothing by
+//! The stored gestures as tiles, the names the user gives them, and in a drawer how they are started. Starts nothing by
 //! itself.
 
 use crate::app::action::Action;

@@ -1,4 +1,4 @@
-//! The view of poses: the person's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
+//! The view of poses: the user's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
 pub(crate) mod editor;
 pub(crate) mod gestures;
 pub(crate) mod sequence_step;

@@ -90,7 +90,7 @@ pub(crate) fn tile_ui(
     response.clicked()
 }
 
-/// The overview's strip: the person's poses first, then what is shipped.
+/// The overview's strip: the user's poses first, then what is shipped.
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {

@@ -1,4 +1,4 @@
-//! Every error that reaches a person, as a sentence in the window's language. English is the error's own words, except
+//! Every error that reaches the user, as a sentence in the window's language. English is the error's own words, except
 //! where they speak of the command line.
 
 use crate::app::inputs::OpenRefusal;
@@ -409,7 +409,7 @@ pub(crate) fn dds(look: Look, error: &DdsError) -> String {
     told(look, error, dds_zh)
 }
 
-/// Why something was not opened at the place that a person named.
+/// Why something was not opened at the place that the user named.
 pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     match refusal {
         OpenRefusal::System(error) => look.fill(inputs::NOT_OPENED, &[&system_error(look, error)]),

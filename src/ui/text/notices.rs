@@ -89,7 +89,7 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     }
 }
 
-/// The words of a fault's mark, `index: stall, over_current`, as a person reads them.
+/// The words of a fault's mark, `index: stall, over_current`, as the user reads them.
 pub(crate) fn fault_mark(look: Look, mark: &str) -> String {
     let Some((joint, names)) = mark.split_once(": ") else {
         return look.say(panels::MARK_FAULT).to_owned();

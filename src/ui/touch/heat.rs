@@ -19,7 +19,7 @@ pub(crate) fn tips(pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
     PerFinger::from_fn(|finger| {
         let block = pane.state.hand().readings.sample.tactile[finger]?;
         Some(Tip {
-            stale: pane.state.hand().tip_freshness(finger, pane.state.now) != Freshness::Live,
+            stale: pane.tip_freshness(finger) != Freshness::Live,
             ..tip(pane, finger, &block.value)
         })
     })

@@ -27,7 +27,7 @@ const TIP_LEAST: f32 = 44.0;
 /// The hand has at least this height, whatever else there is no room for.
 const HAND_LEAST: f32 = 272.0;
 
-/// What the person chose for the fingertips.
+/// What the user chose for the fingertips.
 #[derive(Debug, Default)]
 pub(crate) struct TouchView {
     hand: HandPanel,
@@ -220,7 +220,7 @@ impl TouchView {
             Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
-        let freshness = pane.state.hand().tip_freshness(finger, pane.state.now);
+        let freshness = pane.tip_freshness(finger);
         let builder = egui::UiBuilder::new()
             .max_rect(place.shrink(theme::STEP))
             .layout(Layout::bottom_up(Align::Center));

@@ -81,10 +81,7 @@ pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &Touc
 /// A number that is known or not, named for accessibility.
 fn number_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, (name, text): (&str, Option<String>)) {
     let look = pane.look;
-    let color = look.value(
-        pane.state.hand().tip_freshness(finger, pane.state.now),
-        look.palette.text,
-    );
+    let color = look.value(pane.tip_freshness(finger), look.palette.text);
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
     let name = look.told(words::finger(finger), name);
     Label::new(&text, color).number().named(&name).ui(ui);

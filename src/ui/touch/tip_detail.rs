@@ -16,7 +16,7 @@ use crate::ui::touch::tip_channels::TipChannels;
 use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use egui_plot::LineStyle;
 
-/// Friction that is taken until a person chooses one, in percent: rubber on smooth plastic is about this.
+/// Friction that is taken until the user chooses one, in percent: rubber on smooth plastic is about this.
 const FRICTION_PERCENT: i16 = 50;
 /// The largest friction that can be chosen, in percent.
 const FRICTION_MAX: i16 = 150;
@@ -54,7 +54,7 @@ impl TipDetail {
     pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
         for finger in Finger::ALL {
             let block = pane.state.hand().readings.sample.tactile[finger];
-            let live = pane.state.hand().tip_freshness(finger, pane.state.now) == Freshness::Live;
+            let live = pane.tip_freshness(finger) == Freshness::Live;
             let block = block.filter(|_| live).map(|block| block.value);
             self.holds[finger] = self.holds[finger].next(Grip::of(block.as_ref()), self.friction());
         }
@@ -95,7 +95,7 @@ impl TipDetail {
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
         let block = pane.state.hand().readings.sample.tactile[self.finger].as_ref();
-        let freshness = pane.state.hand().tip_freshness(self.finger, pane.state.now);
+        let freshness = pane.tip_freshness(self.finger);
         (block.map(|block| &block.value), freshness)
     }
 

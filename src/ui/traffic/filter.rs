@@ -6,7 +6,7 @@ use crate::record::Direction;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// What a person wants to see.
+/// What the user wants to see.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Filter {
     /// Part of a register's name, or bytes in hex; empty for all.

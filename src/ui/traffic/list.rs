@@ -51,7 +51,7 @@ impl ChosenFrames {
     }
 }
 
-/// Draws the head and the rows, with the newest in sight if it `follows`. True if a person scrolls away from it.
+/// Draws the head and the rows, with the newest in sight if it `follows`. True if the user scrolls away from it.
 pub(crate) fn list_ui(
     ui: &mut Ui,
     pane: &Pane<'_>,
@@ -104,7 +104,7 @@ pub(crate) fn list_ui(
     scrolls
 }
 
-/// A person turns the wheel back, or takes the scroll bar.
+/// The user turns the wheel back, or takes the scroll bar.
 fn scrolls(ui: &Ui, body: Rect) -> bool {
     ui.rect_contains_pointer(body)
         && ui.input(|input| {

@@ -1,4 +1,4 @@
-//! The map of overshoot over speed and threshold, and the best setting by what a person wants, which can be made the
+//! The map of overshoot over speed and threshold, and the best setting by what the user wants, which can be made the
 //! default. Writes nothing: a card asks first.
 
 use crate::app::action::Action;

@@ -114,7 +114,7 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
     if !hand.connection.status.state.is_live() {
         return Some(look.say(main::REFUSED_OFFLINE).into());
     }
-    if hand.arms_for_series() {
+    if hand.series_asked.is_some() {
         return Some(look.say(tune::ARMING).into());
     }
     if state.trials.running.is_some() {

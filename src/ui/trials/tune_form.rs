@@ -19,7 +19,7 @@ const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of the words before a field: all fields begin at one edge.
 const CAPTION: f32 = 112.0;
-/// Speed of a fast part unless a person says otherwise: fast, and not rough yet.
+/// Speed of a fast part unless the user says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
 /// What the form needs between frames.
@@ -50,7 +50,7 @@ struct Pass<'a, 'p> {
 }
 
 impl TuneForm {
-    /// Keeps what a person typed for choices that they may come back to.
+    /// Keeps what the user typed for choices that they may come back to.
     fn remember(&mut self, plan: &TrialPlan) {
         for (dof, target) in self.targets.iter_mut() {
             *target = plan.close[dof].unwrap_or(*target);
@@ -68,7 +68,7 @@ impl TuneForm {
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
         let hand = pane.state.hand();
-        let runs = hand.series.is_some() || hand.arms_for_series();
+        let runs = hand.series.is_some() || hand.series_asked.is_some();
         let mut pass = Pass {
             wrong,
             pane,

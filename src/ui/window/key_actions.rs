@@ -1,4 +1,4 @@
-//! What a person asks for by keys that act everywhere.
+//! What the user asks for by keys that act everywhere.
 
 use crate::app::action::Action;
 use crate::app::hand::HoldKey;

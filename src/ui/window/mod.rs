@@ -104,7 +104,7 @@ impl Window {
         self.body.view
     }
 
-    /// Draws the window over all of `ui` and returns what the person asked for, stop first.
+    /// Draws the window over all of `ui` and returns what the user asked for, stop first.
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
         if let Some(exhibit) = &state.exhibit {
             self.install_if_changed(ui, state);

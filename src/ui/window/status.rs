@@ -37,7 +37,7 @@ enum Help {
     Dismiss(u64),
 }
 
-/// Something that a person must know now.
+/// Something that the user must know now.
 struct Warning {
     title: Text,
     body: String,

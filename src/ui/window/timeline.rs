@@ -250,7 +250,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     }
 }
 
-/// Where a person drags it, or let it go. In a slow frame the pointer may have gone on after that.
+/// Where the user drags it, or let it go. In a slow frame the pointer may have gone on after that.
 fn dragged_to(ui: &Ui, response: &Response) -> Option<Pos2> {
     let now = response.interact_pointer_pos()?;
     let let_go = ui.input(|input| {

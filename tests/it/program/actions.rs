@@ -425,7 +425,7 @@ async fn these_actions_pass_while_a_recording_is_shown_and_no_others() {
     let names: BTreeSet<&str> = passes.map(|action| (&action).into()).collect();
     let wanted = [
         "Stop",
-        "Session",
+        "Recording",
         "Note",
         "Dismiss",
         "Save",

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Recorded before a fault: the cause of a stall or of heat lies there, and a grasp with its approach takes less.
 pub const BEFORE: Duration = Duration::from_secs(45);
-/// Recorded after a fault: long enough to see what the hand did then, and what the person did about it.
+/// Recorded after a fault: long enough to see what the hand did then, and what the user did about it.
 pub const AFTER: Duration = Duration::from_secs(15);
 /// A fault that comes while one is recorded makes the recording longer, but not beyond this after the first.
 pub const LONGEST_AFTER: Duration = Duration::from_secs(60);
@@ -70,7 +70,7 @@ impl FaultRecorder {
         }
     }
 
-    /// Notes what a person did.
+    /// Notes what the user did.
     pub(crate) fn person(&mut self, act: PersonAct, now: Moment) {
         let known = self.events.iter_mut().rev().take(8).find(|event| {
             let quick = now.since(event.at) < KNOB;

@@ -1,11 +1,11 @@
-//! What the recorder notes between measurements: what a person did, and how a drive's status and faults changed.
+//! What the recorder notes between measurements: what the user did, and how a drive's status and faults changed.
 
 use crate::hand::{Angle, Dof, Faults, Force, Moment, Speed, Status};
 use crate::poses::Play;
 use crate::poses::Preset;
 use std::sync::Arc;
 
-/// Something a person did that was sent to the hand, or that ends what is sent.
+/// Something the user did that was sent to the hand, or that ends what is sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PersonAct {
     /// Setpoints were let through no more.
@@ -66,7 +66,7 @@ impl PersonAct {
 /// What happened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FaultEventKind {
-    /// A person did something.
+    /// The user did something.
     PersonAct(PersonAct),
     /// A drive says something else.
     Status(Dof, Status),

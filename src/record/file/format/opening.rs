@@ -29,7 +29,7 @@ pub struct Opening {
     pub hand: String,
     /// Whether it is the built-in hand.
     pub simulated: bool,
-    /// The hand's side, as the person said.
+    /// The hand's side, as the user said.
     pub side: Side,
     /// The program's version.
     pub version: String,
