@@ -5,7 +5,7 @@ use crate::hand::{Dof, Moment, PerDof, Quantity};
 use crate::record::EventKind;
 use crate::record::file::overview::{OverviewRow, joint_line};
 use crate::record::file::{Counts, FileMark, OpenError, Opening, Overview, RecordingFile};
-use crate::store::calendar::stamp;
+use crate::store::calendar;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -75,12 +75,13 @@ impl RecordingItem {
         }
     }
 
-    /// When it began, `2026-11-22T09:30:00Z`; `-` if nobody knows.
+    /// When it began by the clock of this computer, `2026-11-22 10:30`; `-` if nobody knows.
     pub fn began(&self) -> String {
         if self.opening.is_imported() {
             return "-".into();
         }
-        stamp(self.opening.began_since_1970())
+        let (day, time) = calendar::local(self.opening.began_since_1970());
+        format!("{day} {time}")
     }
 
     /// Its name, or that of its file.

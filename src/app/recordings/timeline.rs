@@ -13,7 +13,7 @@ pub struct Timeline {
     pub path: PathBuf,
     /// The recording's name, or that of its file.
     pub title: String,
-    /// When it began, `2026-11-22T09:30:00Z`.
+    /// When it began, as [`RecordingItem::began`](crate::app::recordings::RecordingItem::began) tells it.
     pub began: String,
     /// The hand's endpoint.
     pub hand: String,

@@ -118,19 +118,19 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
             palette.muted
         };
         Label::new(&title, ink).ui(ui);
+        // Before what changes, so that it stays where it is.
+        if !entry.seen {
+            let text = look.say(notices::SEEN);
+            let name = format!("{text}: {title}");
+            let button = Button::new(text, look.tip(notices::SEEN)).named(&name);
+            button.on_click(ui, pane, Action::SeenFault(entry.dof, entry.what));
+        }
         let when = format::age(entry.lasted(pane.state.now));
         let word = match entry.until {
             None => format!("{}, {when}", look.say(word)),
             Some(_) => look.say(word).to_owned(),
         };
         Label::new(&word, color).small().ui(ui);
-        if entry.seen {
-            return;
-        }
-        let text = look.say(notices::SEEN);
-        let name = format!("{text}: {title}");
-        let button = Button::new(text, look.tip(notices::SEEN)).named(&name);
-        button.on_click(ui, pane, Action::SeenFault(entry.dof, entry.what));
     });
 }
 

@@ -61,15 +61,8 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
             unseen_mark_ui(ui, pane, dof);
         });
         let name = row.named(pane, main::STATUS);
-        ui.horizontal(|ui| {
-            let status = Label::new(&drive.short, drive.text).small();
-            status.named(&name).ui(ui);
-            if let Some(code) = drive.code {
-                let color = look.value(drive.freshness, look.palette.muted);
-                let code = code.to_string();
-                kit::right_ui(ui, |ui| Label::new(&code, color).number().ui(ui));
-            }
-        });
+        let status = Label::new(&drive.short, drive.text).small();
+        status.named(&name).ui(ui);
         let line = vec2(ui.available_width(), theme::TEXT_LINE);
         let (_, place) = ui.allocate_space(line);
         row.short_reading_ui(ui, place, pane);

@@ -4,7 +4,7 @@ use crate::app::readings::Freshness;
 use crate::hand::{Dof, Status, Words};
 use crate::ui::kit::pane::Pane;
 use crate::ui::style::format;
-use crate::ui::text::{main, words};
+use crate::ui::text::words;
 use egui::Color32;
 
 /// What stands beside a drive's lamp.
@@ -17,8 +17,6 @@ pub(crate) struct DriveWords {
     pub(crate) title: String,
     /// The same where room is short.
     pub(crate) short: String,
-    /// The code of its status, unless it stands in the title.
-    pub(crate) code: Option<u8>,
     /// Title, cause and advice, if anything is known.
     pub(crate) words: Option<Words>,
     pub(crate) freshness: Freshness,
@@ -49,14 +47,9 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
-        let code = match (fault, status) {
-            (None, Some(Status::Unknown(_))) => None,
-            (_, status) => status.map(Status::raw),
-        };
-        let short = match (fault, status) {
-            (Some(fault), _) => words::fault_short(fault, look.language).into(),
-            (None, Some(Status::ForceReached)) => look.say(main::AT_FORCE).into(),
-            _ => title.clone(),
+        let short = match fault {
+            Some(fault) => words::fault_short(fault, look.language).into(),
+            None => title.clone(),
         };
         let lamp = look.value(freshness, live);
         let text = if live == palette.bad {
@@ -69,7 +62,6 @@ impl DriveWords {
             text,
             title,
             short,
-            code,
             words,
             freshness,
         }

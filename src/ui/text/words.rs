@@ -78,7 +78,6 @@ pub(crate) const fn fault(fault: Fault, language: Language) -> Words {
 pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static str {
     match (language, fault) {
         (Language::En, Fault::OverTemperature) => "Too hot",
-        (Language::En, Fault::Motor) => "Motor",
         (Language::En, Fault::Communication) => "No contact",
         (Language::En, Fault::Unknown(_)) => "Unknown",
         (Language::Zh, Fault::Unknown(_)) => "未知故障",

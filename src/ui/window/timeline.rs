@@ -101,8 +101,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
 
 /// What recording it is.
 fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
-    let began: String = line.began.replace('T', " ").chars().take(16).collect();
-    let words = format!("{}   {began} UTC   {}", line.title, line.hand);
+    let words = format!("{}   {}   {}", line.title, line.began, line.hand);
     let label = Label::new(&words, look.palette.muted).small().right();
     label.ui(ui).on_hover_text(line.path.display().to_string());
 }
