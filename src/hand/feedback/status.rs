@@ -104,7 +104,7 @@ impl Status {
                 "Nothing to do.",
             ),
             Self::ForceReached => Words::new(
-                "Force reached",
+                "At force",
                 "The force met its threshold and the drive stopped.",
                 "Nothing to do. Raise the threshold if the grip is too weak.",
             ),

@@ -678,7 +678,7 @@ fn the_rows_under_the_plots_tell_what_each_drive_said_and_since_when() {
     let index = u8::try_from(Dof::Index.index()).unwrap();
     assert_eq!(
         told(0.8, index).as_deref(),
-        Some("Index: Force reached\nsince 1:35.0, for 4.9 s")
+        Some("Index: At force\nsince 1:35.0, for 4.9 s")
     );
     let before = told(0.2, index).unwrap();
     assert!(
