@@ -18,9 +18,7 @@ use std::time::Duration;
 /// News come faster than a display shows them: one frame serves all that come within this time.
 const FRAME_WITHIN: Duration = Duration::from_millis(16);
 /// The same while no hand moves: only curves go on then, a pixel or two.
-const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(50);
-/// The same where the processor draws the pixels.
-const FRAME_AT_REST_IN_SOFTWARE_WITHIN: Duration = Duration::from_millis(100);
+const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(100);
 
 /// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
 pub type Snap =
@@ -31,7 +29,6 @@ pub struct DesktopApp {
     app: App,
     window: Window,
     snap: Option<Snap>,
-    is_software: bool,
 }
 
 impl DesktopApp {
@@ -41,13 +38,7 @@ impl DesktopApp {
             app,
             window: Window::new(),
             snap: None,
-            is_software: false,
         }
-    }
-
-    /// Whether the processor draws the pixels. Less often, then, while no hand moves.
-    pub const fn set_software(&mut self, is_software: bool) {
-        self.is_software = is_software;
     }
 
     /// With something that makes pictures of parts of the window.
@@ -104,8 +95,6 @@ impl DesktopApp {
         };
         if state.hands.iter().any(moves) {
             FRAME_WITHIN
-        } else if self.is_software {
-            FRAME_AT_REST_IN_SOFTWARE_WITHIN
         } else {
             FRAME_AT_REST_WITHIN
         }

@@ -17,6 +17,7 @@ mod line;
 mod memory;
 mod pictures;
 mod plain;
+mod press;
 mod record;
 mod report;
 mod scene;
@@ -53,7 +54,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 15] = [
+const PARTS: [Part; 16] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -66,6 +67,7 @@ const PARTS: [Part; 15] = [
     ("start", start::run),
     ("memory", memory::run),
     ("idle", idle::run),
+    ("press", press::run),
     ("waiting", waiting::run),
     ("record", record::run),
     ("several", hands::run),

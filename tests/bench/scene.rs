@@ -2,7 +2,10 @@
 
 use crate::clock::cpu_ms;
 use crate::report::Failure;
-use egui::{Context, RawInput, Rect, ViewportId, ViewportInfo, pos2, vec2};
+use egui::{
+    Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, ViewportId, ViewportInfo, pos2,
+    vec2,
+};
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
 use handscope::app::env::Env;
@@ -26,6 +29,8 @@ use tokio::sync::Notify;
 
 /// Pixels of the window.
 const SIZE: [u16; 2] = [1440, 900];
+/// The same where the processor draws them.
+const SOFTWARE_SIZE: [u16; 2] = [1920, 1080];
 /// How often the program looks at its link while nothing is drawn.
 const LOOK_EACH: Duration = Duration::from_millis(20);
 
@@ -45,6 +50,9 @@ pub(crate) struct Scene {
     raster: Option<Raster>,
     clock: Clock,
     runtime: Runtime,
+    size: [u16; 2],
+    /// What the mouse does before the next frame.
+    events: Vec<Event>,
 }
 
 impl Scene {
@@ -102,6 +110,8 @@ impl Scene {
             raster: None,
             clock,
             runtime,
+            size: SIZE,
+            events: Vec::new(),
         })
     }
 
@@ -174,19 +184,30 @@ impl Scene {
         self.desktop_app.frame_within()
     }
 
-    /// From now on the pixels are drawn too.
+    /// From now on the pixels are drawn too, of a window of 1920x1080.
     pub(crate) fn paint(&mut self) {
-        let [width, height] = SIZE;
+        self.size = SOFTWARE_SIZE;
+        let [width, height] = self.size;
         // Its textures come with the first frame of a context.
         self.context = Context::default();
         self.raster = Some(Raster::new(width.into(), height.into()));
-        self.desktop_app.set_software(true);
     }
 
     /// From now on they are not.
     pub(crate) fn paint_not(&mut self) {
         self.raster = None;
-        self.desktop_app.set_software(false);
+        self.size = SIZE;
+    }
+
+    /// Presses or lets go of the mouse at a point before the next frame.
+    pub(crate) fn press(&mut self, pos: Pos2, pressed: bool) {
+        self.events.push(Event::PointerMoved(pos));
+        self.events.push(Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
     }
 
     /// One frame, as far as the processor draws it. Gives processor milliseconds of logic, layout and triangles.
@@ -194,10 +215,13 @@ impl Scene {
         let now = self.now();
         let _inside = self.runtime.enter();
         let (logic, ()) = cpu_ms(|| self.desktop_app.logic(now));
+        let input = RawInput {
+            events: std::mem::take(&mut self.events),
+            ..screen(self.size, now)
+        };
         let desktop_app = &mut self.desktop_app;
         let context = &self.context;
-        let (layout, mut output) =
-            cpu_ms(|| context.run_ui(screen(now), |ui| desktop_app.ui(ui, now)));
+        let (layout, mut output) = cpu_ms(|| context.run_ui(input, |ui| desktop_app.ui(ui, now)));
         match &mut self.raster {
             Some(raster) => raster.apply_textures(&mut output.textures_delta),
             None => output.textures_delta.clear(),
@@ -213,8 +237,8 @@ impl Scene {
     }
 }
 
-fn screen(now: Moment) -> RawInput {
-    let [width, height] = SIZE.map(f32::from);
+fn screen(size: [u16; 2], now: Moment) -> RawInput {
+    let [width, height] = size.map(f32::from);
     let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(width, height));
     let viewport = ViewportInfo {
         native_pixels_per_point: Some(1.0),

@@ -128,7 +128,6 @@ impl Program {
             documents: documents(),
         };
         let mut app = App::new(env, start.loaded.settings);
-        let is_software = start.drawing != Drawing::OpenGl;
         let without = match start.drawing {
             Drawing::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
             Drawing::OpenGl | Drawing::Software => None,
@@ -148,10 +147,8 @@ impl Program {
         if let Some(path) = start.replay {
             app.act(Action::Recording(RecordingAction::Open(path)), clock.now());
         }
-        let mut desktop_app = DesktopApp::new(app).with_snap(start.snap);
-        desktop_app.set_software(is_software);
         Self {
-            desktop_app,
+            desktop_app: DesktopApp::new(app).with_snap(start.snap),
             clock,
             frame_within_ms,
             titled: None,

@@ -7,7 +7,7 @@ use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
-use egui::{Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, remap, vec2};
+use egui::{Color32, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, remap, vec2};
 use std::time::Duration;
 
 /// A row with the gap below it.
@@ -80,16 +80,19 @@ impl DrivesPlace<'_> {
         ui.painter().rect_filled(mark, 0.0, palette.dof[dof]);
         let history = &pane.state.hand().measured.history;
         let (from_s, to_s) = self.span;
-        for run in history.status(dof, from_s, to_s) {
+        let runs = history.status(dof, from_s, to_s).map(|run| {
             let fault = run.faults.and_then(|faults| faults.iter().next());
-            let color = palette.drive(fault, run.status);
-            if color != palette.faint {
-                let from = self.x(frame, run.from_s.max(from_s));
-                let to = self.x(frame, run.until_s.min(to_s)).max(from + 1.0);
-                let xs = Rangef::new(from, to.min(frame.right()));
-                let stretch = Rect::from_x_y_ranges(xs, bar.y_range());
-                ui.painter().rect_filled(stretch, 0.0, color);
-            }
+            let ends = [run.from_s.max(from_s), run.until_s.min(to_s)];
+            let [from, to] = ends.map(|at_s| self.x(frame, at_s));
+            (Rangef::new(from, to), palette.drive(fault, run.status))
+        });
+        for (xs, color) in seen(
+            runs.filter(|(_, color)| *color != palette.faint),
+            palette.bad,
+        ) {
+            let xs = Rangef::new(xs.min, xs.max.min(frame.right()));
+            let stretch = Rect::from_x_y_ranges(xs, bar.y_range());
+            ui.painter().rect_filled(stretch, 0.0, color);
         }
     }
 
@@ -100,6 +103,24 @@ impl DrivesPlace<'_> {
         let x = remap(at_s, from_s..=to_s, xs) as f32;
         x
     }
+}
+
+/// Of stretches in the order of time, those that a display can show: none narrower than a point, and of several within one point
+/// the first and what is `bad`. An hour of grasps has twenty thousand.
+fn seen(
+    runs: impl Iterator<Item = (Rangef, Color32)>,
+    bad: Color32,
+) -> impl Iterator<Item = (Rangef, Color32)> {
+    let (mut until, mut last) = (f32::NEG_INFINITY, None);
+    runs.filter_map(move |(xs, color)| {
+        let is_hidden = xs.max <= until && (color != bad || last == Some(bad));
+        if is_hidden {
+            return None;
+        }
+        until = xs.max.max(xs.min + 1.0);
+        last = Some(color);
+        Some((Rangef::new(xs.min, until), color))
+    })
 }
 
 /// What the drive of a joint said at a time, and since when.
@@ -122,5 +143,31 @@ fn said(look: Look, run: &StatusRun) -> String {
         Some(status) if faults.is_empty() => words::status(status, look.language).title.into(),
         None if faults.is_empty() => format::UNKNOWN.into(),
         _ => faults.join(" + "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_what_lies_within_a_point_the_first_and_the_bad_is_drawn() {
+        let (fine, moves, bad) = (Color32::GREEN, Color32::BLUE, Color32::RED);
+        let runs = (0_u16..20_000).map(|number| {
+            let color = match number {
+                7_001 => bad,
+                _ if number % 2 == 0 => fine,
+                _ => moves,
+            };
+            let from = f32::from(number) / 50.0;
+            (Rangef::new(from, from + 0.02), color)
+        });
+        let drawn: Vec<_> = seen(runs, bad).collect();
+        assert!(drawn.len() <= 402, "{} for 400 points", drawn.len());
+        assert!(drawn.iter().any(|(_, color)| *color == bad));
+        assert!(drawn.iter().all(|(xs, _)| xs.span() >= 0.99));
+        let wide = [(0.0, 9.5, fine), (9.5, 30.0, moves), (30.0, 31.5, fine)];
+        let wide = wide.map(|(from, to, color)| (Rangef::new(from, to), color));
+        assert_eq!(seen(wide.into_iter(), bad).collect::<Vec<_>>(), wide);
     }
 }

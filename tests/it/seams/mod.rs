@@ -49,7 +49,10 @@ impl Try {
         match self.row {
             Row::Slider => &[Start::Window(Window::slider)],
             Row::Pose => &[Start::Window(Window::pose), Start::Window(Window::sequence)],
-            Row::Series => &[Start::Window(Window::series)],
+            Row::Series => &[
+                Start::Window(Window::series),
+                Start::Window(Window::armed_series),
+            ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],
             Row::Leading => match self.column {

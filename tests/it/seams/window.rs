@@ -151,7 +151,19 @@ impl Window {
         self
     }
 
-    pub(super) fn series(mut self) -> Self {
+    pub(super) fn series(self) -> Self {
+        self.trials(|window| {
+            window.arm();
+            window.act(Action::Trial(TrialAction::Start));
+        })
+    }
+
+    /// The same by the one button that arms and starts.
+    pub(super) fn armed_series(self) -> Self {
+        self.trials(|window| window.act(Action::Trial(TrialAction::ArmAndStart)))
+    }
+
+    fn trials(mut self, start: impl FnOnce(&mut Self)) -> Self {
         let setting = TrialSetting {
             speed: slow(),
             force: Force::GENTLE,
@@ -170,8 +182,7 @@ impl Window {
             ..TrialPlan::default()
         };
         self.act(Action::Trial(TrialAction::Plan(Box::new(plan))));
-        self.arm();
-        self.act(Action::Trial(TrialAction::Start));
+        start(&mut self);
         self.until("it closes", |window| window.hand.angles()[3] < 980);
         self
     }
