@@ -14,7 +14,7 @@ const COOLER_C: u8 = 10;
 
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach
     #[arg(long)]
