@@ -1,10 +1,6 @@
 //! How far a drive runs past its force threshold on two hands of the family. No state.
 
-use crate::hand::impact::{overshoot_g, two_stage_overshoot_g};
-
-/// Speeds, and grams past a threshold of 500 on the second hand (arXiv 2603.08988, middle finger); at smaller thresholds it was
-/// as much.
-const SECOND_HAND: [(f64, f64); 4] = [(0.0, 0.0), (25.0, 24.0), (50.0, 325.0), (1000.0, 1056.0)];
+use crate::hand::impact::{overshoot_g, second_hand_overshoot_g, two_stage_overshoot_g};
 
 /// A contact that meets its threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,17 +24,7 @@ pub fn run_on_g(met: MetThreshold, second: f64) -> f64 {
     } else {
         overshoot_g(speed, threshold_g)
     };
-    (1.0 - second) * first + second * second_hand_g(speed)
-}
-
-fn second_hand_g(speed: f64) -> f64 {
-    let pairs = SECOND_HAND.iter().zip(SECOND_HAND.iter().skip(1));
-    for ((from, low), (to, high)) in pairs {
-        if speed <= *to {
-            return low + (high - low) * (speed - from) / (to - from);
-        }
-    }
-    SECOND_HAND.last().map_or(0.0, |(_, most)| *most)
+    (1.0 - second) * first + second * second_hand_overshoot_g(speed)
 }
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ chinese! {
         WireFailure::System(error) => "{}", system_error_zh(error);
         WireFailure::Protocol(words) => "应答不符合此协议：“{words}”";
         WireFailure::NoScenario(_) => "没有此场景";
-        WireFailure::NoBody(words) => "无法使用此机体文件：“{words}”";
+        WireFailure::NoBody(_) => "此文件无法使用（格式见 'handscope sim --print-body'）";
         WireFailure::OffBus => "适配器无法接入总线";
         WireFailure::Recorded(words) => "系统信息为“{words}”";
     }
