@@ -29,7 +29,11 @@ const WORTH_ONE: f64 = 0.02;
 const WORTH_TEN: f64 = 0.05;
 /// Steps upwards, and settings that are tried for confirmation.
 const RISES_MAX: usize = 10;
-const CONFIRMATIONS_MAX: usize = 5;
+const CONFIRMATIONS_MAX: usize = 8;
+/// After so many closes a claim is taken as it is, even if something quicker may be left.
+const RISING_UNTIL: usize = 40;
+/// What is aimed at of the room under the limit: bounds of few closes scatter themselves.
+const AIM: f64 = 0.97;
 /// All closes of a search.
 pub const TRIALS_MAX: usize = 250;
 /// From the order to go on slowly to the motion: the dead time and a reading, s.
@@ -377,26 +381,48 @@ impl Finder {
         };
     }
 
-    /// The approach in two stages; in one, where it is faster or there is no room for two.
+    /// The quicker of both approaches at this speed; in one stage where there is no room for two.
     fn approach(&self, speed: f64) -> FoundApproach {
         let margins = self.joints.iter().map(JointModel::margin);
         let margin = margins.fold(0.0, f64::max).ceil();
+        let two = FoundApproach::TwoStage {
+            fast_speed: FAST,
+            margin: whole(margin).clamp(1, 500),
+        };
+        let one = FoundApproach::OneStage;
+        if self.room() <= margin + 1.0 || self.takes(one, speed) <= self.takes(two, speed) {
+            one
+        } else {
+            two
+        }
+    }
+
+    /// The way to the contact of the joint that has the least, units of ANGLE_ACT.
+    fn room(&self) -> f64 {
         let room = self.joints.iter().map(|joint| {
             let (start, _) = self.wish.way(joint.dof);
             start - joint.contact().unwrap_or(start)
         });
-        let room = room.fold(f64::INFINITY, f64::min);
-        let rate = self.joints.first().map_or(1.5, JointModel::rate);
-        let one = (room - margin) / (rate * speed);
-        let two = (room - margin) / (rate * f64::from(FAST)) + PAUSE_S;
-        if room <= margin + 1.0 || one <= two {
-            FoundApproach::OneStage
-        } else {
-            FoundApproach::TwoStage {
-                fast_speed: FAST,
-                margin: whole(margin).clamp(1, 500),
+        room.fold(f64::INFINITY, f64::min)
+    }
+
+    /// About how long a close takes after the dead time, s.
+    fn takes(&self, approach: FoundApproach, speed: f64) -> f64 {
+        let rate = self.joints.first().map_or(1.5, JointModel::rate).max(0.01);
+        let pressed = self
+            .joints
+            .iter()
+            .filter_map(|joint| Some(self.threshold_g / joint.stiffness()?.max(0.1)));
+        let pressed = pressed.fold(0.0, f64::max);
+        let (fast_s, slow_way) = match approach {
+            FoundApproach::OneStage => (0.0, self.room()),
+            FoundApproach::TwoStage { fast_speed, margin } => {
+                let fast_way = (self.room() - f64::from(margin)).max(0.0);
+                let fast_s = fast_way / (rate * f64::from(fast_speed.max(1)));
+                (fast_s + PAUSE_S, f64::from(margin))
             }
-        }
+        };
+        fast_s + (slow_way + pressed) / (rate * speed.max(1.0))
     }
 
     /// The fastest speed up to `most` at which each joint stays under the limit by this bound of the peak.
@@ -448,27 +474,13 @@ impl Finder {
         self.confirm(likely.unwrap_or(next).min(next.max(self.speed())))
     }
 
-    /// How much of the last close a faster contact would save, as a share.
+    /// How much of the last close this speed would save with the best approach to it, as a share.
     fn gain(&self, speed: f64) -> f64 {
         let Some(close) = self.tried.last().and_then(|own| own.close_s) else {
             return 1.0;
         };
-        let rate = self.joints.first().map_or(1.5, JointModel::rate);
-        let pressed = self
-            .joints
-            .iter()
-            .filter_map(|joint| Some(self.threshold_g / joint.stiffness()?.max(0.1)));
-        let slow_way = match self.choice.approach {
-            FoundApproach::TwoStage { margin, .. } => f64::from(margin),
-            FoundApproach::OneStage => {
-                let joint = self.joints.first();
-                joint.map_or(0.0, |joint| {
-                    self.wish.way(joint.dof).0 - joint.contact().unwrap_or_default()
-                })
-            }
-        } + pressed.fold(0.0, f64::max);
-        let saved = slow_way / rate * (1.0 / self.speed().max(1.0) - 1.0 / speed.max(1.0));
-        saved / close.max(0.05)
+        let now = self.takes(self.choice.approach, self.speed());
+        (now - self.takes(self.approach(speed), speed)) / close.max(0.05)
     }
 
     fn confirm(&mut self, speed: f64) -> Result<(), NoClaim> {
@@ -564,8 +576,8 @@ impl Finder {
             return self.confirm(speed.min(self.speed()));
         }
         // What the bound is of the limit, over the threshold, is what the overshoot may be more or less.
-        let room = (self.limit() - 1.0 - self.threshold_g) / (bound - self.threshold_g).max(1.0);
-        let aim = self.speed_for(room);
+        let room = (self.limit() - self.threshold_g) / (bound - self.threshold_g).max(1.0);
+        let aim = self.speed_for(AIM * room);
         if bound > self.limit() {
             self.barred = self.barred.min(BARRED_FROM * self.speed());
             let Some(speed) = aim.filter(|speed| *speed < self.speed()) else {
@@ -573,10 +585,11 @@ impl Finder {
             };
             return self.confirm(speed);
         }
-        let faster = aim.filter(|speed| self.gain(*speed) > WORTH_TEN);
-        let may_rise = self.confirmations < 3 && faster.is_some_and(|speed| speed < self.barred);
-        if let Some(speed) = faster.filter(|_| may_rise) {
-            return self.confirm(speed);
+        // By now the contact is known better too, so that even the same speed may be quicker with less before it.
+        let now = self.speed();
+        let better = aim.unwrap_or(now).min(self.barred - 1.0).max(now);
+        if self.tried.len() < RISING_UNTIL && self.gain(better) > WORTH_TEN {
+            return self.confirm(better);
         }
         self.claim(&confirmation);
         Ok(())

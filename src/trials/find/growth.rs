@@ -5,8 +5,11 @@ use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
 
 /// Mixtures of the two published shapes that are tried.
 const MIXTURES: u32 = 20;
-/// A peak repeats itself to this share of its overshoot, as far as nothing else is known.
-pub const REPEATS_TO: f64 = 0.035;
+/// How fast this hand may be for each unit of speed, of what the published ones are.
+const PACES: [f64; 4] = [0.85, 0.9, 0.95, 1.0];
+/// A peak repeats itself to this share of its overshoot, as far as nothing else is known; that counts as so many closes.
+const REPEATS_TO: f64 = 0.035;
+const REPEATS_TRUST: f64 = 6.0;
 /// What a shape may differ from this hand's, as a share of the overshoot.
 const SHAPE_ERROR: f64 = 0.10;
 /// How much worse than the best a mixture may fit and still be possible (chi-square).
@@ -32,12 +35,14 @@ pub struct PeakGrowth {
     seen: Vec<(Contact, f64)>,
     /// Noise of the force, g.
     noise_g: f64,
+    /// The shapes, fitted to what was seen.
+    fits: Vec<Fit>,
 }
 
 /// A mixture of the shapes, fitted.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Fit {
-    second: f64,
+    shape: Shape,
     scale: f64,
     /// Standard deviation of the scale.
     unsure: f64,
@@ -48,17 +53,46 @@ impl PeakGrowth {
     /// Takes one close.
     pub fn add(&mut self, contact: Contact, over_g: f64) {
         self.seen.push((contact, over_g));
+        self.fit_all();
     }
 
     /// Takes over the noise of the force, g.
-    pub const fn set_noise(&mut self, noise_g: f64) {
+    pub fn set_noise(&mut self, noise_g: f64) {
         self.noise_g = noise_g;
+        self.fit_all();
     }
 
     /// What is likely above the threshold, g; `None` before anything was measured.
     pub fn likely(&self, at: Contact) -> Option<f64> {
         let best = self.best()?;
-        Some(best.scale * shape(at, best.second))
+        Some(best.scale * best.shape.over_g(at) * self.correction(best, at.speed))
+    }
+
+    /// What the nearest trials on either side were of what the fit says of them.
+    fn correction(&self, fit: &Fit, speed: f64) -> f64 {
+        let side = |is_on_it: &dyn Fn(f64) -> bool, nearer: &dyn Fn(f64, f64) -> bool| {
+            let on_it = self.seen.iter().map(|(at, _)| at.speed);
+            let nearest = on_it.filter(|own| is_on_it(*own));
+            let nearest = nearest.reduce(|a, b| if nearer(a, b) { a } else { b })?;
+            let there = self.seen.iter().filter(|(at, _)| at.speed == nearest);
+            let (mut over, mut fitted) = (0.0, 0.0);
+            for (at, own) in there {
+                over += own;
+                fitted += fit.scale * fit.shape.over_g(*at);
+            }
+            // Of peaks that are no more than noise nothing can be said.
+            let tells = fitted > 5.0 * self.noise_g && over > 0.0;
+            tells.then(|| (nearest, over / fitted))
+        };
+        let below = side(&|own| own <= speed, &|a, b| a >= b);
+        let above = side(&|own| own >= speed, &|a, b| a <= b);
+        match (below, above) {
+            (Some((low, first)), Some((high, second))) if high > low => {
+                first + (second - first) * (speed - low) / (high - low)
+            }
+            (Some((_, own)), _) | (None, Some((_, own))) => own,
+            (None, None) => 1.0,
+        }
     }
 
     /// The most that is possible above the threshold on average, g.
@@ -66,14 +100,15 @@ impl PeakGrowth {
         let best = self.best()?;
         let trials: f64 = self.seen.iter().map(|_| 1.0).sum();
         let is_strange = best.misfit > STRANGE * trials;
-        let fits = self.fits();
-        let fits = fits.iter();
-        let possible = fits.filter(|fit| is_strange || fit.misfit <= best.misfit + POSSIBLE);
+        let possible = self
+            .fits
+            .iter()
+            .filter(|fit| is_strange || fit.misfit <= best.misfit + POSSIBLE);
         let most = possible.map(|fit| {
             if is_strange {
-                STRANGE_MORE * self.from_fastest(at, fit.second)
+                STRANGE_MORE * self.from_fastest(at, fit.shape)
             } else {
-                (fit.scale + 2.0 * fit.unsure) * shape(at, fit.second)
+                (fit.scale + 2.0 * fit.unsure) * fit.shape.over_g(at)
             }
         });
         most.reduce(f64::max)
@@ -82,28 +117,49 @@ impl PeakGrowth {
     /// Standard deviation of single closes around what is likely, g.
     pub fn scatter(&self, at: Contact) -> f64 {
         let over = self.likely(at).unwrap_or_default();
-        self.noise_g.hypot(REPEATS_TO * over)
+        self.noise_g.hypot(self.repeats_to() * over)
     }
 
-    fn best(&self) -> Option<Fit> {
-        let fits = self.fits().into_iter();
+    /// To what share of its overshoot a peak repeats itself, from the settings that were closed more than once.
+    fn repeats_to(&self) -> f64 {
+        let (mut squares, mut freedom) = (REPEATS_TRUST * REPEATS_TO.powi(2), REPEATS_TRUST);
+        for (nth, (at, _)) in self.seen.iter().enumerate() {
+            let is_first = self.seen.iter().take(nth).all(|(other, _)| other != at);
+            let same = self.seen.iter().filter(|(other, _)| other == at);
+            let same: Vec<f64> = same.map(|(_, over)| *over).collect();
+            let n: f64 = same.iter().map(|_| 1.0).sum();
+            let mean = same.iter().sum::<f64>() / n;
+            if is_first && n > 1.0 && mean > 10.0 * self.noise_g {
+                squares += same
+                    .iter()
+                    .map(|own| (own / mean - 1.0).powi(2))
+                    .sum::<f64>();
+                freedom += n - 1.0;
+            }
+        }
+        (squares / freedom).sqrt()
+    }
+
+    fn best(&self) -> Option<&Fit> {
+        let fits = self.fits.iter();
         fits.min_by(|a, b| a.misfit.total_cmp(&b.misfit))
     }
 
-    fn fits(&self) -> Vec<Fit> {
+    fn fit_all(&mut self) {
         let mixtures = (0..=MIXTURES).map(|n| f64::from(n) / f64::from(MIXTURES));
-        mixtures.filter_map(|second| self.fit(second)).collect()
+        let shapes = mixtures.flat_map(|second| PACES.map(|pace| Shape { second, pace }));
+        self.fits = shapes.filter_map(|shape| self.fit(shape)).collect();
     }
 
     /// The scale by weighted least squares.
-    fn fit(&self, second: f64) -> Option<Fit> {
+    fn fit(&self, shape: Shape) -> Option<Fit> {
         let weighted = |over: f64| {
             let error = (self.noise_g + 1.0).hypot(SHAPE_ERROR * over);
             1.0 / (error * error)
         };
         let (mut xy, mut xx) = (0.0, 0.0);
         for (at, over) in &self.seen {
-            let (x, weight) = (shape(*at, second), weighted(*over));
+            let (x, weight) = (shape.over_g(*at), weighted(*over));
             xy += weight * x * over;
             xx += weight * x * x;
         }
@@ -112,11 +168,11 @@ impl PeakGrowth {
         }
         let scale = (xy / xx).max(0.0);
         let misfits = self.seen.iter().map(|(at, over)| {
-            let miss = over - scale * shape(*at, second);
+            let miss = over - scale * shape.over_g(*at);
             weighted(*over) * miss * miss
         });
         Some(Fit {
-            second,
+            shape,
             scale,
             unsure: 1.0 / xx.sqrt(),
             misfit: misfits.sum(),
@@ -124,20 +180,31 @@ impl PeakGrowth {
     }
 
     /// The fastest trial's overshoot, continued along a shape.
-    fn from_fastest(&self, at: Contact, second: f64) -> f64 {
+    fn from_fastest(&self, at: Contact, shape: Shape) -> f64 {
         let fastest = self.seen.iter();
         let fastest = fastest.max_by(|(a, _), (b, _)| a.speed.total_cmp(&b.speed));
         fastest.map_or(0.0, |(from, over)| {
-            let grown = shape(at, second) / shape(*from, second).max(f64::EPSILON);
+            let grown = shape.over_g(at) / shape.over_g(*from).max(f64::EPSILON);
             (over + self.noise_g).max(1.0) * grown
         })
     }
 }
 
-/// Grams above the threshold on the published block, `second` of it as on the second hand.
-fn shape(at: Contact, second: f64) -> f64 {
-    (1.0 - second) * overshoot_g(at.speed, at.threshold_g)
-        + second * second_hand_overshoot_g(at.speed)
+/// Grams above the threshold on the published block.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shape {
+    /// How much of it is as on the second hand, 0..=1.
+    second: f64,
+    /// How fast the hand is of what the published ones are.
+    pace: f64,
+}
+
+impl Shape {
+    fn over_g(self, at: Contact) -> f64 {
+        let speed = at.speed * self.pace;
+        (1.0 - self.second) * overshoot_g(speed, at.threshold_g)
+            + self.second * second_hand_overshoot_g(speed)
+    }
 }
 
 #[cfg(test)]

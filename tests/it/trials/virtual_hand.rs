@@ -11,6 +11,7 @@ use handscope::sim::body_file::JointBody;
 use handscope::sim::body_file::random::random;
 use handscope::sim::body_file::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::trials::find::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::find::{Claim, Finder, Finding, FoundApproach, TuneWish};
 use handscope::trials::{
     Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
@@ -226,6 +227,8 @@ pub(crate) struct Case {
     pub(crate) trials: usize,
     /// How long it took, s of virtual time.
     pub(crate) took_s: f64,
+    /// Each close in words.
+    pub(crate) tried: Vec<String>,
 }
 
 /// One search on one body and one stiffness.
@@ -250,10 +253,21 @@ pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)
         highest_g,
         trials: run.trials.len(),
         took_s,
+        tried: Vec::new(),
     };
     let Some(finding) = run.finding else {
         return case;
     };
+    case.tried = finding
+        .tried
+        .iter()
+        .map(|own| {
+            format!(
+                "{} {:?} {:?} {:?}",
+                own.setting, own.approach, own.peak_g, own.close_s
+            )
+        })
+        .collect();
     match finding.result {
         Err(none) => case.words = none.to_string(),
         Ok(claim) => {
@@ -280,7 +294,7 @@ fn peak(trial: &Trial) -> Option<f64> {
     trial.summary.joints[0].peak_force_g
 }
 
-/// The quickest close of a fine grid of which 95 of 100 stay under the limit and that holds, by the body itself.
+/// The quickest close of a fine grid whose bound from so many closes is under the limit and that holds, by the body itself.
 fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &TuneWish)) -> f64 {
     let own = stiffness * body.stiffness_factor;
     let hold = f64::from(wish.hold_g);
@@ -300,7 +314,8 @@ fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &Tu
         };
         (10..2000_i16).find(holds).unwrap()
     };
-    let scatter = 1.645 * body.latency_scatter_ms / body.latency_ms;
+    let k = tolerance_factor(wish.closes, Assurance::USUAL).unwrap();
+    let scatter = k * body.latency_scatter_ms / body.latency_ms;
     let fits = |speed: &i16| {
         let threshold = least((*speed).into());
         let over = over((*speed).into(), threshold.into());
