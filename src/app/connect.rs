@@ -1,79 +1,129 @@
 //! The built-in hand behind its wire, beside all other wires. The only place that knows that it is built in.
 
 use crate::link::Clock;
+use crate::sim::body_file::file;
 use crate::sim::serve::{SharedHand, rs485};
-use crate::sim::{Scenario, SimConfig, SimHand};
+use crate::sim::{BodyParams, Scenario, SimConfig, SimHand};
 use crate::transport::{
     BoxedWire, Dial, Endpoint, PortFound, SystemDial, TransportError, WireFailure, pair,
 };
 use futures::future::BoxFuture;
-use std::sync::{Mutex, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// One built-in hand: it lives on between connections, as a real one does.
 struct Built {
     seed: u64,
     scenario: Scenario,
+    body: Option<String>,
     hand: SharedHand,
 }
 
-/// Dials everything: `sim:` to a built-in hand for each seed and scenario, over a wire in memory, anything else to the system.
-pub struct SimDial {
+/// The built-in hands that live, and the clock they live by.
+#[derive(Clone)]
+struct BuiltHands {
     clock: Clock,
+    all: Arc<Mutex<Vec<Built>>>,
+}
+
+/// Dials everything: `sim:` to a built-in hand for each seed, scenario and body, over a wire in memory, anything else to the system.
+pub struct SimDial {
     system: SystemDial,
-    built: Mutex<Vec<Built>>,
+    built: BuiltHands,
     /// The built-in hand that every RS485 line ends at, if they do.
     at_lines: Option<Endpoint>,
 }
 
 impl SimDial {
     /// No hand is built before it is dialled.
-    pub const fn new(clock: Clock) -> Self {
+    pub fn new(clock: Clock) -> Self {
+        let all = Arc::default();
         Self {
-            clock,
             system: SystemDial,
-            built: Mutex::new(Vec::new()),
+            built: BuiltHands { clock, all },
             at_lines: None,
         }
     }
 
     /// As [`SimDial::new`], and every RS485 line ends at this built-in hand: for pictures of what only a line has.
-    pub const fn at_lines(clock: Clock, hand: Endpoint) -> Self {
+    pub fn at_lines(clock: Clock, hand: Endpoint) -> Self {
         Self {
-            clock,
-            system: SystemDial,
-            built: Mutex::new(Vec::new()),
             at_lines: Some(hand),
+            ..Self::new(clock)
         }
     }
+}
 
-    /// The hand of this seed and scenario: the one of last time, or a new one that begins now.
-    fn hand(&self, seed: u64, scenario: &str) -> Result<SharedHand, TransportError> {
+impl BuiltHands {
+    /// The hand of this seed, scenario and body: the one of last time, or a new one that begins now. A body's file is read only
+    /// for a new one, on a thread of its own.
+    async fn hand(&self, wanted: Wanted) -> Result<SharedHand, TransportError> {
         let scenario: Scenario =
-            scenario
+            wanted
+                .scenario
                 .parse()
-                .map_err(|error: crate::sim::UnknownScenario| TransportError::Io {
-                    place: "sim:".into(),
-                    failure: WireFailure::NoScenario(error.to_string()),
+                .map_err(|error: crate::sim::UnknownScenario| {
+                    failed(WireFailure::NoScenario(error.to_string()))
                 })?;
-        let mut all = self.built.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut known = all.iter();
-        if let Some(built) = known.find(|built| built.seed == seed && built.scenario == scenario) {
-            return Ok(built.hand.clone());
+        if let Some(hand) = self.known(&wanted, scenario) {
+            return Ok(hand);
         }
-        // One that nobody is connected to makes room.
-        all.retain(|built| built.hand.is_shared());
+        let body = match wanted.body.clone() {
+            None => BodyParams::default(),
+            Some(path) => read_body(path).await?,
+        };
+        if let Some(hand) = self.known(&wanted, scenario) {
+            return Ok(hand);
+        }
         let config = SimConfig {
-            seed,
+            seed: wanted.seed,
             scenario,
+            body,
             ..SimConfig::default()
         };
-        let hand = SharedHand::new(SimHand::new(config), self.clock.instant(self.clock.now()));
+        let began = self.clock.instant(self.clock.now());
+        let hand = SharedHand::new(SimHand::new(config), began);
+        let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        // One that nobody is connected to makes room.
+        all.retain(|built| built.hand.is_shared());
         all.push(Built {
-            seed,
+            seed: wanted.seed,
             scenario,
+            body: wanted.body,
             hand: hand.clone(),
         });
         Ok(hand)
+    }
+
+    fn known(&self, wanted: &Wanted, scenario: Scenario) -> Option<SharedHand> {
+        let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_it = |built: &&Built| {
+            built.seed == wanted.seed && built.scenario == scenario && built.body == wanted.body
+        };
+        all.iter().find(is_it).map(|built| built.hand.clone())
+    }
+}
+
+/// The built-in hand that an endpoint names.
+struct Wanted {
+    seed: u64,
+    scenario: String,
+    body: Option<String>,
+}
+
+async fn read_body(path: String) -> Result<BodyParams, TransportError> {
+    let read = tokio::task::spawn_blocking(move || file::read(Path::new(&path)));
+    match read.await {
+        Ok(Ok(body)) => Ok(body),
+        Ok(Err(error)) => Err(failed(WireFailure::NoBody(error.to_string()))),
+        Err(gone) => Err(failed(WireFailure::NoBody(gone.to_string()))),
+    }
+}
+
+fn failed(failure: WireFailure) -> TransportError {
+    TransportError::Io {
+        place: "sim:".into(),
+        failure,
     }
 }
 
@@ -83,12 +133,22 @@ impl Dial for SimDial {
             (Some(hand), Endpoint::Rs485(_)) => hand,
             _ => endpoint,
         };
-        let Endpoint::Sim { seed, scenario } = hand else {
+        let Endpoint::Sim {
+            seed,
+            scenario,
+            body,
+        } = hand
+        else {
             return self.system.dial(endpoint);
         };
-        let hand = self.hand(*seed, scenario);
+        let wanted = Wanted {
+            seed: *seed,
+            scenario: scenario.clone(),
+            body: body.clone(),
+        };
+        let built = self.built.clone();
         Box::pin(async move {
-            let hand = hand?;
+            let hand = built.hand(wanted).await?;
             let (ours, its) = pair();
             // Ends by itself when our end is dropped.
             tokio::spawn(rs485::serve(hand, its));
@@ -111,31 +171,40 @@ mod tests {
     use super::*;
     use crate::hand::register;
 
+    async fn hand_of(dial: &SimDial, seed: u64) -> SharedHand {
+        let wanted = Wanted {
+            seed,
+            scenario: "idle".into(),
+            body: None,
+        };
+        dial.built.hand(wanted).await.unwrap()
+    }
+
     #[tokio::test(start_paused = true)]
     async fn the_same_hand_is_there_after_a_reconnect() {
         let dial = SimDial::new(Clock::start());
-        let first = dial.hand(1, "idle").unwrap();
+        let first = hand_of(&dial, 1).await;
         drop(dial.dial(&Endpoint::sim()).await.unwrap());
         first
             .with(|hand, now| hand.write(register::HAND_ID.address, &[9], now))
             .unwrap();
-        assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
-        assert_eq!(dial.hand(2, "idle").unwrap().with(|hand, _| hand.id()), 1);
+        assert_eq!(hand_of(&dial, 1).await.with(|hand, _| hand.id()), 9);
+        assert_eq!(hand_of(&dial, 2).await.with(|hand, _| hand.id()), 1);
     }
 
     #[tokio::test(start_paused = true)]
     async fn two_built_in_hands_are_there_at_once() {
         let dial = SimDial::new(Clock::start());
-        let first = dial.hand(1, "idle").unwrap();
+        let first = hand_of(&dial, 1).await;
         first
             .with(|hand, now| hand.write(register::HAND_ID.address, &[9], now))
             .unwrap();
-        let second = dial.hand(2, "idle").unwrap();
+        let second = hand_of(&dial, 2).await;
         assert_eq!(second.with(|hand, _| hand.id()), 1);
-        assert_eq!(dial.hand(1, "idle").unwrap().with(|hand, _| hand.id()), 9);
+        assert_eq!(hand_of(&dial, 1).await.with(|hand, _| hand.id()), 9);
         drop(first);
-        let _third = dial.hand(3, "idle").unwrap();
-        let again = dial.hand(1, "idle").unwrap();
+        let _third = hand_of(&dial, 3).await;
+        let again = hand_of(&dial, 1).await;
         assert_eq!(again.with(|hand, _| hand.id()), 1, "nobody had the first");
     }
 
@@ -144,6 +213,7 @@ mod tests {
         let endpoint = Endpoint::Sim {
             seed: 1,
             scenario: "party".into(),
+            body: None,
         };
         let error = SimDial::new(Clock::start())
             .dial(&endpoint)
@@ -151,5 +221,27 @@ mod tests {
             .err()
             .unwrap();
         assert!(error.to_string().contains("party"), "{error}");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_body_is_read_from_its_file_and_a_wrong_one_is_said_in_words() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("body.toml");
+        let dial = SimDial::new(Clock::start());
+        let endpoint = Endpoint::Sim {
+            seed: 1,
+            scenario: "free".into(),
+            body: Some(path.display().to_string()),
+        };
+        std::fs::write(&path, "[joint.index]\nlatency_ms = 900\n").unwrap();
+        let error = dial.dial(&endpoint).await.err().unwrap().to_string();
+        assert!(error.contains("line 2, `latency_ms`"), "{error}");
+        std::fs::write(&path, "[joint.index]\nlatency_ms = 90\n").unwrap();
+        drop(dial.dial(&endpoint).await.unwrap());
+        let built = dial.built.all.lock().unwrap();
+        let latency = built[0]
+            .hand
+            .with(|hand, _| hand.body().joints[crate::hand::Dof::Index].latency_ms);
+        assert_eq!(latency, 90.0);
     }
 }

@@ -18,6 +18,7 @@ use crate::cli::share::ShareArgs;
 use crate::cli::share::fleet::FleetArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::trial::TrialArgs;
+use crate::cli::tune::TuneArgs;
 use crate::cli::watch::WatchArgs;
 use crate::cli::window::WindowArgs;
 use crate::cli::window::exhibit::ExhibitArgs;
@@ -90,6 +91,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --speed 25 --force 500 --arm\n  handscope trial --hand tcp:192.168.11.210 --joint index,thumb_bend --speed 25,100,250 --force 200,500 --repeat 3 --arm --out egg --best least-overshoot --hold 300\n  handscope trial --hand rs485:/dev/ttyUSB0 --joint index --approach 1000 --until measured:40 --force 500 --arm --json\n\nThis moves the hand, and only with --arm: keep everything but the object out of its way. The joints go to --start gently, rest for half a second, close, hold for --dwell after they have stopped, and go back. No joint closes before the hand confirms the speed and the threshold that were set. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. After a stop the hand keeps what it holds: open it yourself.\n\nExit status: 0 all trials done; 1 ended early, or no setting qualifies for --best; 2 wrong usage."
     )]
     Trial(TrialArgs),
+    /// Find the fastest close on an object whose peak stays under a limit, and confirm it
+    #[command(
+        after_help = "Examples:\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --arm\n  handscope tune --hand tcp:192.168.11.210 --joint index,thumb_bend --pose thumb_rotate=300 --limit 300 --hold 150 --arm --out egg\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --closes 22 --distribution-free --arm --json\n\nThis moves the hand, and only with --arm: put the object in its place, and keep everything else out of its way. Two slow closes find the object, then each is faster as far as what was measured allows, then one setting is closed again and again: about twenty closes in two minutes. Each close is a trial as of 'handscope trial', with the same limits. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. 'handscope help tune' tells what the result means.\n\nExit status: 0 a setting was confirmed; 1 ended early, or none could be; 2 wrong usage."
+    )]
+    Tune(TuneArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script
     #[command(
         after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
@@ -160,6 +166,7 @@ const ENDPOINTS: &str = "\
 Hands are named by URL:
   sim:                                     the built-in simulated hand
   sim:?seed=7&scenario=grasp               the same, playing a scenario
+  sim:?body=worn.toml                      the same, with a body of yours
   rs485:/dev/ttyUSB0?baud=115200&id=1      RS485, the maker's own framing
   rtu:/dev/ttyUSB0?baud=115200&id=1        Modbus RTU on the same kind of port
   tcp:192.168.11.210:6000?unit=255         Modbus TCP

@@ -19,6 +19,7 @@ mod session;
 mod share;
 mod sim;
 mod trial;
+mod tune;
 mod value;
 mod watch;
 mod window;
@@ -99,6 +100,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
         Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),

@@ -3,7 +3,10 @@
 use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};
 use crate::hand::{Angle, Dof, Force, HandId, Speed};
+use crate::sim::body_file::file;
+use crate::transport::{Endpoint, EndpointError};
 use std::ops::RangeInclusive;
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -50,6 +53,20 @@ pub(crate) fn number<T: FromStr + PartialOrd>(
 ) -> Result<T, String> {
     let number = text.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| format!("'{text}' is not {what}"))
+}
+
+/// A hand's URL. A body that it names has to be one: nobody would find out later why no hand answers.
+pub(crate) fn hand(text: &str) -> Result<Endpoint, String> {
+    let endpoint: Endpoint = text
+        .parse()
+        .map_err(|error: EndpointError| error.to_string())?;
+    if let Endpoint::Sim {
+        body: Some(path), ..
+    } = &endpoint
+    {
+        file::read(Path::new(path)).map_err(|error| error.to_string())?;
+    }
+    Ok(endpoint)
 }
 
 pub(crate) fn dof(text: &str) -> Result<Dof, String> {

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct QuirksArgs {
     /// The hand to examine
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Print one JSON object
     #[arg(long)]

@@ -20,7 +20,7 @@ pub(crate) struct ReadArgs {
     #[arg(required = true, value_name = "NAME", value_parser = parse::register)]
     names: Vec<&'static Register>,
     /// The hand to read
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     hand: Endpoint,
     /// Print one JSON object
     #[arg(long)]

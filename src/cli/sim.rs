@@ -4,9 +4,13 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::Out;
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::cli::wires::{ServedWire, WireArgs, failed};
-use crate::sim::{Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands};
+use crate::sim::body_file::file;
+use crate::sim::{
+    BodyParams, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands,
+};
 use anyhow::Context as _;
 use std::fmt::Write as _;
+use std::path::Path;
 use std::time::Duration;
 use tokio::time::{Instant, interval};
 
@@ -33,10 +37,16 @@ pub(crate) struct SimArgs {
     /// What the hand does where the manual leaves a choice, from the list below; may be repeated
     #[arg(long = "quirk", value_name = "NAME=VALUE", value_parser = quirk)]
     quirks: Vec<Quirk>,
+    /// The body of the hands, from a file; --print-body writes one to start from
+    #[arg(long, value_name = "FILE", value_parser = body)]
+    body: Option<BodyParams>,
+    /// Print the default body with its units, and end
+    #[arg(long, exclusive = true, group = "wire")]
+    print_body: bool,
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 lets their readings stand still while their joints go on, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 lets their readings stand still while their joints go on, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
 On Modbus TCP the unit id selects the hand; 255 means the first, and a single hand answers to every id.";
 
 /// What stands under the list of switches.
@@ -46,6 +56,9 @@ pub(crate) fn help() -> String {
 
 /// Serves the hand until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
+    if args.print_body {
+        return out.line(file::print(&BodyParams::default()).trim_end());
+    }
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;
     let freeze = Interrupt::freeze()?;
@@ -103,6 +116,7 @@ fn hands(args: &SimArgs) -> Option<SimHands> {
             id: id.get(),
             scenario: args.scenario,
             personality: personality(&args.quirks),
+            body: args.body.unwrap_or_default(),
         });
         SharedHand::new(hand, begun)
     });
@@ -130,6 +144,11 @@ fn few_ids(text: &str) -> Result<HandIds, String> {
         ));
     }
     Ok(ids)
+}
+
+/// Reads the file of a body.
+fn body(path: &str) -> Result<BodyParams, String> {
+    file::read(Path::new(path)).map_err(|error| error.to_string())
 }
 
 /// A switch and a position that it has.

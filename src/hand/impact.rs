@@ -58,6 +58,15 @@ pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     peak * (speed / SLOWEST).clamp(0.0, 1.0) * lighter
 }
 
+/// Speeds, and grams past a threshold of 500 on another hand of the family (arXiv 2603.08988, middle finger). It went as far
+/// past smaller thresholds.
+const SECOND_HAND: [(f64, f64); 4] = [(0.0, 0.0), (SLOWEST, 24.0), (50.0, 325.0), (1000.0, 1056.0)];
+
+/// Peak above the threshold in g on a second hand, for a contact at `speed`.
+pub fn second_hand_overshoot_g(speed: f64) -> f64 {
+    interpolate(SECOND_HAND, speed)
+}
+
 /// An overshoot that the user should know of before it happens: as much again as the gentle threshold.
 pub const NOTABLE_G: f64 = 500.0;
 
@@ -122,6 +131,14 @@ mod tests {
             (0.0, 500.0, 0.0),
         ] {
             assert!((overshoot_g(speed, threshold) - peak).abs() < 1e-6);
+        }
+        for (speed, peak) in [
+            (25.0, 24.0),
+            (50.0, 325.0),
+            (1000.0, 1056.0),
+            (2000.0, 1056.0),
+        ] {
+            assert!((second_hand_overshoot_g(speed) - peak).abs() < 1e-6);
         }
         assert!((overshoot_g(100.0, 500.0) - 202.0).abs() < 5.0);
         assert!((overshoot_g(500.0, 500.0) - 2466.0).abs() < 30.0);

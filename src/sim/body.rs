@@ -1,13 +1,12 @@
 //! Six drives around an object, and the force sensors' errors. Knows no registers.
 
 use crate::hand::{Dof, Finger, PerDof};
+use crate::sim::body_file::BodyParams;
 use crate::sim::drive::{Drive, DriveSettings};
 use crate::sim::object::Object;
 
 /// How often the sensors' noise is drawn anew, ms.
 const NOISE_MS: u64 = 10;
-/// Force noise, g either way.
-const FORCE_NOISE_G: f64 = 3.0;
 
 /// The whole mechanism.
 #[derive(Debug, Clone)]
@@ -15,15 +14,25 @@ pub struct Body {
     drives: PerDof<Drive>,
     rest_g: PerDof<f64>,
     noise_g: PerDof<f64>,
+    params: BodyParams,
 }
 
 impl Body {
     /// An open hand around `object`, in a room between 25 and 30 °C.
-    pub fn new(object: &Object, rng: &mut fastrand::Rng) -> Self {
+    pub fn new(object: &Object, params: &BodyParams, rng: &mut fastrand::Rng) -> Self {
+        // What scatters has numbers of its own, so that a body that does not is as it always was.
+        let mut seeds = rng.clone();
+        let drive = |dof| {
+            let ambient = 25.0 + 5.0 * rng.f64();
+            Drive::of(params.joints[dof], ambient, seeds.u64(..))
+        };
         let mut body = Self {
-            drives: PerDof::from_fn(|_| Drive::new(25.0 + 5.0 * rng.f64())),
-            rest_g: PerDof::from_fn(|_| -8.0 + 12.0 * rng.f64()),
+            drives: PerDof::from_fn(drive),
+            rest_g: PerDof::from_fn(|dof| {
+                -8.0 + 12.0 * rng.f64() + params.joints[dof].force_zero_g
+            }),
             noise_g: PerDof::splat(0.0),
+            params: *params,
         };
         body.set_object(object);
         body
@@ -48,12 +57,24 @@ impl Body {
 
     /// One millisecond for all drives.
     pub fn step(&mut self, now_ms: u64, settings: &PerDof<DriveSettings>, rng: &mut fastrand::Rng) {
+        let slower = self.slower();
         for (dof, drive) in self.drives.iter_mut() {
-            drive.step(now_ms, settings[dof]);
+            let mut setting = settings[dof];
+            setting.speed *= slower;
+            drive.step(now_ms, setting);
         }
         if now_ms.is_multiple_of(NOISE_MS) {
-            self.noise_g = PerDof::from_fn(|_| (2.0 * rng.f64() - 1.0) * FORCE_NOISE_G);
+            self.noise_g = PerDof::from_fn(|dof| {
+                (2.0 * rng.f64() - 1.0) * self.params.joints[dof].force_noise_g
+            });
         }
+    }
+
+    /// Share of their speed that a weak supply leaves the joints.
+    fn slower(&self) -> f64 {
+        let moving = self.drives.iter().filter(|(_, drive)| drive.is_moving());
+        let others: f64 = moving.skip(1).map(|_| 1.0).sum();
+        1.0 - self.params.supply.sag * others / 5.0
     }
 
     /// What the force sensor says, g.

@@ -1,25 +1,20 @@
 //! One drive: motion, contact, current, heat, faults, in steps of one millisecond. Knows no registers.
 
-use crate::hand::impact::{RIGID_G_PER_COUNT, overshoot_g, two_stage_overshoot_g};
+use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Fault, Faults, Status};
+use crate::sim::body_file::run_on::{MetThreshold, run_on_g};
+use crate::sim::body_file::{COUNTS_PER_SPEED, JointBody};
+pub use crate::sim::body_file::{DEAD_TIME_MS, STROKE};
+use crate::sim::number;
 use crate::sim::object::Contact;
 use arrayvec::ArrayVec;
 
 /// Length of a step, s.
 pub const STEP_S: f64 = 0.001;
-/// Position when fully bent, counts.
-pub const STROKE: f64 = 2000.0;
-/// Position counts a second for each unit of SPEED_SET.
-// Manual: 2.6.13 says 600 ms for the full stroke at 1000; 3.04 was measured on a sister hand.
-pub const COUNTS_PER_SPEED: f64 = STROKE / 0.6 / 1000.0;
-/// From a command to the motion, ms (measured: 64 +- 8).
-pub const DEAD_TIME_MS: u64 = 64;
 /// How fast a drive gains and loses speed, counts/s²: a short ramp of 10 ms to full speed.
 const RAMP: f64 = 330_000.0;
 /// Commands under way within the dead time: one a millisecond is more than any wire can carry.
 const PENDING_MAX: usize = 64;
-/// Current of a drive that moves without load, mA.
-const FREE_MA: f64 = 120.0;
 /// Current for each gram of load, mA.
 const MA_PER_G: f64 = 0.75;
 /// Current of a drive that pushes and cannot move, mA.
@@ -30,10 +25,8 @@ const LIMIT_MA: f64 = 2000.0;
 const OVER_CURRENT_MS: u32 = 50;
 /// How long a drive pushes before it calls itself stalled, ms.
 const STALL_MS: u32 = 800;
-/// Heating, °C/s for each A².
-const HEATING: f64 = 0.44;
-/// Time constant of cooling, s.
-const COOLING_S: f64 = 60.0;
+/// The latency that the measured ways past a threshold are of, ms.
+const USUAL_LATENCY_MS: f64 = 64.0;
 /// Temperature that stops a drive, °C.
 const HOT: f64 = 85.0;
 /// Temperature at which the fault ends by itself, °C.
@@ -103,7 +96,15 @@ pub struct Drive {
     jam: Option<f64>,
     dead: bool,
     grip: f64,
-    heating: f64,
+    hotter: f64,
+    makeup: JointBody,
+    chance: fastrand::Rng,
+    /// What this close's contact and latency differ from the usual by, in standard deviations.
+    contact_draw: f64,
+    /// Whether it opened since the contact was drawn.
+    opened: bool,
+    /// Counts that the drive is ahead of the joint by: half of its backlash at most.
+    lead: f64,
 }
 
 /// Position counts at an angle: the register pairs run against each other (manual 2.6.10, 2.6.11).
@@ -112,8 +113,15 @@ pub fn position_of(angle: f64) -> f64 {
 }
 
 impl Drive {
-    /// An open drive in a room of `ambient` °C.
+    /// An open drive of the default body in a room of `ambient` °C.
     pub fn new(ambient: f64) -> Self {
+        Self::of(JointBody::default(), ambient, 0)
+    }
+
+    /// An open drive of this body in a room of `ambient` °C; the seed is that of what scatters.
+    pub fn of(makeup: JointBody, ambient: f64, seed: u64) -> Self {
+        let ambient = ambient + makeup.warmer_by_c;
+        let mut chance = fastrand::Rng::with_seed(seed);
         Self {
             position: 0.0,
             velocity: 0.0,
@@ -133,13 +141,23 @@ impl Drive {
             jam: None,
             dead: false,
             grip: 1.0,
-            heating: HEATING,
+            hotter: 1.0,
+            makeup,
+            contact_draw: normal(&mut chance),
+            chance,
+            opened: false,
+            lead: -makeup.backlash / 2.0,
         }
     }
 
     /// Counts, 0 open to 2000 bent.
     pub const fn position(&self) -> f64 {
         self.position
+    }
+
+    /// What the drive's own counter says, counts: it turns on a little before the joint follows.
+    pub fn motor_position(&self) -> f64 {
+        (self.position + self.lead).clamp(0.0, STROKE)
     }
 
     /// Angle, 1000 open to 0 bent.
@@ -154,7 +172,13 @@ impl Drive {
 
     /// What is in its way, unless it broke.
     fn whole_contact(&self) -> Option<Contact> {
-        self.contact.filter(|_| !self.broken)
+        let contact = self.contact.filter(|_| !self.broken)?;
+        let later = self.makeup.contact_offset + self.makeup.contact_scatter * self.contact_draw;
+        Some(Contact {
+            angle: contact.angle - later / 2.0,
+            stiffness: contact.stiffness * self.makeup.stiffness_factor,
+            ..contact
+        })
     }
 
     fn load_at(&self, position: f64) -> f64 {
@@ -212,7 +236,7 @@ impl Drive {
 
     /// Lets its current heat it so many times as much as usual.
     pub fn heat_more(&mut self, times: f64) {
-        self.heating = HEATING * times;
+        self.hotter = times;
     }
 
     /// Makes it this warm, °C.
@@ -262,11 +286,23 @@ impl Drive {
 
     /// Takes a command that acts after the dead time.
     pub fn command(&mut self, goal: DriveGoal, now_ms: u64) {
-        let due = now_ms + DEAD_TIME_MS;
+        // Commands do not overtake one another.
+        let last = self.pending.last().map_or(0, |(due, _)| *due);
+        let due = (now_ms + number::whole_ms(self.draw_latency_ms())).max(last);
         if self.pending.is_full() {
             self.pending.pop();
         }
         self.pending.push((due, goal));
+    }
+
+    fn draw_latency_ms(&mut self) -> f64 {
+        let scatter = self.makeup.latency_scatter_ms * normal(&mut self.chance);
+        (self.makeup.latency_ms + scatter).max(0.0)
+    }
+
+    /// True while its motor turns.
+    pub fn is_moving(&self) -> bool {
+        matches!(self.phase, DrivePhase::Moving { .. })
     }
 
     /// One millisecond.
@@ -340,6 +376,10 @@ impl Drive {
                     self.over_current_ms = 0;
                     if to < self.position {
                         self.fastest = 0.0;
+                        self.opened = true;
+                    } else if self.opened && self.load_g() <= 0.0 {
+                        self.opened = false;
+                        self.contact_draw = normal(&mut self.chance);
                     }
                     self.phase = DrivePhase::Moving { to };
                 }
@@ -372,7 +412,7 @@ impl Drive {
 
     fn move_on(&mut self, to: f64, setting: DriveSettings) {
         let way = to - self.position;
-        let top = setting.speed * COUNTS_PER_SPEED;
+        let top = setting.speed * self.makeup.counts_per_speed;
         // The last counts are taken slowly enough to end on the target.
         let wanted = way.signum() * top.min((2.0 * RAMP * way.abs()).sqrt());
         let change = (wanted - self.velocity).clamp(-RAMP * STEP_S, RAMP * STEP_S);
@@ -384,8 +424,8 @@ impl Drive {
             Status::Releasing
         };
         let load = self.load_g();
-        self.current_ma = FREE_MA + MA_PER_G * load;
-        let step = self.velocity * STEP_S;
+        self.current_ma = self.free_ma(way) + MA_PER_G * load;
+        let step = self.take_up(self.velocity * STEP_S);
         // A fast drive passes its threshold within one step, so the step is looked at before it is made.
         let met = self.load_at(self.position + step);
         if way > 0.0 && met > 0.0 && met >= setting.threshold_g {
@@ -407,6 +447,26 @@ impl Drive {
             }
         }
         self.watch_current();
+    }
+
+    fn free_ma(&self, way: f64) -> f64 {
+        let makeup = &self.makeup;
+        let constant = if way > 0.0 {
+            makeup.friction_ma
+        } else {
+            makeup.opening_friction_ma
+        };
+        let speed = self.velocity.abs() / makeup.counts_per_speed;
+        constant + makeup.friction_ma_per_speed * speed
+    }
+
+    /// What is left of a step of the motor for the joint once its backlash is taken up.
+    fn take_up(&mut self, step: f64) -> f64 {
+        let half = self.makeup.backlash / 2.0;
+        let lead = (self.lead + step).clamp(-half, half);
+        let taken = lead - self.lead;
+        self.lead = lead;
+        step - taken
     }
 
     fn push(&mut self, end: f64) {
@@ -438,12 +498,13 @@ impl Drive {
             return;
         };
         let stiffness = (contact.stiffness * self.grip).max(0.01);
-        let speed = self.velocity / COUNTS_PER_SPEED;
-        let over = if self.fastest >= FAST_APPROACH * self.velocity {
-            two_stage_overshoot_g(speed, threshold_g)
-        } else {
-            overshoot_g(speed, threshold_g)
+        let met = MetThreshold {
+            speed: self.velocity / COUNTS_PER_SPEED,
+            threshold_g,
+            came_fast: self.fastest >= FAST_APPROACH * self.velocity,
         };
+        let longer = self.draw_latency_ms() / USUAL_LATENCY_MS;
+        let over = run_on_g(met, self.makeup.run_on) * longer;
         let met = position_of(contact.angle) + threshold_g / stiffness;
         let rest_g = RELAXED_PART * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
         self.status = Status::ForceReached;
@@ -473,8 +534,9 @@ impl Drive {
 
     fn heat(&mut self) {
         let amps = self.current_ma / 1000.0;
-        let cooling = (self.temperature - self.ambient) / COOLING_S;
-        self.temperature += (self.heating * amps * amps - cooling) * STEP_S;
+        let cooling = (self.temperature - self.ambient) / self.makeup.cooling_s;
+        let heating = self.makeup.heating * self.hotter;
+        self.temperature += (heating * amps * amps - cooling) * STEP_S;
         if self.temperature >= HOT && !self.faults.contains(Fault::OverTemperature) {
             self.inject(Fault::OverTemperature);
         }
@@ -502,4 +564,10 @@ impl Drive {
         self.pending.clear();
         self.stop_moving(status);
     }
+}
+
+/// A number of the standard normal distribution.
+fn normal(chance: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - chance.f64()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * chance.f64()).cos()
 }

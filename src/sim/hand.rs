@@ -3,6 +3,7 @@
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
+use crate::sim::body_file::BodyParams;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
 use crate::sim::live::{self, element};
@@ -37,7 +38,7 @@ const FREEZES_AFTER: f64 = 100.0;
 const STAMP: Span = Span::new(GAP.address, 8);
 
 /// What a simulated hand is made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimConfig {
     /// Seed of everything random in it.
     pub seed: u64,
@@ -47,6 +48,8 @@ pub struct SimConfig {
     pub scenario: Scenario,
     /// How it reads the manual's gaps.
     pub personality: Personality,
+    /// How it differs from other hands.
+    pub body: BodyParams,
 }
 
 impl Default for SimConfig {
@@ -56,6 +59,7 @@ impl Default for SimConfig {
             id: 1,
             scenario: Scenario::Idle,
             personality: Personality::default(),
+            body: BodyParams::default(),
         }
     }
 }
@@ -139,8 +143,8 @@ impl SimHand {
     /// A hand that was switched on at [`Moment::ZERO`], open.
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
-        let body = Body::new(&Object::of(config.scenario), &mut rng);
-        let mut touch = TouchSensors::new(&mut rng);
+        let body = Body::new(&Object::of(config.scenario), &config.body, &mut rng);
+        let mut touch = TouchSensors::new(&config.body, &mut rng);
         touch.measure(&mut rng);
         let mut hand = Self {
             supply: Supply::new(config.personality.power),
@@ -333,6 +337,11 @@ impl SimHand {
     /// How this hand reads the manual's gaps.
     pub const fn personality(&self) -> &Personality {
         &self.config.personality
+    }
+
+    /// How it differs from other hands.
+    pub const fn body(&self) -> &BodyParams {
+        &self.config.body
     }
 
     /// The newest writes, oldest first; never more than twice [`JOURNAL_KEEPS`].

@@ -20,7 +20,7 @@ pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
     for (dof, drive) in body.drives().iter() {
         let at = element(dof);
         let force = body.force_g(dof).clamp(-FORCE_SHOWN_G, FORCE_SHOWN_G);
-        memory.put_short(&POS_ACT, at, number::short(drive.position()));
+        memory.put_short(&POS_ACT, at, number::short(drive.motor_position()));
         memory.put_short(&ANGLE_ACT, at, number::short(drive.angle()));
         memory.put_short(&FORCE_ACT, at, number::short(force));
         memory.put_short(&CURRENT, at, number::short(drive.current_ma()));

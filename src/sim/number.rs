@@ -52,3 +52,13 @@ pub(crate) fn single(value: f64) -> f32 {
 pub(crate) fn seconds(ms: u64) -> f64 {
     ms as f64 / 1000.0
 }
+
+/// Rounds to whole milliseconds; what is negative is none.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a float cast saturates, which is what is wanted"
+)]
+pub(crate) fn whole_ms(ms: f64) -> u64 {
+    ms.round() as u64
+}

@@ -9,7 +9,7 @@ use crate::sim::scenario::Scenario;
 pub struct Contact {
     /// Angle at which the fingertip touches, 0..=1000.
     pub angle: f64,
-    /// Stiffness, g for each position count.
+    /// Stiffness of the object, g for each position count. A hand's body multiplies it.
     pub stiffness: f64,
     /// Force that it does not survive, g; a whole one is put there when the joint is open again.
     pub breaks_at_g: Option<f64>,

@@ -1,6 +1,7 @@
 //! Fingertip blocks: what eight channels, force and proximity say about a contact (manual 2.6.21). Moves nothing.
 
 use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::sim::body_file::{BodyParams, FingertipBody};
 use crate::sim::number;
 use crate::sim::scenario::Slip;
 
@@ -51,6 +52,7 @@ struct TipModel {
     phase: f64,
     heading: f64,
     friction: f64,
+    body: FingertipBody,
 }
 
 /// The five fingertip sensors.
@@ -61,16 +63,17 @@ pub struct TouchSensors {
 
 impl TouchSensors {
     /// Sensors with their own rest counts, drawn from `rng`.
-    pub fn new(rng: &mut fastrand::Rng) -> Self {
+    pub fn new(body: &BodyParams, rng: &mut fastrand::Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
-            tips: PerFinger::from_fn(|_| TipModel {
+            tips: PerFinger::from_fn(|finger| TipModel {
                 rest: [(); 8].map(|()| between(2_800_000.0, 3_000_000.0)),
                 noise: [0.0; 8],
                 proximity_noise: 0.0,
                 phase: between(0.0, std::f64::consts::TAU),
                 heading: between(0.0, 360.0),
                 friction: between(0.14, 0.3),
+                body: body.fingertips[finger],
             }),
         }
     }
@@ -96,6 +99,11 @@ impl TouchSensors {
         let whole = gains.iter().chain([&0.0]);
         for (((raw, rest), noise), gain) in raw.iter_mut().zip(tip.rest).zip(tip.noise).zip(whole) {
             *raw = number::counts(rest + noise + gain).unsigned_abs();
+        }
+        for ((raw, drift), dead) in raw.iter_mut().zip(tip.body.drift).zip(tip.body.dead) {
+            let drifted = i64::from(*raw) + i64::from(number::counts(drift * t_s));
+            let shown = u32::try_from(drifted.max(0)).unwrap_or(u32::MAX);
+            *raw = if dead { 0 } else { shown };
         }
         let tangential =
             normal * (tip.friction + 0.02 * (1.3 * t_s + tip.phase).sin() + slip.friction);
@@ -153,7 +161,7 @@ mod tests {
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
         let mut rng = fastrand::Rng::with_seed(3);
-        let mut touch = TouchSensors::new(&mut rng);
+        let mut touch = TouchSensors::new(&BodyParams::default(), &mut rng);
         touch.measure(&mut rng);
         let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
         TactileBlock::decode(&block.encode()).unwrap()

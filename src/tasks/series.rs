@@ -81,12 +81,39 @@ pub async fn series<H: TaskHand>(
     ended: impl Future<Output = Abort>,
     mut tell: impl FnMut(SeriesStep) -> bool,
 ) -> Result<SeriesReport, PlanError> {
-    let clock = start.clock;
-    let mut series = TrialSeries::start(start.plan, start.epoch, clock.now())?;
+    let begun = BegunSeries {
+        series: TrialSeries::start(start.plan, start.epoch, start.clock.now())?,
+        lease: start.lease,
+        seen: start.seen,
+        clock: start.clock,
+    };
+    let (_series, report) = run(hand, begun, ended, |_, step| tell(step)).await;
+    Ok(report)
+}
+
+/// A series of either kind that is about to run.
+pub(crate) struct BegunSeries {
+    pub(crate) series: TrialSeries,
+    pub(crate) lease: Lease,
+    pub(crate) seen: HandSample,
+    pub(crate) clock: Clock,
+}
+
+/// Runs it to its end, and gives it back.
+pub(crate) async fn run<H: TaskHand>(
+    hand: &H,
+    begun: BegunSeries,
+    ended: impl Future<Output = Abort>,
+    mut tell: impl FnMut(&TrialSeries, SeriesStep) -> bool,
+) -> (TrialSeries, SeriesReport) {
+    let BegunSeries {
+        mut series,
+        lease,
+        seen: mut sample,
+        clock,
+    } = begun;
     let mut records = hand.records();
-    let lease = start.lease;
     hand.read_at(RATES);
-    let mut sample = start.seen;
     let mut ended = pin!(ended);
     let mut shown = None;
     let mut stop = None;
@@ -121,25 +148,23 @@ pub async fn series<H: TaskHand>(
     if stop.is_none() {
         hand.disarm();
     }
-    Ok(SeriesReport {
-        aborted: series.aborted(),
-        stop,
-    })
+    let aborted = series.aborted();
+    (series, SeriesReport { aborted, stop })
 }
 
 /// Tells what is new: trials that are over, and where the series stands. False if something could not be kept.
 fn tell_news(
     series: &mut TrialSeries,
     shown: &mut Option<SeriesView>,
-    tell: &mut impl FnMut(SeriesStep) -> bool,
+    tell: &mut impl FnMut(&TrialSeries, SeriesStep) -> bool,
 ) -> bool {
     let mut is_kept = true;
     while let Some(trial) = series.finished() {
-        is_kept &= tell(SeriesStep::Trial(Box::new(trial)));
+        is_kept &= tell(series, SeriesStep::Trial(Box::new(trial)));
     }
     let view = series.view();
     if shown.replace(view) != Some(view) {
-        is_kept &= tell(SeriesStep::View(view));
+        is_kept &= tell(series, SeriesStep::View(view));
     }
     is_kept
 }

@@ -216,6 +216,9 @@ pub enum WireFailure {
     /// The built-in hand has no such scenario, in its own words.
     #[error("{0}")]
     NoScenario(String),
+    /// The built-in hand cannot have this body, in the file's own words.
+    #[error("{0}")]
+    NoBody(String),
     /// The CAN adapter says that it could not open its channel.
     #[error("the CAN adapter could not go on the bus")]
     OffBus,

@@ -158,6 +158,7 @@ mod tests {
     /// A trial with this overshoot, steady force and time to the stop.
     fn trial(setting: TrialSetting, [overshoot, steady, stop]: [f64; 3]) -> TrialSummary {
         let span = DwellSpan {
+            slow_s: None,
             end_s: 1.0,
             threshold_g: 0.0,
         };

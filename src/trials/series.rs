@@ -2,6 +2,7 @@
 
 use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
 use crate::hand::{ArmEpoch, Setpoints};
+use crate::trials::find::{Finder, Tried};
 use crate::trials::limits::{Abort, LinkView, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
@@ -25,10 +26,34 @@ pub enum SeriesOrder {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct PlannedTrial {
+struct GridTrial {
     /// Which of the trials of its setting, from 1; `None` = it finds the contact.
     repeat: Option<usize>,
     setting: TrialSetting,
+}
+
+/// A trial with the plan that it is run by.
+#[derive(Debug, Clone)]
+struct PlannedTrial {
+    /// As of a [`GridTrial`].
+    repeat: Option<usize>,
+    setting: TrialSetting,
+    plan: TrialPlan,
+}
+
+/// The arming, and the time.
+struct SeriesBegin {
+    epoch: ArmEpoch,
+    now: Moment,
+}
+
+/// Where the trials come from.
+#[derive(Debug, Clone)]
+enum TrialSource {
+    /// Speeds and thresholds of the plan, in order.
+    Grid(VecDeque<GridTrial>),
+    /// Each from what those before it measured.
+    Search(Box<Finder>),
 }
 
 #[derive(Debug, Clone)]
@@ -58,7 +83,7 @@ pub struct SeriesView {
 pub struct TrialSeries {
     plan: TrialPlan,
     epoch: ArmEpoch,
-    queue: VecDeque<PlannedTrial>,
+    source: TrialSource,
     total: usize,
     phase: SeriesPhase,
     contact: PerDof<Option<Angle>>,
@@ -77,15 +102,33 @@ impl TrialSeries {
         let queue = cells(&plan);
         Ok(Self {
             total: queue.len(),
-            queue,
-            phase: SeriesPhase::Waiting { until: now },
+            ..Self::from(TrialSource::Grid(queue), plan, SeriesBegin { epoch, now })
+        })
+    }
+
+    /// Starts a search in an arming that a person gave. Its wish was checked when the finder was made.
+    pub fn search(finder: Finder, epoch: ArmEpoch, now: Moment) -> Self {
+        let plan = finder.plan();
+        let total = finder.progress().closes_left;
+        let source = TrialSource::Search(Box::new(finder));
+        Self {
+            total,
+            ..Self::from(source, plan, SeriesBegin { epoch, now })
+        }
+    }
+
+    fn from(source: TrialSource, plan: TrialPlan, begin: SeriesBegin) -> Self {
+        Self {
+            source,
+            total: 0,
+            phase: SeriesPhase::Waiting { until: begin.now },
             plan,
-            epoch,
+            epoch: begin.epoch,
             contact: PerDof::splat(None),
             number: 0,
             done: VecDeque::new(),
             aborted: None,
-        })
+        }
     }
 
     /// True once nothing is sent any more.
@@ -191,29 +234,72 @@ impl TrialSeries {
                 })
             });
         }
-        let Some(cell) = self.queue.pop_front() else {
+        let Some(cell) = self.pop() else {
             self.phase = SeriesPhase::Over;
             return None;
         };
         self.number += 1;
-        let mut plan = self.plan.clone();
-        if cell.repeat.is_none() {
-            plan.approach = Approach::OneStage;
-        }
-        let runner = Runner::new(&plan, cell.setting, &self.contact, self.epoch);
+        let runner = Runner::new(&cell.plan, cell.setting, &self.contact, self.epoch);
         self.phase = SeriesPhase::Running(Box::new(runner), cell);
         self.tick(sample, link, now)
+    }
+
+    /// The next trial, with the contact that its approach needs.
+    fn pop(&mut self) -> Option<PlannedTrial> {
+        let finder = match &mut self.source {
+            TrialSource::Grid(queue) => {
+                let GridTrial { repeat, setting } = queue.pop_front()?;
+                let mut plan = self.plan.clone();
+                if repeat.is_none() {
+                    plan.approach = Approach::OneStage;
+                }
+                return Some(PlannedTrial {
+                    repeat,
+                    setting,
+                    plan,
+                });
+            }
+            TrialSource::Search(finder) => finder,
+        };
+        let next = finder.next()?;
+        let of_setting = |own: &&Tried| own.setting == next.setting;
+        let tried = finder.tried().iter().filter(of_setting).count();
+        self.total = self.number + finder.progress().closes_left;
+        self.contact = next.contact;
+        Some(PlannedTrial {
+            repeat: (!next.is_probe).then_some(tried + 1),
+            setting: next.setting,
+            plan: next.plan,
+        })
+    }
+
+    /// The search that it is, if it is one.
+    pub fn finder(&self) -> Option<&Finder> {
+        match &self.source {
+            TrialSource::Grid(_) => None,
+            TrialSource::Search(finder) => Some(finder),
+        }
     }
 
     /// A trial ended normally.
     fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
         let trial = self.close_trial()?;
-        let missing = self.learn_contact(&trial.summary);
+        let missing = match &mut self.source {
+            TrialSource::Grid(_) => self.learn_contact(&trial.summary),
+            TrialSource::Search(finder) => {
+                finder.learn(&trial);
+                None
+            }
+        };
         self.done.push_back(trial);
         if let Some(why) = missing {
             return Some(self.fail(why));
         }
-        self.phase = if self.queue.is_empty() {
+        let is_over = match &self.source {
+            TrialSource::Grid(queue) => queue.is_empty(),
+            TrialSource::Search(finder) => finder.next().is_none(),
+        };
+        self.phase = if is_over {
             SeriesPhase::Over
         } else {
             let until = now.plus(self.plan.grid.rest);
@@ -260,27 +346,36 @@ impl TrialSeries {
             samples: None,
             rows: recording.rows().len(),
             rows_lost: recording.lost(),
-            joints: measure(&recording, &self.plan, cell.setting),
-            others: toml::Table::new(),
+            joints: measure(&recording, &cell.plan, cell.setting),
+            others: self.approach_of(&cell.plan),
         };
         Some(Trial { summary, recording })
+    }
+
+    /// How a trial of a search came near: each has its own way, and the plan of the series cannot say it.
+    fn approach_of(&self, plan: &TrialPlan) -> toml::Table {
+        let is_search = matches!(self.source, TrialSource::Search(_));
+        let keys = toml::Table::try_from(plan.approach).ok();
+        keys.filter(|_| is_search).unwrap_or_default()
     }
 
     fn fail(&mut self, why: Abort) -> SeriesOrder {
         let trial = self.close_trial();
         self.done.extend(trial);
         self.aborted.get_or_insert(why);
-        self.queue.clear();
+        if let TrialSource::Grid(queue) = &mut self.source {
+            queue.clear();
+        }
         self.phase = SeriesPhase::Over;
         SeriesOrder::Stop
     }
 }
 
 /// The trials in order; where the contact has to be measured, a slow one at the smallest threshold goes first.
-fn cells(plan: &TrialPlan) -> VecDeque<PlannedTrial> {
+fn cells(plan: &TrialPlan) -> VecDeque<GridTrial> {
     let least = plan.grid.forces.iter().min();
     let probe = least.filter(|_| plan.measures_contact());
-    let probe = probe.map(|force| PlannedTrial {
+    let probe = probe.map(|force| GridTrial {
         repeat: None,
         setting: TrialSetting {
             speed: PROBE_SPEED,
@@ -288,7 +383,7 @@ fn cells(plan: &TrialPlan) -> VecDeque<PlannedTrial> {
         },
     });
     let settings = plan.grid.settings().into_iter().enumerate();
-    let trials = settings.map(|(at, setting)| PlannedTrial {
+    let trials = settings.map(|(at, setting)| GridTrial {
         repeat: Some(at % plan.grid.repeats.max(1) + 1),
         setting,
     });

@@ -64,6 +64,11 @@ impl TrialSessionWriter {
         self.write_session()
     }
 
+    /// Notes what the whole session came to, under a key of its own.
+    pub fn note(&mut self, key: &str, value: toml::Table) {
+        self.file.head.others.insert(key.into(), value.into());
+    }
+
     /// Writes how it ended, and the report.
     ///
     /// # Errors

@@ -19,6 +19,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let hand = Endpoint::Sim {
         seed: 1,
         scenario: "idle".into(),
+        body: None,
     };
     let mut scene = Scene::open(Time::Real, hand)?;
     rest(&mut scene, WARM);

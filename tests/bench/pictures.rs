@@ -41,6 +41,7 @@ fn pictures(report: &mut Report) -> Result<(), Failure> {
         endpoint: Endpoint::Sim {
             seed: 1,
             scenario: "grasp".into(),
+            body: None,
         },
         size: (1440, 900),
         scale: 1.0,

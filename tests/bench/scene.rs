@@ -61,6 +61,7 @@ impl Scene {
         let hand = Endpoint::Sim {
             seed: 1,
             scenario: "grasp".into(),
+            body: None,
         };
         Self::open(time, hand)
     }

@@ -44,6 +44,7 @@ fn recording(rows: u64, peak: i16) -> TrialRecording {
 
 fn trial(number: usize, setting: TrialSetting, joints: &[Dof], recording: TrialRecording) -> Trial {
     let span = DwellSpan {
+        slow_s: None,
         end_s: 1.0,
         threshold_g: 0.0,
     };

@@ -22,7 +22,7 @@ use tokio::time::{Instant, sleep, sleep_until};
 #[derive(Debug, clap::Args)]
 pub(crate) struct DoctorArgs {
     /// The hand to examine
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Seconds to measure once it answers
     #[arg(long = "for", value_name = "SECONDS", default_value = "5", value_parser = seconds)]

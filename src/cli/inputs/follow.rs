@@ -33,7 +33,7 @@ const READY_WITHIN: Duration = Duration::from_secs(5);
 #[derive(Debug, clap::Args)]
 pub(crate) struct FollowArgs {
     /// The hand that follows
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     hand: Endpoint,
     #[command(flatten)]
     from: SourceArgs,

@@ -44,7 +44,7 @@ pub(super) struct SourceArgs {
     #[arg(long)]
     gamepad: bool,
     /// Follow another hand, which is read and never written; left follows right, too
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     mirror: Option<Endpoint>,
     /// With --mirror: this share of each bend of the other hand, 0.2 to 1.0 [default: 1.0]
     #[arg(long, value_name = "SHARE", conflicts_with_all = ["udp", "tcp", "gamepad"], value_parser = scale)]

@@ -48,7 +48,7 @@ pub(crate) enum ParamsCommand {
 /// The hand, the form of the output, and the folder of this program's records.
 #[derive(Debug, Args)]
 pub(crate) struct Common {
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Print one JSON object
     #[arg(long)]

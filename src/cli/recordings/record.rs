@@ -38,7 +38,7 @@ const LINK_ENDS_WITHIN: Duration = Duration::from_secs(2);
 #[derive(Debug, clap::Args)]
 pub(crate) struct RecordArgs {
     /// The hand to record
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     hand: Endpoint,
     /// Seconds to record [default: until Ctrl-C]
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]

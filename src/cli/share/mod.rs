@@ -35,7 +35,7 @@ const LOOK_EACH: Duration = Duration::from_millis(100);
 #[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds", "foxglove"]))]
 pub(crate) struct ShareArgs {
     /// The hand to share
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     hand: Endpoint,
     /// Serve Modbus TCP here, for example 127.0.0.1:6001; port 0 takes any free one
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]

@@ -14,7 +14,7 @@ const COOLER_C: u8 = 10;
 
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach
     #[arg(long)]
@@ -144,7 +144,7 @@ fn grams(text: &str) -> Result<f64, String> {
     number(text, 0.0..=4000.0, "a force between 0 and 4000 g")
 }
 
-fn place(text: &str) -> Result<(Dof, Angle), String> {
+pub(crate) fn place(text: &str) -> Result<(Dof, Angle), String> {
     let (name, at) = text
         .split_once('=')
         .ok_or_else(|| format!("'{text}' is not NAME=ANGLE"))?;

@@ -7,11 +7,11 @@ use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
-use crate::cli::trial::results::TrialResults;
-use crate::hand::HandSample;
+use crate::cli::trial::results::{ResultsWanted, TrialResults};
+use crate::hand::{ArmEpoch, HandSample};
 use crate::link::{Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
-use crate::tasks::series::{self, SeriesStart, Stop};
+use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
 use crate::trials::{Abort, TrialPlan};
 use anyhow::bail;
@@ -29,49 +29,94 @@ pub(crate) async fn drive(
     args: &TrialArgs,
     plan: &TrialPlan,
 ) -> anyhow::Result<Outcome> {
-    let mut interrupt = Interrupt::listen()?;
-    let clock = Clock::start();
-    let (link, mut records) = session::open_with_records(&args.hand, series::RATES, clock);
-    let ready = tokio::select! {
-        biased;
-        () = interrupt.wished() => None,
-        ready = make_ready(&link, &mut records, &args.hand, plan) => Some(ready?),
+    let wanted = ResultsWanted {
+        hand: &args.hand,
+        json: args.json,
+        folder: args.out.as_deref(),
+        criterion: args.criterion(),
     };
-    let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
-        // Arming may have been under way.
-        let stop = series::hold(&link, &mut records).await;
-        bail!(
-            "ended by a person before anything moved{}",
-            output::stop_words(Some(stop))
-        );
-    };
-    // The folder is made only now: nothing is left behind by a hand that is not there.
-    let mut results = match TrialResults::start(out, args, plan, &link) {
-        Ok(results) => results,
-        Err(error) => {
-            link.disarm();
-            sleep(TICK).await;
-            return Err(error);
-        }
-    };
+    let mut hand = ArmedHand::ready(&args.hand, plan).await?;
+    let mut results = hand.results(out, wanted, plan).await?;
     let start = SeriesStart {
         plan: plan.clone(),
-        epoch,
-        lease,
-        seen,
-        clock,
+        epoch: hand.epoch,
+        lease: hand.lease,
+        seen: hand.seen,
+        clock: hand.clock,
     };
     let ended = async {
-        interrupt.wished().await;
+        hand.interrupt.wished().await;
         Abort::Person
     };
-    let report = series::series(&link, start, ended, |step| results.take(step)).await?;
+    let report = series::series(&hand.link, start, ended, |step| results.take(step)).await?;
+    end(&hand.link, report).await;
+    let trials = results.close(report.aborted, None)?;
+    Ok(Outcome::of(trials, report, args.criterion()))
+}
+
+/// A hand that the person armed for trials on the command line.
+pub(crate) struct ArmedHand {
+    pub(crate) link: LinkHandle,
+    pub(crate) epoch: ArmEpoch,
+    pub(crate) lease: Lease,
+    pub(crate) seen: HandSample,
+    pub(crate) clock: Clock,
+    pub(crate) interrupt: Interrupt,
+}
+
+impl ArmedHand {
+    /// Opens a link, waits for the hand, and arms it within the limits of the plan.
+    pub(crate) async fn ready(endpoint: &Endpoint, plan: &TrialPlan) -> anyhow::Result<Self> {
+        let mut interrupt = Interrupt::listen()?;
+        let clock = Clock::start();
+        let (link, mut records) = session::open_with_records(endpoint, series::RATES, clock);
+        let ready = tokio::select! {
+            biased;
+            () = interrupt.wished() => None,
+            ready = make_ready(&link, &mut records, endpoint, plan) => Some(ready?),
+        };
+        let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
+            // Arming may have been under way.
+            let stop = series::hold(&link, &mut records).await;
+            bail!(
+                "ended by a person before anything moved{}",
+                output::stop_words(Some(stop))
+            );
+        };
+        Ok(Self {
+            link,
+            epoch,
+            lease,
+            seen,
+            clock,
+            interrupt,
+        })
+    }
+
+    /// Where the trials go. The folder is made only now: nothing is left behind by a hand that is not there.
+    pub(crate) async fn results<'a>(
+        &self,
+        out: &'a mut Out,
+        wanted: ResultsWanted<'_>,
+        plan: &TrialPlan,
+    ) -> anyhow::Result<TrialResults<'a>> {
+        match TrialResults::start(out, wanted, plan, &self.link) {
+            Ok(results) => Ok(results),
+            Err(error) => {
+                self.link.disarm();
+                sleep(TICK).await;
+                Err(error)
+            }
+        }
+    }
+}
+
+/// Says what a person must know of the stop, and waits until the hand is not armed any more.
+pub(crate) async fn end(link: &LinkHandle, report: SeriesReport) {
     if report.stop == Some(Stop::NotConfirmed) {
         say(session::NOT_CONFIRMED);
     }
-    disarm(&link).await;
-    let trials = results.close(report.aborted)?;
-    Ok(Outcome::of(trials, report, args.criterion()))
+    disarm(link).await;
 }
 
 /// Disarms, and waits until the link has done so.

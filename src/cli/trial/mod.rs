@@ -1,9 +1,9 @@
 //! `trial`: grasp trials from the command line, on any hand. It moves the hand, so it requires `--arm`.
 
-mod args;
-mod drive;
-mod output;
-mod results;
+pub(crate) mod args;
+pub(crate) mod drive;
+pub(crate) mod output;
+pub(crate) mod results;
 
 pub(crate) use args::TrialArgs;
 

@@ -2,15 +2,15 @@
 //! must not make the hand's feedback old.
 
 use crate::cli::out::Out;
-use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::SeriesStep;
+use crate::transport::Endpoint;
 use crate::trials::session::SessionHead;
 use crate::trials::session_writer::TrialSessionWriter;
-use crate::trials::{Abort, EarlyEnd, Trial, TrialPlan, TrialSummary};
+use crate::trials::{Abort, Criterion, EarlyEnd, Trial, TrialPlan, TrialSummary};
 use anyhow::{Context as _, anyhow};
 use std::io;
 use std::path::Path;
@@ -19,6 +19,16 @@ use std::thread::JoinHandle;
 
 /// Trials that wait to be written while the next runs.
 const WAITING_MAX: usize = 16;
+
+/// Where results go, and of which hand they are.
+#[derive(Clone, Copy)]
+pub(crate) struct ResultsWanted<'a> {
+    pub(crate) hand: &'a Endpoint,
+    pub(crate) json: bool,
+    pub(crate) folder: Option<&'a Path>,
+    /// What the report names the best setting by.
+    pub(crate) criterion: Option<Criterion>,
+}
 
 /// Takes each trial as it ends.
 pub(crate) struct TrialResults<'a> {
@@ -41,27 +51,28 @@ impl<'a> TrialResults<'a> {
     /// Creates the folder, if one was given.
     pub(crate) fn start(
         out: &'a mut Out,
-        args: &TrialArgs,
+        wanted: ResultsWanted<'_>,
         plan: &TrialPlan,
         link: &LinkHandle,
     ) -> anyhow::Result<Self> {
         let now = since_1970();
+        let hand = wanted.hand;
         let head = || SessionHead {
-            hand: args.hand.to_string(),
-            simulated: args.hand.is_sim(),
-            quirks: Some(book::sheet(&args.hand, &link.status().quirks, &day(now))),
+            hand: hand.to_string(),
+            simulated: hand.is_sim(),
+            quirks: Some(book::sheet(hand, &link.status().quirks, &day(now))),
             ..SessionHead::begin(plan.clone(), now)
         };
         let started = |folder: &Path| {
-            let writer = TrialSessionWriter::create(folder, head(), args.criterion());
+            let writer = TrialSessionWriter::create(folder, head(), wanted.criterion);
             let writer =
                 writer.with_context(|| format!("cannot store the trials in {}", folder.display()));
             writer.map(write_on_thread)
         };
         Ok(Self {
             out,
-            json: args.json,
-            writer: args.out.as_deref().map(started).transpose()?,
+            json: wanted.json,
+            writer: wanted.folder.map(started).transpose()?,
             trials: Vec::new(),
             total: 0,
             error: None,
@@ -98,13 +109,22 @@ impl<'a> TrialResults<'a> {
         shown.and_then(|()| self.out.flush()).and(written)
     }
 
-    /// Waits until all is written, and gives the trials.
-    pub(crate) fn close(self, aborted: Option<Abort>) -> anyhow::Result<Vec<TrialSummary>> {
+    /// Waits until all is written, and gives the trials. `note` is what the session came to, for its file.
+    pub(crate) fn close(
+        self,
+        aborted: Option<Abort>,
+        note: Option<(&str, toml::Table)>,
+    ) -> anyhow::Result<Vec<TrialSummary>> {
         let written = self.writer.map_or(Ok(()), |(trials, thread)| {
             drop(trials);
             let ended = thread.join();
             let writer = ended.map_err(|_panic| anyhow!("writing the trials failed"))?;
-            let finished = writer.and_then(|writer| writer.finish(aborted.map(EarlyEnd::Here)));
+            let finished = writer.and_then(|mut writer| {
+                if let Some((key, table)) = note {
+                    writer.note(key, table);
+                }
+                writer.finish(aborted.map(EarlyEnd::Here))
+            });
             finished.context("cannot write the trials")
         });
         match self.error {

@@ -10,7 +10,7 @@ use tokio::time::sleep;
 #[derive(Debug, clap::Args)]
 pub(crate) struct WatchArgs {
     /// The hand to watch
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Seconds to watch [default: until Ctrl-C]
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]

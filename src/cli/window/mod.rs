@@ -28,7 +28,7 @@ pub(crate) struct WindowArgs {
 #[derive(Debug, Default, Args)]
 pub(crate) struct DrawnArgs {
     /// The hand to open in the window, for example tcp:192.168.11.210:6000; given several times, up to eight hands side by side
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Vec<Endpoint>,
 
     /// Draw the window without OpenGL; chosen automatically where OpenGL does not start or is only software

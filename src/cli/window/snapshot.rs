@@ -18,7 +18,7 @@ use std::time::Duration;
 #[derive(Debug, clap::Args)]
 pub(crate) struct SnapshotArgs {
     /// The hand to show [default: the built-in one]
-    #[arg(long, value_name = "URL")]
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     hand: Option<Endpoint>,
     /// What the built-in hand does: idle, free, rigid, fragile, grasp, touched, faults, extremes, frozen
     #[arg(long, value_name = "NAME", conflicts_with = "hand")]
@@ -145,6 +145,7 @@ fn endpoint(args: &SnapshotArgs) -> Endpoint {
     args.hand.clone().unwrap_or_else(|| Endpoint::Sim {
         seed: args.seed,
         scenario: args.scenario.unwrap_or_default().name().into(),
+        body: None,
     })
 }
 

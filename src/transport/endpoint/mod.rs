@@ -45,12 +45,14 @@ pub const SCENARIOS: [&str; 9] = [
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Endpoint {
-    /// `sim:?seed=7&scenario=grasp`: the built-in hand, in this process.
+    /// `sim:?seed=7&scenario=grasp&body=worn.toml`: the built-in hand, in this process.
     Sim {
         /// Seed of everything random in it.
         seed: u64,
         /// What it does.
         scenario: String,
+        /// The file of its body; `None` for the body of its own.
+        body: Option<String>,
     },
     /// `rs485:/dev/ttyUSB0?baud=115200&id=1`: private framing.
     Rs485(SerialLine),
@@ -113,6 +115,7 @@ impl Endpoint {
         Self::Sim {
             seed: 1,
             scenario: DEFAULT_SCENARIO.into(),
+            body: None,
         }
     }
 
@@ -125,7 +128,9 @@ impl Endpoint {
     pub fn place_and_id(&self) -> (String, u16) {
         let place = format!("{}:{}", self.kind(), self.place());
         match self {
-            Self::Sim { seed, .. } => (format!("sim:?seed={seed}"), 1),
+            Self::Sim { seed, body, .. } => {
+                (format!("sim:?seed={seed}{}", body_key(body.as_deref())), 1)
+            }
             Self::Rs485(line) | Self::Rtu(line) => {
                 (format!("{place}?baud={}", line.baud), u16::from(line.id))
             }
@@ -193,7 +198,14 @@ impl Endpoint {
 impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sim { seed, scenario } => write!(f, "sim:?seed={seed}&scenario={scenario}"),
+            Self::Sim {
+                seed,
+                scenario,
+                body,
+            } => {
+                let body = body_key(body.as_deref());
+                write!(f, "sim:?seed={seed}&scenario={scenario}{body}")
+            }
             Self::Rs485(line) | Self::Rtu(line) => {
                 write!(
                     f,
@@ -218,6 +230,10 @@ impl fmt::Display for Endpoint {
     }
 }
 
+fn body_key(body: Option<&str>) -> String {
+    body.map(|file| format!("&body={file}")).unwrap_or_default()
+}
+
 fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<BytePacking>) -> fmt::Result {
     packing.map_or(Ok(()), |packing| write!(f, "&packing={}", packing.key()))
 }
@@ -231,6 +247,14 @@ mod tests {
         for (text, full) in [
             ("sim:", "sim:?seed=1&scenario=idle"),
             ("sim:?seed=7&scenario=grasp", "sim:?seed=7&scenario=grasp"),
+            (
+                "sim:?body=/tmp/a worn=hand.toml",
+                "sim:?seed=1&scenario=idle&body=/tmp/a worn=hand.toml",
+            ),
+            (
+                "sim:?body=b.toml&scenario=rigid&seed=3",
+                "sim:?seed=3&scenario=rigid&body=b.toml",
+            ),
             ("rs485:/dev/ttyUSB0", "rs485:/dev/ttyUSB0?baud=115200&id=1"),
             ("rs485:COM5?id=7&baud=921600", "rs485:COM5?baud=921600&id=7"),
             (

@@ -18,6 +18,9 @@ const SLCAN_WANT: Want =
 /// [`SCENARIOS`] in words.
 const SCENARIO_WANT: Want =
     Want::OneOf("idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen");
+/// What a body is.
+const BODY_WANT: Want =
+    Want::OneOf("the file of a body; 'handscope sim --print-body' writes one to start from");
 /// Largest id on a CAN bus (manual 2.3).
 const CAN_ID_MAX: u16 = 16_383;
 
@@ -84,16 +87,22 @@ impl Query<'_> {
     }
 
     fn sim(&self) -> Result<Endpoint, EndpointError> {
-        let (mut seed, mut scenario) = (1, DEFAULT_SCENARIO.to_owned());
+        let (mut seed, mut scenario, mut body) = (1, DEFAULT_SCENARIO.to_owned(), None);
         for (key, value) in self.pairs() {
             match key {
                 "seed" => seed = number(key, value, Want::Whole)?,
                 "scenario" if SCENARIOS.contains(&value) => value.clone_into(&mut scenario),
                 "scenario" => return Err(wrong_value(key, value, SCENARIO_WANT)),
-                _ => return Err(unknown_key(key, "sim", "seed and scenario")),
+                "body" if !value.is_empty() => body = Some(value.to_owned()),
+                "body" => return Err(wrong_value(key, value, BODY_WANT)),
+                _ => return Err(unknown_key(key, "sim", "seed, scenario and body")),
             }
         }
-        Ok(Endpoint::Sim { seed, scenario })
+        Ok(Endpoint::Sim {
+            seed,
+            scenario,
+            body,
+        })
     }
 
     fn serial(

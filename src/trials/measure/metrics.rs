@@ -113,12 +113,17 @@ pub fn measure(
     let end = end.or_else(|| recording.rows().last().map(|row| row.at));
     let end_s = end.map_or(0.0, |end| seconds(command, end));
     let threshold_g = f64::from(setting.force.get());
-    let span = DwellSpan { end_s, threshold_g };
     // What ended a trial early may have come before any motion.
     let is_whole = recording.when(TrialEvent::Release).is_some();
     plan.joints()
         .map(|dof| {
             let curves = JointCurves::of(recording, dof);
+            let slow = recording.when(TrialEvent::Slow(dof));
+            let span = DwellSpan {
+                slow_s: slow.map(|slow| seconds(command, slow)),
+                end_s,
+                threshold_g,
+            };
             let mut joint = measure_joint(dof, &curves, span);
             let target = plan.close[dof].filter(|_| is_whole);
             if target.is_some_and(|target| never_moved(&curves.angle, target, end_s))
@@ -158,6 +163,8 @@ fn is_held(end_status: Option<&str>) -> bool {
 /// When the dwell ends, seconds from the command, and what the threshold was.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DwellSpan {
+    /// Of the order to go on slowly, in an approach of two stages: what halted before it is no stop.
+    pub slow_s: Option<f64>,
     /// Of the release, or of what ended the trial.
     pub end_s: f64,
     /// FORCE_SET, g.
@@ -180,7 +187,10 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         ),
     };
     let pressed = contact.is_some() || touched == Some(true);
-    let stop = motion.and_then(|from| stop(curves, from, end));
+    let stop = match span.slow_s {
+        None => motion.and_then(|from| stop(curves, from, end)),
+        Some(slow) => stop_after_slow(curves, slow, end),
+    };
     let peak = highest(&force, end).filter(|_| pressed);
     let steady = stop.and_then(|stop| steady(&force, stop, end));
     let steady = steady.filter(|_| pressed);
@@ -249,6 +259,18 @@ fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
         let is_still = soon.all(|p| (p.v - first.v).abs() <= STILL);
         (moved && is_still && last.t >= first.t + STILL_S).then_some(first.t)
     })
+}
+
+/// When the drive stopped for good: the halt between two stages is over once it says again that it moves.
+fn stop_after_slow(curves: &JointCurves, slow: f64, end: f64) -> Option<f64> {
+    let moves = |point: &CurvePoint| status(point.v).is_some_and(Status::is_moving);
+    let last = curves.status.between(slow, end).rfind(moves);
+    let Some(last) = last else {
+        return stop(curves, slow, end);
+    };
+    let stopped = |point: &CurvePoint| status(point.v).is_some_and(Status::is_stopped);
+    let mut after = curves.status.between(last.t, end);
+    after.find(stopped).map(|point| point.t)
 }
 
 fn highest(curve: &TimeSeries, end: f64) -> Option<f64> {

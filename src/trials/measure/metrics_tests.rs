@@ -99,6 +99,7 @@ fn measured(curves: &JointCurves) -> JointMetrics {
 
 fn measured_until(curves: &JointCurves, end_s: f64) -> JointMetrics {
     let span = DwellSpan {
+        slow_s: None,
         end_s,
         threshold_g: 500.0,
     };

@@ -71,6 +71,7 @@ chinese! {
         WireFailure::System(error) => "{}", system_error_zh(error);
         WireFailure::Protocol(words) => "应答不符合此协议：“{words}”";
         WireFailure::NoScenario(_) => "没有此场景";
+        WireFailure::NoBody(_) => "此文件无法使用（格式见 'handscope sim --print-body'）";
         WireFailure::OffBus => "适配器无法接入总线";
         WireFailure::Recorded(words) => "系统信息为“{words}”";
     }
@@ -539,6 +540,7 @@ mod tests {
             io(WireFailure::NoScenario(
                 "'party' is not a scenario: choose idle".into(),
             )),
+            io(WireFailure::NoBody("line 2, `latency`: no such key".into())),
         ];
         all.extend(
             [2, 5, 13, 17, 20, 21, 24, 28, 30, 101, 113, 150].map(|code| io(system(code).into())),

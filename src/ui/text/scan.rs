@@ -160,10 +160,16 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
 pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
     let kind = look.say(panels::kind(endpoint.kind()));
     match endpoint {
-        Endpoint::Sim { scenario, .. } => match scenario.parse() {
-            Ok(scenario) => format!("{kind}, {}", look.say(panels::scenario(scenario))),
-            Err(_) => kind.to_owned(),
-        },
+        Endpoint::Sim { scenario, body, .. } => {
+            let body = body.as_ref().map(|file| format!(", {file}"));
+            let body = body.unwrap_or_default();
+            match scenario.parse() {
+                Ok(scenario) => {
+                    format!("{kind}, {}{body}", look.say(panels::scenario(scenario)))
+                }
+                Err(_) => format!("{kind}{body}"),
+            }
+        }
         Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
             look.fill(WITH_BAUD, &[&kind, &line.baud, &line.id])
         }

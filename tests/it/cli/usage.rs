@@ -44,6 +44,19 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
             &["sim", "--tcp", "127.0.0.1:0", "--scenario", "party"],
             "idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen",
         ),
+        (
+            &["sim", "--tcp", "127.0.0.1:0", "--body", "/nowhere/b.toml"],
+            "the body /nowhere/b.toml cannot be used: it cannot be read",
+        ),
+        (
+            &["watch", "--hand", "sim:?body=/nowhere/b.toml", "--for", "1"],
+            "the body /nowhere/b.toml cannot be used: it cannot be read",
+        ),
+        (&["watch", "--hand", "sim:?body="], "--print-body"),
+        (
+            &["sim", "--tcp", "127.0.0.1:0", "--print-body"],
+            "--print-body",
+        ),
         (&["sim", "--tcp", "127.0.0.1:0", "--id", "255"], "254"),
         (
             &["sim", "--tcp", "127.0.0.1:0", "--id", "1,2,2"],
@@ -300,4 +313,15 @@ fn where_too_few_files_may_be_open_one_sentence_says_so() {
         }
     }
     assert!(told > 20, "only {told}");
+}
+
+#[test]
+fn the_default_body_is_printed_and_is_a_body() {
+    let text = run(&["sim", "--print-body"]).ok().out;
+    assert!(text.contains("latency_ms = 64.0 # ms"), "{text}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("body.toml");
+    std::fs::write(&path, &text).unwrap();
+    let hand = format!("sim:?seed=3&body={}", path.display());
+    run(&["watch", "--hand", &hand, "--for", "0.3"]).ok();
 }

@@ -159,6 +159,7 @@ fn draw(
         endpoint: Endpoint::Sim {
             seed: 1,
             scenario: stage.scenario.into(),
+            body: None,
         },
         size: SIZE,
         scale,

@@ -22,6 +22,7 @@ fn hand(scenario: Scenario, personality: Personality) -> SimHand {
         id: 1,
         scenario,
         personality,
+        ..SimConfig::default()
     })
 }
 

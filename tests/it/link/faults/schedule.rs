@@ -176,6 +176,7 @@ impl Schedule {
             id: 1,
             scenario: Scenario::Idle,
             personality: Personality::default(),
+            ..SimConfig::default()
         };
         let hand = hand::shared(config);
         let actors = Actors::of(seed);

@@ -1,0 +1,142 @@
+//! What a search came to as JSON, a contract with scripts, and as lines of text. Pure.
+
+use crate::cli::trial::output::stop_words;
+use crate::cli::tune::args::TuneArgs;
+use crate::tasks::series::Stop;
+use crate::tasks::tune::TuneReport;
+use crate::trials::find::{Claim, FoundApproach, Untold};
+use serde_json::{Value, json};
+
+/// The last line: `{"tune": {…}}`. What is not known is null.
+pub(crate) fn json(args: &TuneArgs, report: &TuneReport) -> Value {
+    let claim = claim(report);
+    let wish = args.wish();
+    let stop = report.series.stop.map(|stop| {
+        let after_s = match stop {
+            Stop::Confirmed { after } => Some(after.as_secs_f64()),
+            Stop::NotConfirmed | Stop::LinkLost => None,
+        };
+        json!({ "confirmed": after_s.is_some(), "after_s": after_s })
+    });
+    json!({ "tune": {
+        "hand": args.hand.to_string(),
+        "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
+        "limit_g": wish.limit_g,
+        "hold_g": wish.hold_g,
+        "result": claim.map(ToString::to_string),
+        "why": no_claim(report),
+        "speed": claim.map(|claim| claim.setting.speed),
+        "force_threshold_g": claim.map(|claim| claim.setting.force),
+        "approach": claim.map(|claim| claim.approach),
+        "contact_angle": claim.and_then(|claim| Some(claim.joints.first()?.contact_angle)),
+        "close_s": claim.map(|claim| claim.close_s),
+        "peak_bound_g": claim.map(Claim::peak_bound_g),
+        "confidence": claim.map(|claim| claim.assurance.confidence),
+        "coverage": claim.map(|claim| claim.assurance.coverage),
+        "distribution_free": wish.distribution_free,
+        "trials": report.tried.len(),
+        "peaks_g": claim.map(peaks),
+        "joints": claim.map(|claim| &claim.joints),
+        "tried": report.tried,
+        "untold": untold(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "aborted": report.series.aborted.map(|why| why.to_string()),
+        "stop": stop,
+    }})
+}
+
+/// The same as a table for `session.toml`.
+pub(crate) fn table(args: &TuneArgs, report: &TuneReport) -> toml::Table {
+    let json = json(args, report);
+    let table = json.get("tune").map(without_nulls);
+    let table = table.and_then(|known| toml::Table::try_from(known).ok());
+    table.unwrap_or_default()
+}
+
+/// A value that is not known has no key in TOML.
+fn without_nulls(value: &Value) -> Value {
+    match value {
+        Value::Object(map) => {
+            let known = map.iter().filter(|(_, value)| !value.is_null());
+            known
+                .map(|(key, value)| (key.clone(), without_nulls(value)))
+                .collect()
+        }
+        Value::Array(all) => all.iter().map(without_nulls).collect(),
+        other => other.clone(),
+    }
+}
+
+/// The same for people: what was tried, the result, what could not be told.
+pub(crate) fn lines(report: &TuneReport) -> Vec<String> {
+    let Some(claim) = claim(report) else {
+        return Vec::new();
+    };
+    let approach = match claim.approach {
+        FoundApproach::OneStage => "in one stage".into(),
+        FoundApproach::TwoStage { fast_speed, margin } => {
+            format!("at {fast_speed} to {margin} before the contact, then slower")
+        }
+    };
+    let contact = claim.joints.iter().map(|joint| {
+        format!(
+            "{} meets it at {:.0} and holds with {:.0} g or more",
+            joint.dof.name(),
+            joint.contact_angle,
+            joint.hold_g
+        )
+    });
+    let over = report.tried.iter().filter(|own| own.over_limit).count();
+    let mut lines = vec![
+        claim.to_string(),
+        format!("{}, {approach}", claim.setting),
+        contact.collect::<Vec<_>>().join("; "),
+        format!(
+            "{} closes in all, {over} of them over the limit",
+            report.tried.len()
+        ),
+    ];
+    lines.extend(untold(report).iter().map(|own| format!("not told: {own}")));
+    lines
+}
+
+/// Why there is no claim, if there is none.
+pub(crate) fn no_claim(report: &TuneReport) -> Option<String> {
+    let aborted = report.series.aborted;
+    let early = aborted.map(|why| {
+        let closes = report.tried.len();
+        let stop = stop_words(report.series.stop);
+        format!("ended early after {closes} closes: {why}{stop}")
+    });
+    let none = report
+        .finding
+        .as_ref()
+        .and_then(|finding| finding.result.as_ref().err());
+    early.or_else(|| none.map(ToString::to_string))
+}
+
+fn claim(report: &TuneReport) -> Option<&Claim> {
+    let finding = report
+        .finding
+        .as_ref()
+        .filter(|_| report.series.aborted.is_none());
+    finding.and_then(|finding| finding.result.as_ref().ok())
+}
+
+fn untold(report: &TuneReport) -> &[Untold] {
+    report
+        .finding
+        .as_ref()
+        .map_or(&[], |finding| &finding.untold)
+}
+
+/// Of each confirming close the highest of its joints, g.
+fn peaks(claim: &Claim) -> Vec<f64> {
+    let highest = |nth: usize| {
+        let peaks = claim
+            .joints
+            .iter()
+            .filter_map(|joint| joint.peaks_g.get(nth));
+        peaks.copied().fold(0.0, f64::max)
+    };
+    (0..claim.closes).map(highest).collect()
+}

@@ -1,0 +1,90 @@
+//! What one recorded close says about a joint and the object. Pure.
+
+use crate::hand::Dof;
+use crate::trials::measure::curve::JointCurves;
+use crate::trials::measure::detect::median;
+use crate::trials::measure::metrics::JointMetrics;
+use crate::trials::recording::{TrialEvent, seconds};
+use crate::trials::summary::Trial;
+
+/// The last part of the dwell in which the joint is taken to rest, s.
+const REST_S: f64 = 0.3;
+/// The least way into an object that tells its stiffness, units of ANGLE_ACT; an angle is a whole number.
+const PRESSED_LEAST: f64 = 4.0;
+
+/// One joint in one close. Forces are above the reading at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CloseFacts {
+    pub dof: Dof,
+    /// It was told to close and never moved.
+    pub is_dead: bool,
+    /// The fingertip felt something before it moved.
+    pub touched_before: bool,
+    /// Where it met the object, units of ANGLE_ACT.
+    pub contact: Option<f64>,
+    /// From the command to the contact, s.
+    pub to_contact_s: Option<f64>,
+    /// From the command to the motion, s.
+    pub dead_time_s: Option<f64>,
+    /// From the command to the stop, s.
+    pub close_s: Option<f64>,
+    /// From the order to go on slowly to the stop, s; `None` in one stage.
+    pub slow_s: Option<f64>,
+    /// Highest force, g.
+    pub peak_g: Option<f64>,
+    /// The sensor was at its end.
+    pub is_clipped: bool,
+    /// What was left at the end of the dwell, g.
+    pub steady_g: Option<f64>,
+    /// Noise of the force at rest, g: standard deviation.
+    pub noise_g: f64,
+    /// g for each unit of ANGLE_ACT, at rest; `None` where it gave too little to tell.
+    pub stiffness: Option<f64>,
+    /// Slips while it was held; `None` if touch told too little.
+    pub slips: Option<usize>,
+    /// Longest time between two readings of the force, s.
+    pub longest_gap_s: Option<f64>,
+}
+
+impl CloseFacts {
+    /// The joints of a trial, in register order.
+    pub fn of(trial: &Trial) -> Vec<Self> {
+        let joints = trial.summary.joints.iter();
+        joints.map(|joint| Self::joint(trial, joint)).collect()
+    }
+
+    fn joint(trial: &Trial, joint: &JointMetrics) -> Self {
+        let zero = trial.recording.zero();
+        let when = |what| trial.recording.when(what).map(|at| seconds(zero, at));
+        let slow = when(TrialEvent::Slow(joint.dof));
+        let end = when(TrialEvent::Release).or_else(|| when(TrialEvent::Aborted));
+        let resting = end.and_then(|end| {
+            let angles = JointCurves::of(&trial.recording, joint.dof).angle;
+            median(&angles.values(end - REST_S, end))
+        });
+        let pressed = joint.contact_angle.zip(resting);
+        let pressed = pressed.map(|(contact, resting)| contact - resting);
+        let stiffness = joint.steady_force_g.zip(pressed);
+        let stiffness = stiffness.filter(|(_, pressed)| *pressed >= PRESSED_LEAST);
+        Self {
+            dof: joint.dof,
+            is_dead: joint.dead_drive,
+            touched_before: joint.contact_at_start == Some(true),
+            contact: joint.contact_angle,
+            to_contact_s: joint.time_to_contact_s,
+            dead_time_s: joint.dead_time_s,
+            close_s: joint.time_to_stop_s,
+            slow_s: joint
+                .time_to_stop_s
+                .zip(slow)
+                .map(|(stop, slow)| stop - slow),
+            peak_g: joint.peak_force_g,
+            is_clipped: joint.clipped == Some(true),
+            steady_g: joint.steady_force_g,
+            noise_g: joint.noise_g.unwrap_or_default(),
+            stiffness: stiffness.map(|(steady, pressed)| steady / pressed),
+            slips: joint.slip_count,
+            longest_gap_s: joint.longest_gap_s,
+        }
+    }
+}

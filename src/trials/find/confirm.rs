@@ -1,0 +1,125 @@
+//! One setting, closed again and again: the bound of its peaks, and what is left of the grip. Pure.
+
+use crate::hand::Dof;
+use crate::trials::find::close::CloseFacts;
+use crate::trials::find::finding::JointClaim;
+use crate::trials::find::joint::JointModel;
+use crate::trials::find::tolerance::tolerance_factor;
+use crate::trials::find::wish::TuneWish;
+
+/// One joint's closes.
+#[derive(Debug, Clone, PartialEq)]
+struct JointCloses {
+    dof: Dof,
+    peaks_g: Vec<f64>,
+    holds_g: Vec<f64>,
+}
+
+/// The closes of one setting.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Confirmation {
+    joints: Vec<JointCloses>,
+    closes_s: Vec<f64>,
+}
+
+impl Confirmation {
+    pub(crate) fn new(dofs: impl Iterator<Item = Dof>) -> Self {
+        let joints = dofs.map(|dof| JointCloses {
+            dof,
+            peaks_g: Vec::new(),
+            holds_g: Vec::new(),
+        });
+        Self {
+            joints: joints.collect(),
+            closes_s: Vec::new(),
+        }
+    }
+
+    /// Takes a close of which all was measured.
+    pub(crate) fn add(&mut self, facts: &[CloseFacts]) {
+        for (joint, facts) in self.joints.iter_mut().zip(facts) {
+            joint.peaks_g.extend(facts.peak_g);
+            joint.holds_g.extend(facts.steady_g);
+        }
+        let last = facts.iter().filter_map(|joint| joint.close_s);
+        self.closes_s.extend(last.reduce(f64::max));
+    }
+
+    pub(crate) fn closes(&self) -> usize {
+        self.closes_s.len()
+    }
+
+    /// The highest bound of all joints, g.
+    pub(crate) fn bound(&self, wish: &TuneWish) -> f64 {
+        let bounds = self.joints.iter().map(|joint| bound(&joint.peaks_g, wish));
+        bounds.fold(0.0, f64::max)
+    }
+
+    /// The joint that holds with least, and with what, g.
+    pub(crate) fn least_hold(&self) -> (Dof, f64) {
+        let least = self.joints.iter().map(|joint| (joint.dof, joint.least()));
+        let least = least.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        least.unwrap_or((Dof::Index, 0.0))
+    }
+
+    /// Mean time from the command to the stop, s.
+    pub(crate) fn close_s(&self) -> f64 {
+        mean(&self.closes_s).unwrap_or_default()
+    }
+
+    /// What is claimed of each joint.
+    pub(crate) fn claims(&self, models: &[JointModel], wish: &TuneWish) -> Vec<JointClaim> {
+        let joints = self.joints.iter().zip(models);
+        let claim = |(joint, model): (&JointCloses, &JointModel)| JointClaim {
+            dof: joint.dof,
+            contact_angle: model.contact().unwrap_or_default(),
+            peak_bound_g: bound(&joint.peaks_g, wish),
+            peaks_g: joint.peaks_g.clone(),
+            hold_g: joint.least(),
+            stiffness_g: model.stiffness(),
+        };
+        joints.map(claim).collect()
+    }
+}
+
+impl JointCloses {
+    fn least(&self) -> f64 {
+        self.holds_g.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What peaks to come stay below, by these: g.
+fn bound(peaks: &[f64], wish: &TuneWish) -> f64 {
+    let highest = peaks.iter().copied().fold(0.0, f64::max);
+    if wish.distribution_free {
+        return highest;
+    }
+    let factor = tolerance_factor(peaks.len(), wish.assurance());
+    let Some((mean, factor)) = mean(peaks).zip(factor) else {
+        return f64::INFINITY;
+    };
+    let n: f64 = peaks.iter().map(|_| 1.0).sum();
+    let spread: f64 = peaks.iter().map(|peak| (peak - mean).powi(2)).sum();
+    // No bound is below what was seen.
+    (mean + factor * (spread / (n - 1.0)).sqrt()).max(highest)
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    let n: f64 = values.iter().map(|_| 1.0).sum();
+    (n > 0.0).then(|| values.iter().sum::<f64>() / n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bound_is_mean_and_factor_or_the_largest() {
+        let peaks = [480.0, 470.0, 475.0, 478.0, 472.0];
+        let mut wish = TuneWish::new(&[Dof::Index], 500);
+        let s = (68.0_f64 / 4.0).sqrt();
+        assert!((bound(&peaks, &wish) - (475.0 + 4.20 * s)).abs() < 0.1);
+        wish.distribution_free = true;
+        assert_eq!(bound(&peaks, &wish), 480.0);
+    }
+}

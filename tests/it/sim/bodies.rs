@@ -1,0 +1,194 @@
+//! Bodies that differ from the default: each number of the file is felt in the registers or in the motion.
+
+use handscope::hand::impact::RIGID_G_PER_COUNT;
+use handscope::hand::{Dof, Finger, Moment, PerDof, Span, TactileBlock};
+use handscope::sim::body_file::random::random;
+use handscope::sim::body_file::{BodyParams, JointBody};
+use handscope::sim::drive::{Drive, DriveGoal, DriveSettings, STROKE};
+use handscope::sim::{Contact, Object, Scenario, SimConfig, SimHand};
+
+const SLOW: DriveSettings = DriveSettings {
+    speed: 100.0,
+    threshold_g: 500.0,
+};
+
+/// What one close on a block came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Close {
+    began_ms: u64,
+    contact: f64,
+    peak_g: f64,
+    ms: u64,
+}
+
+fn on_block(drive: &mut Drive, from: u64) -> Close {
+    drive.set_contact(Some(Contact {
+        angle: 500.0,
+        stiffness: RIGID_G_PER_COUNT,
+        breaks_at_g: None,
+    }));
+    drive.command(DriveGoal::Position(STROKE), from);
+    let start = drive.position();
+    let mut close = Close {
+        began_ms: 0,
+        contact: 0.0,
+        peak_g: 0.0,
+        ms: 0,
+    };
+    for ms in 0..30_000 {
+        drive.step(from + ms, SLOW);
+        if close.began_ms == 0 && drive.position() > start {
+            close.began_ms = ms;
+        }
+        if close.contact == 0.0 && drive.load_g() > 0.0 {
+            close.contact = drive.position();
+            close.ms = ms;
+        }
+        close.peak_g = close.peak_g.max(drive.load_g());
+    }
+    close
+}
+
+fn of(change: impl Fn(&mut JointBody)) -> Close {
+    let mut joint = JointBody::default();
+    change(&mut joint);
+    on_block(&mut Drive::of(joint, 25.0, 7), 0)
+}
+
+fn open(drive: &mut Drive, from: u64) {
+    drive.command(DriveGoal::Position(0.0), from);
+    for ms in 0..30_000 {
+        drive.step(from + ms, SLOW);
+    }
+}
+
+#[test]
+fn each_number_of_a_joint_is_felt() {
+    let usual = of(|_| ());
+    assert_eq!(usual, on_block(&mut Drive::new(25.0), 0));
+    let over = |close: Close| close.peak_g - SLOW.threshold_g;
+    let late = of(|joint| joint.latency_ms = 128.0);
+    assert_eq!(late.began_ms, usual.began_ms + 64);
+    assert!((over(late) / over(usual) - 2.0).abs() < 0.05, "{late:?}");
+    let stiff = of(|joint| joint.stiffness_factor = 2.0);
+    assert!((over(stiff) / over(usual) - 2.0).abs() < 0.05, "{stiff:?}");
+    let deeper = of(|joint| joint.contact_offset = 30.0);
+    assert!((deeper.contact - usual.contact - 30.0).abs() < 1.0);
+    let second = of(|joint| joint.run_on = 1.0);
+    assert!(over(second) > over(usual) + 50.0, "{second:?}");
+    let slow = of(|joint| joint.counts_per_speed /= 2.0);
+    assert!(slow.ms > 19 * usual.ms / 10, "{slow:?} {usual:?}");
+    let slack = of(|joint| joint.backlash = 20.0);
+    assert!(slack.ms > usual.ms + 40, "{slack:?} {usual:?}");
+}
+
+#[test]
+fn contact_and_latency_are_drawn_anew_each_close_and_the_same_seed_draws_the_same() {
+    let joint = JointBody {
+        contact_scatter: 7.5,
+        latency_scatter_ms: 3.0,
+        ..JointBody::default()
+    };
+    let closes = |seed| -> Vec<Close> {
+        let mut drive = Drive::of(joint, 25.0, seed);
+        let close = |nth: u64| {
+            let close = on_block(&mut drive, nth * 60_000);
+            open(&mut drive, nth * 60_000 + 30_000);
+            close
+        };
+        (0..12).map(close).collect()
+    };
+    let first = closes(1);
+    assert_eq!(first, closes(1));
+    assert_ne!(first, closes(2));
+    let mean = first.iter().map(|close| close.contact).sum::<f64>() / 12.0;
+    let spread = first.iter().map(|close| (close.contact - mean).powi(2));
+    let sigma = (spread.sum::<f64>() / 11.0).sqrt();
+    assert!((4.0..12.0).contains(&sigma), "{sigma}");
+    let mut peaks: Vec<f64> = first.iter().map(|close| close.peak_g).collect();
+    peaks.dedup();
+    assert_eq!(peaks.len(), 12, "{peaks:?}");
+}
+
+fn hand(body: BodyParams) -> SimHand {
+    SimHand::new(SimConfig {
+        scenario: Scenario::Free,
+        body,
+        ..SimConfig::default()
+    })
+}
+
+fn at(ms: u64) -> Moment {
+    Moment::ZERO.plus(std::time::Duration::from_millis(ms))
+}
+
+#[test]
+fn a_weak_supply_slows_all_joints_at_once_and_one_alone_not() {
+    let mut body = BodyParams::default();
+    body.supply.sag = 0.5;
+    let reached = |joints: usize| {
+        let mut hand = hand(body);
+        hand.write(1522, &[100, 0].repeat(6), at(10)).unwrap();
+        let mut angles = vec![];
+        for nth in 0..6 {
+            let target: i16 = if nth < joints { 0 } else { -1 };
+            angles.extend(target.to_le_bytes());
+        }
+        hand.write(1486, &angles, at(20)).unwrap();
+        hand.advance_to(at(1500));
+        1000.0 - hand.true_angles()[Dof::Little]
+    };
+    let (alone, all) = (reached(1), reached(6));
+    assert!((all / alone - 0.5).abs() < 0.02, "{alone} {all}");
+}
+
+#[test]
+fn dead_and_drifting_channels_show_in_the_fingertips_block() {
+    let mut body = BodyParams::default();
+    body.fingertips[Finger::Index].dead[2] = true;
+    body.fingertips[Finger::Index].drift[4] = 10_000.0;
+    let mut hand = hand(body);
+    let span = handscope::hand::Group::Tactile(Finger::Index).span();
+    let mut block = |ms| TactileBlock::decode(&hand.read(span, at(ms)).unwrap()).unwrap();
+    let (early, late) = (block(100), block(10_100));
+    assert_eq!((early.raw[2], late.raw[2]), (0, 0));
+    assert!(late.raw[4] - early.raw[4] > 98_000);
+    assert!(late.raw[5].abs_diff(early.raw[5]) < 1000);
+}
+
+#[test]
+fn zero_and_noise_of_the_force_are_the_bodys() {
+    let mut body = BodyParams::default();
+    body.joints[Dof::Ring].force_zero_g = 220.0;
+    body.joints[Dof::Ring].force_noise_g = 0.0;
+    let mut hand = hand(body);
+    let mut forces = |ms| -> PerDof<i16> {
+        let bytes = hand.read(Span::new(1582, 12), at(ms)).unwrap();
+        let (pairs, _) = bytes.as_chunks::<2>();
+        PerDof::from_fn(|dof| i16::from_le_bytes(pairs[dof.index()]))
+    };
+    let (first, second) = (forces(100), forces(200));
+    assert_eq!(first[Dof::Ring], second[Dof::Ring]);
+    assert!((212..=224).contains(&first[Dof::Ring]), "{first:?}");
+    assert_ne!(first[Dof::Index], second[Dof::Index]);
+}
+
+#[test]
+fn a_drawn_body_stays_within_what_the_manual_allows() {
+    for seed in 0..5 {
+        let mut hand = SimHand::new(SimConfig {
+            scenario: Scenario::Rigid,
+            body: random(seed),
+            ..SimConfig::default()
+        });
+        hand.set_object(&Object::rigid(500.0));
+        hand.write(1486, &[0; 12], at(10)).unwrap();
+        for ms in (20..6000).step_by(50) {
+            let position = hand.read(Span::new(1534, 12), at(ms)).unwrap();
+            let (pairs, _) = position.as_chunks::<2>();
+            for pair in pairs {
+                assert!((0..=2000).contains(&i16::from_le_bytes(*pair)));
+            }
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! Searches for settings on simulated hands without a link, in virtual time: what a search comes to, whether its claim holds in
+//! closes to come, and how it compares with the best that there is. Used by the tests and by the bench.
+
+use handscope::hand::impact::RIGID_G_PER_COUNT;
+use handscope::hand::{
+    Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, Reply,
+    Setpoints, Speed, Target,
+};
+use handscope::record::LinkState;
+use handscope::sim::body_file::JointBody;
+use handscope::sim::body_file::random::random;
+use handscope::sim::body_file::run_on::{MetThreshold, run_on_g};
+use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::trials::find::tolerance::{Assurance, tolerance_factor};
+use handscope::trials::find::{Claim, Finder, Finding, FoundApproach, TuneWish};
+use handscope::trials::{
+    Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
+    Until,
+};
+use std::time::Duration;
+
+const EPOCH: ArmEpoch = ArmEpoch(1);
+/// As a line at 115200 baud allows.
+const EACH: Duration = Duration::from_millis(10);
+/// What is read seldom.
+const SELDOM: u64 = 20;
+const JOINT: Dof = Dof::Index;
+/// The object's place, units of ANGLE_ACT.
+const PLACE: f64 = 550.0;
+/// g for each position count: from a soft ball to the published block.
+pub(crate) const STIFFNESSES: [f64; 5] = [3.0, 7.0, 13.0, 25.0, RIGID_G_PER_COUNT];
+
+/// A simulated hand and what was read of it.
+pub(crate) struct VirtualHand {
+    pub(crate) hand: SimHand,
+    now: Moment,
+    sample: HandSample,
+    round: u64,
+}
+
+impl VirtualHand {
+    pub(crate) fn new(body: BodyParams, seed: u64, object: &Object) -> Self {
+        let mut hand = SimHand::new(SimConfig {
+            seed,
+            scenario: Scenario::Free,
+            body,
+            ..SimConfig::default()
+        });
+        hand.set_object(object);
+        Self {
+            hand,
+            now: Moment::ZERO.plus(EACH),
+            sample: HandSample::default(),
+            round: 0,
+        }
+    }
+
+    /// Runs a series to its end. `meanwhile` may interfere after each reading.
+    pub(crate) fn run(
+        &mut self,
+        mut series: TrialSeries,
+        mut meanwhile: impl FnMut(&mut SimHand, &mut TrialSeries),
+    ) -> Run {
+        let mut trials = Vec::new();
+        let mut stopped = false;
+        let link = LinkView {
+            state: LinkState::Armed,
+            armed: Some(EPOCH),
+            ..LinkView::default()
+        };
+        while !series.is_over() {
+            self.read(&mut series);
+            match series.tick(&self.sample, link, self.now) {
+                Some(SeriesOrder::Set(setpoints)) => self.set(&setpoints),
+                Some(SeriesOrder::Stop) => stopped = true,
+                None => {}
+            }
+            while let Some(trial) = series.finished() {
+                trials.push(trial);
+            }
+            meanwhile(&mut self.hand, &mut series);
+        }
+        Run {
+            finding: series.finder().and_then(Finder::finding),
+            aborted: series.aborted(),
+            stopped,
+            trials,
+        }
+    }
+
+    fn read(&mut self, series: &mut TrialSeries) {
+        self.now = self.now.plus(EACH);
+        self.round += 1;
+        let often = [Group::Angle, Group::Force, Group::Current, Group::Status];
+        let seldom = [
+            Group::Faults,
+            Group::Temperature,
+            Group::SpeedSet,
+            Group::ForceSet,
+        ];
+        let is_seldom = self.round % SELDOM == 1;
+        let tactile = (self.round % 2 == 0).then_some(Group::Tactile(Finger::Index));
+        let groups = often
+            .into_iter()
+            .chain(seldom.into_iter().filter(|_| is_seldom))
+            .chain(tactile);
+        for group in groups {
+            let span = group.span();
+            let bytes = self.hand.read(span, self.now).unwrap();
+            let fresh = self.sample.take(&Reply {
+                span,
+                bytes: &bytes,
+                asked: self.now,
+                received: self.now,
+            });
+            series.take(&self.sample, fresh);
+        }
+    }
+
+    fn set(&mut self, setpoints: &Setpoints) {
+        let angles = setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave));
+        let commands = [
+            HandCommand::Speeds(setpoints.speed),
+            HandCommand::Forces(setpoints.force),
+            HandCommand::Angles(angles),
+        ];
+        for write in commands.iter().flat_map(HandCommand::writes) {
+            let span = write.span();
+            self.hand
+                .write(span.address, write.bytes(), self.now)
+                .unwrap();
+        }
+    }
+
+    /// Searches.
+    pub(crate) fn tune(&mut self, wish: &TuneWish) -> Run {
+        let finder = Finder::new(wish.clone()).unwrap();
+        self.run(TrialSeries::search(finder, EPOCH, self.now), |_, _| ())
+    }
+
+    pub(crate) fn search(&self, wish: &TuneWish) -> TrialSeries {
+        TrialSeries::search(Finder::new(wish.clone()).unwrap(), EPOCH, self.now)
+    }
+
+    /// The same setting so many times more.
+    pub(crate) fn repeat(&mut self, claim: &Claim, wish: &TuneWish, times: usize) -> Vec<Trial> {
+        let fast = match claim.approach {
+            FoundApproach::OneStage => None,
+            FoundApproach::TwoStage { fast_speed, margin } => {
+                let at = claim.joints[0].contact_angle.round() as i64 + i64::from(margin);
+                Some((Speed::nearest(fast_speed), Angle::nearest(at)))
+            }
+        };
+        self.closes(claim.setting, fast, (wish, times))
+    }
+
+    fn closes(
+        &mut self,
+        setting: TrialSetting,
+        fast: Option<(Speed, Angle)>,
+        (wish, times): (&TuneWish, usize),
+    ) -> Vec<Trial> {
+        let plan = TrialPlan {
+            grid: TrialGrid {
+                repeats: times,
+                rest: Duration::from_millis(300),
+                ..TrialGrid::once(setting)
+            },
+            dwell: Duration::from_millis(700),
+            approach: match fast {
+                None => Approach::OneStage,
+                Some((fast, at)) => Approach::TwoStage {
+                    fast,
+                    until: Until::Angle(at),
+                },
+            },
+            start: wish.start,
+            close: wish.close,
+            limits: handscope::trials::Limits {
+                ceiling_g: 4000,
+                ..wish.limits
+            },
+            ..TrialPlan::default()
+        };
+        let series = TrialSeries::start(plan, EPOCH, self.now).unwrap();
+        let run = self.run(series, |_, _| ());
+        assert_eq!(run.aborted, None);
+        run.trials
+    }
+}
+
+/// A series that is over.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) finding: Option<Finding>,
+    pub(crate) aborted: Option<Abort>,
+    pub(crate) stopped: bool,
+    pub(crate) trials: Vec<Trial>,
+}
+
+pub(crate) fn object(stiffness: f64, breaks_at_g: Option<f64>) -> Object {
+    Object {
+        contacts: PerDof::splat(Some(Contact {
+            angle: PLACE,
+            stiffness,
+            breaks_at_g,
+        })),
+    }
+}
+
+/// What one search came to, against the truth.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    pub(crate) seed: u64,
+    pub(crate) stiffness: f64,
+    /// The claim's words, or why there is none.
+    pub(crate) words: String,
+    pub(crate) claims: bool,
+    /// Closes to come that were above the bound, of so many.
+    pub(crate) above: usize,
+    pub(crate) checked: usize,
+    /// The time of the close, and that of the best, s.
+    pub(crate) close_s: f64,
+    pub(crate) best_s: f64,
+    /// The highest peak of the search, g; and closes in it.
+    pub(crate) highest_g: f64,
+    pub(crate) trials: usize,
+    /// How long it took, s of virtual time.
+    pub(crate) took_s: f64,
+    /// Each close in words.
+    pub(crate) tried: Vec<String>,
+}
+
+/// One search on one body and one stiffness.
+pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)) -> Case {
+    let body = random(seed);
+    let object = object(stiffness, None);
+    let mut hand = VirtualHand::new(body, seed, &object);
+    let begun = hand.now;
+    let run = hand.tune(wish);
+    let took_s = hand.now.since(begun).as_secs_f64();
+    let peaks = run.trials.iter().filter_map(peak);
+    let highest_g = peaks.fold(0.0, f64::max);
+    let mut case = Case {
+        seed,
+        stiffness,
+        words: format!("{:?}", run.aborted),
+        claims: false,
+        above: 0,
+        checked: 0,
+        close_s: 0.0,
+        best_s: f64::INFINITY,
+        highest_g,
+        trials: run.trials.len(),
+        took_s,
+        tried: Vec::new(),
+    };
+    let Some(finding) = run.finding else {
+        return case;
+    };
+    case.tried = finding
+        .tried
+        .iter()
+        .map(|own| {
+            format!(
+                "{} {:?} {:?} {:?}",
+                own.setting, own.approach, own.peak_g, own.close_s
+            )
+        })
+        .collect();
+    match finding.result {
+        Err(none) => case.words = none.to_string(),
+        Ok(claim) => {
+            case.words = format!("{claim}; {} {:?}", claim.setting, claim.approach);
+            case.claims = true;
+            case.close_s = claim.close_s;
+            if checks > 0 {
+                let more = hand.repeat(&claim, wish, checks);
+                case.checked = more.len();
+                let bound = claim.peak_bound_g();
+                case.above = more
+                    .iter()
+                    .filter_map(peak)
+                    .filter(|own| *own > bound)
+                    .count();
+            }
+            case.best_s = best_s(&mut hand, &body.joints[JOINT], (stiffness, wish));
+        }
+    }
+    case
+}
+
+fn peak(trial: &Trial) -> Option<f64> {
+    trial.summary.joints[0].peak_force_g
+}
+
+/// The quickest close of a fine grid whose bound from so many closes is under the limit and that holds, by the body itself.
+fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &TuneWish)) -> f64 {
+    let own = stiffness * body.stiffness_factor;
+    let hold = f64::from(wish.hold_g);
+    let limit = f64::from(wish.limit_g);
+    let over = |speed: f64, threshold_g: f64| {
+        let met = MetThreshold {
+            speed: speed * body.counts_per_speed / (2000.0 / 600.0),
+            threshold_g,
+            came_fast: false,
+        };
+        run_on_g(met, body.run_on) * body.latency_ms / 64.0 * own / RIGID_G_PER_COUNT
+    };
+    let least = |speed: f64| {
+        let holds = |threshold: &i16| {
+            let threshold = f64::from(*threshold);
+            0.92 * threshold + 0.05 * over(speed, threshold) * own / RIGID_G_PER_COUNT >= hold
+        };
+        (10..2000_i16).find(holds).unwrap()
+    };
+    let k = tolerance_factor(wish.closes, Assurance::USUAL).unwrap();
+    let scatter = k * body.latency_scatter_ms / body.latency_ms;
+    let fits = |speed: &i16| {
+        let threshold = least((*speed).into());
+        let over = over((*speed).into(), threshold.into());
+        f64::from(threshold) + over * (1.0 + scatter) + 0.6 * body.force_noise_g <= limit
+    };
+    let Some(speed) = (3..=1000).take_while(fits).last() else {
+        return f64::INFINITY;
+    };
+    let setting = TrialSetting {
+        speed: Speed::nearest(speed),
+        force: Force::nearest(least(speed.into())),
+    };
+    let contact = PLACE - body.contact_offset / 2.0;
+    let margin = 3.3 * body.contact_scatter / 2.0 + 2.0;
+    let halt = Angle::nearest((contact + margin).ceil() as i64);
+    let times = [None, Some((Speed::MAX, halt))].map(|fast| {
+        let trials = hand.closes(setting, fast, (wish, 4));
+        let times = trials
+            .iter()
+            .filter_map(|trial| trial.summary.joints[0].time_to_stop_s);
+        times.sum::<f64>() / 4.0
+    });
+    times[0].min(times[1])
+}
