@@ -111,7 +111,9 @@ impl Action {
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
-            | Self::Trial(TrialAction::Start | TrialAction::ArmAndStart) => Effect::Moves,
+            | Self::Trial(TrialAction::Start | TrialAction::ArmAndStart | TrialAction::Find) => {
+                Effect::Moves
+            }
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)
@@ -159,6 +161,7 @@ impl Action {
             | Self::Input(InputAction::Map(_))
             | Self::Trial(
                 TrialAction::Plan(_)
+                | TrialAction::Wish(_)
                 | TrialAction::Note(..)
                 | TrialAction::Tags(..)
                 | TrialAction::Forget(_)

@@ -151,16 +151,27 @@ impl PoseState {
             }
             LibraryEdit::Pose(id, edit) => self.library.edit_pose(id, edit),
             LibraryEdit::Sequence(id, edit) => self.library.edit_sequence(id, edit),
-            LibraryEdit::Copy(entry) => match self.library.copy_from(starter(), entry) {
-                Some(EntryId::Pose(id)) => self.newest = Some(id),
-                Some(EntryId::Sequence(id)) => self.newest_sequence = Some(id),
-                Some(EntryId::Reaction(_)) | None => {}
-            },
+            LibraryEdit::Copy(entry) => {
+                let new = self.library.copy_from(starter(), entry);
+                self.mark_newest(new);
+            }
+            LibraryEdit::Add(poses) => {
+                let new = self.library.add_all(poses);
+                self.mark_newest(new);
+            }
             LibraryEdit::NewSequence(name) => {
                 self.newest_sequence = self.library.add_sequence(&name);
             }
         }
         self.before = kept;
+    }
+
+    fn mark_newest(&mut self, new: Option<EntryId>) {
+        match new {
+            Some(EntryId::Pose(id)) => self.newest = Some(id),
+            Some(EntryId::Sequence(id)) => self.newest_sequence = Some(id),
+            Some(EntryId::Reaction(_)) | None => {}
+        }
     }
 
     /// Adds what a file holds; that can be taken back.

@@ -55,6 +55,8 @@ pub enum LibraryEdit {
     /// A new sequence without steps, by this name or the next free one.
     NewSequence(String),
     Sequence(SequenceId, SequenceEdit),
+    /// New poses, and from two on a sequence of them by the name of the last.
+    Add(Vec<LibraryPose>),
     /// A copy of a shipped pose, or of a shipped sequence with the poses that it needs.
     Copy(EntryId),
     /// Take the last deletion or import back.
@@ -91,6 +93,31 @@ impl PoseLibrary {
             others: toml::Table::new(),
         });
         Some(id)
+    }
+
+    /// Whether poses of a grasp and their sequence find room.
+    pub const fn has_room(&self) -> bool {
+        self.poses.len() + 2 <= ENTRIES_MAX && self.sequences.len() < ENTRIES_MAX
+    }
+
+    /// Adds poses, and from two on a sequence of them by the name of the last, whose steps take the poses' own speeds. Where the
+    /// library is full, nothing is added.
+    pub fn add_all(&mut self, poses: Vec<LibraryPose>) -> Option<EntryId> {
+        if self.poses.len() + poses.len() > ENTRIES_MAX || self.sequences.len() >= ENTRIES_MAX {
+            return None;
+        }
+        let name = poses.last()?.name.clone();
+        let mut steps = Vec::new();
+        for pose in poses {
+            let (own, speed) = (pose.name.clone(), pose.speed);
+            steps.push(SequenceStep::new(self.add_pose(&own, pose)?, speed));
+        }
+        if let [only] = steps.as_slice() {
+            return Some(EntryId::Pose(only.pose));
+        }
+        let id = self.add_sequence(&name)?;
+        self.sequences.last_mut()?.steps = steps;
+        Some(EntryId::Sequence(id))
     }
 
     fn free_sequence_name(&self, wanted: &str, but: SequenceId) -> String {

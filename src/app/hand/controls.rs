@@ -153,10 +153,10 @@ impl Controls {
         }
     }
 
-    /// Adds the user's own speed and force to what is sent, for the free joints that have others from what was played.
-    pub(crate) fn restore_limits(&mut self, sent: &mut Setpoints) {
+    /// Adds the user's own speed and force to what is sent, for the free joints of these that have others from what was played.
+    pub(crate) fn restore_limits(&mut self, sent: &mut Setpoints, of: impl Fn(Dof) -> bool) {
         for (dof, joint) in self.joints.iter().filter(|(_, joint)| !joint.locked) {
-            if std::mem::take(&mut self.overridden[dof]) {
+            if of(dof) && std::mem::take(&mut self.overridden[dof]) {
                 (sent.speed[dof], sent.force[dof]) = (joint.speed, joint.force);
             }
         }
@@ -334,11 +334,11 @@ mod tests {
         controls.show(&sent);
         assert_eq!(controls.joints[Dof::Ring].speed, Some(Speed::MIN));
         let mut own = Setpoints::none(EPOCH);
-        controls.restore_limits(&mut own);
+        controls.restore_limits(&mut own, |_| true);
         assert_eq!(own.speed[Dof::Ring], Some(Speed::MIN));
         assert_eq!(own.speed[Dof::Index], None, "nothing played moved it");
         let mut again = Setpoints::none(EPOCH);
-        controls.restore_limits(&mut again);
+        controls.restore_limits(&mut again, |_| true);
         assert!(again.is_empty(), "once");
     }
 

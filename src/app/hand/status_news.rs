@@ -123,6 +123,9 @@ impl StatusReport<'_, '_> {
     fn arming(&mut self, link: &LinkStatus, before: &LinkStatus) -> bool {
         let is_armed = link.armed.is_some() && link.armed != before.armed;
         if is_armed {
+            // It said that the hand is not armed.
+            self.notices
+                .withdraw(|what| *what == NoticeKind::Reconnected);
             self.history.mark(self.now, MarkKind::Armed);
             if let Some(why) = link.unguarded.clone() {
                 self.push(NoticeKind::Unguarded { why });

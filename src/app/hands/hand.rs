@@ -16,7 +16,7 @@ use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
 use crate::app::trials::work::start_refusal;
-use crate::app::trials::{SeriesRun, StartRefusal};
+use crate::app::trials::{SeriesPlan, SeriesRun, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
@@ -54,7 +54,7 @@ pub struct Hand {
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
     /// The plan that begins once the arming that was asked for with it holds, and when that was.
-    pub series_asked: Option<(TrialPlan, Moment)>,
+    pub series_asked: Option<(SeriesPlan, Moment)>,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
@@ -98,10 +98,16 @@ impl Hand {
 
     /// What a live hand holds of a joint, where that is not what was set.
     pub fn held_otherwise(&self, dof: Dof) -> HeldOtherwise {
-        if self.connection.is_live() {
-            self.controls.held_otherwise(dof, &self.readings.sample)
-        } else {
-            HeldOtherwise::default()
+        if !self.connection.is_live() {
+            return HeldOtherwise::default();
+        }
+        let held = self.controls.held_otherwise(dof, &self.readings.sample);
+        HeldOtherwise {
+            // Where another than this window sends it is old by the time it is read back.
+            target: held
+                .target
+                .filter(|_| self.connection.outside_owner().is_none()),
+            ..held
         }
     }
 
@@ -188,8 +194,12 @@ impl Hand {
             recording: None,
             recorded: None,
         };
-        let is_over =
-            |what: &NoticeKind| matches!(what, NoticeKind::LinkLost(_) | NoticeKind::NoLink(_));
+        let is_over = |what: &NoticeKind| {
+            matches!(
+                what,
+                NoticeKind::LinkLost(_) | NoticeKind::NoLink(_) | NoticeKind::OpenElsewhere { .. }
+            )
+        };
         ctx.notices.withdraw(is_over);
         self.follow();
     }
@@ -292,8 +302,8 @@ impl Hand {
     }
 
     /// Arms the hand for a series, which begins once that holds. Whatever refuses, stops or disarms ends the wish.
-    pub(crate) fn arm_for_series(&mut self, plan: TrialPlan, ctx: &mut Ctx<'_>) {
-        let refusal = self.series_refusal(&plan);
+    pub(crate) fn arm_for_series(&mut self, plan: SeriesPlan, ctx: &mut Ctx<'_>) {
+        let refusal = self.series_refusal(&plan.trials());
         if refusal.is_some_and(|why| why != StartRefusal::NotArmed) {
             return;
         }
@@ -365,19 +375,21 @@ impl Hand {
         if let Some(mut setpoints) = wanted {
             if let JointChange::Target(_) = change {
                 self.take_over();
-                self.controls.restore_limits(&mut setpoints);
+                let moved = setpoints.angle;
+                self.controls
+                    .restore_limits(&mut setpoints, |dof| moved[dof].is_some());
             }
             self.connection.send(&setpoints);
         }
     }
 
-    /// What was played is over: the user's own speed and force are in force again.
-    pub(crate) fn restore_limits(&mut self) {
+    /// What was played is over: the user's own speed and force are in force again for these joints.
+    pub(crate) fn restore_limits(&mut self, of: impl Fn(Dof) -> bool) {
         let Some(epoch) = self.own_epoch() else {
             return;
         };
         let mut own = Setpoints::none(epoch);
-        self.controls.restore_limits(&mut own);
+        self.controls.restore_limits(&mut own, of);
         if !own.is_empty() {
             self.connection.send(&own);
         }
@@ -395,7 +407,9 @@ impl Hand {
         };
         self.take_over();
         self.controls.show(&setpoints);
-        self.controls.restore_limits(&mut setpoints);
+        let moved = setpoints.angle;
+        self.controls
+            .restore_limits(&mut setpoints, |dof| moved[dof].is_some());
         self.connection.send(&setpoints);
         true
     }
@@ -469,7 +483,7 @@ impl Hand {
             ctx.tell(NoticeKind::GestureWouldMoveLocked { dof });
         } else {
             self.take_over();
-            self.restore_limits();
+            self.restore_limits(|_| true);
             self.controls.gesture = Some(gesture);
             if self.ask(what, HandCommand::Gesture(gesture, route), ctx) {
                 let number = MarkKind::Gesture(gesture.get());

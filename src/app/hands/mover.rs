@@ -70,8 +70,10 @@ impl Mover {
         // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
         let gesture = hand.controls.gesture;
         let gesture = gesture.filter(|_| hand.controls.all_follow());
+        let is_other = link.foreign_setpoint.is_some() && link.armed.is_none();
         Some(match gesture {
-            _ if !connection.commanded => Self::Unknown,
+            // What another controller wrote last counts, where this window may send nothing any more.
+            _ if !connection.commanded || is_other => Self::Unknown,
             Some(gesture) => Self::Gesture(gesture),
             None => Self::Setpoints,
         })

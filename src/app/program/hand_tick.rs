@@ -11,10 +11,9 @@ use crate::app::program::taring;
 use crate::app::recordings::recording::{HandRecording, RecordingTarget};
 use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;
-use crate::app::trials::{SeriesRun, TrialsState};
-use crate::hand::Moment;
+use crate::app::trials::{SeriesPlan, SeriesRun, TrialsState};
+use crate::hand::{Moment, Status};
 use crate::record::EventKind;
-use crate::trials::TrialPlan;
 use std::time::Duration;
 
 /// A hand that is not armed by then, on the slowest of wires, is not any more.
@@ -32,16 +31,12 @@ pub(super) struct Shared<'a> {
 /// Lets one hand go on.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.take_news(&mut ctx.notices, ctx.now);
-    let played = hand
-        .sequence
-        .as_mut()
-        .map(|run| (run.is_running(), run.news()));
-    if let Some((was_running, sent)) = played {
+    let played = hand.sequence.as_mut().map(SequenceRun::news);
+    if let Some(sent) = played {
         sent.iter().for_each(|setpoints| hand.sent(setpoints));
-        let runs = hand.sequence.as_ref().is_some_and(SequenceRun::is_running);
-        if was_running && !runs {
-            hand.restore_limits();
-        }
+    }
+    if !hand.sequence.as_ref().is_some_and(SequenceRun::is_running) {
+        restore_rested(hand);
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
@@ -67,9 +62,22 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     hand.go_on_leaving(ctx);
 }
 
-/// Begins the series that is planned, in the arming of now. Without one nothing happens.
-pub(super) fn start_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &Ctx<'_>) {
-    let is_refused = hand.series_refusal(&trials.plan).is_some() || trials.plan.check().is_err();
+/// Gives the user's own speed and force back to the joints that stand where a sequence took them. One that presses, or goes on to
+/// where it was sent, keeps what it was sent with until it is told something else: a threshold that rises would press harder.
+fn restore_rested(hand: &mut Hand) {
+    if let Some(status) = hand.readings.sample.status {
+        hand.restore_limits(|dof| status.value[dof] == Status::PositionReached);
+    }
+}
+
+/// Begins a series, in the arming of now. Without one nothing happens.
+pub(super) fn start_series(
+    hand: &mut Hand,
+    plan: SeriesPlan,
+    trials: &mut TrialsState,
+    ctx: &Ctx<'_>,
+) {
+    let is_refused = hand.series_refusal(&plan.trials()).is_some() || !plan.is_sound();
     // One series at a time: any key stops it, and it has the view to itself.
     if is_refused || trials.running.is_some() {
         return;
@@ -89,7 +97,7 @@ pub(super) fn start_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &Ctx<
         seen: hand.readings.sample,
         connection,
     };
-    hand.series = Some(SeriesRun::begin(at, trials, ctx));
+    hand.series = Some(SeriesRun::begin(at, plan, trials, ctx));
 }
 
 /// Begins the series that the hand was to be armed for, once it is. One that was not armed in time, or for which another
@@ -98,14 +106,18 @@ fn start_asked(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     let is_armed = hand.connection.is_armed();
     let now = ctx.now;
     let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
+    let is_other = |plan: &SeriesPlan| match plan {
+        SeriesPlan::Grid(plan) => *plan != trials.plan,
+        SeriesPlan::Search(wish) => *wish != trials.wish,
+    };
     let is_over =
-        |(plan, at): &mut (TrialPlan, Moment)| is_armed || is_late(*at) || *plan != trials.plan;
+        |(plan, at): &mut (SeriesPlan, Moment)| is_armed || is_late(*at) || is_other(plan);
     let Some((plan, at)) = hand.series_asked.take_if(is_over) else {
         return;
     };
     // A window that hung meanwhile moves nothing late.
-    if is_armed && !is_late(at) && plan == trials.plan {
-        start_series(hand, trials, ctx);
+    if is_armed && !is_late(at) && !is_other(&plan) {
+        start_series(hand, plan, trials, ctx);
     }
     if hand.series.is_none() {
         ctx.tell(NoticeKind::SeriesNotBegun);

@@ -78,7 +78,7 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
     // Of an armed hand that played something: whoever moves it now does so with the user's speed and force.
     let armed = hand.connection.status.armed;
     if let Some(mut own) = armed.map(Setpoints::none) {
-        hand.controls.restore_limits(&mut own);
+        hand.controls.restore_limits(&mut own, |_| true);
         // One that is refused has ended, and takes nothing.
         let _sent = (!own.is_empty()).then(|| link.set(lease, &own));
     }

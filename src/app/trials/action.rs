@@ -1,6 +1,7 @@
 //! What the user may ask about grasp trials. Says nothing about how it is done.
 
 use crate::app::trials::state::SessionId;
+use crate::trials::find::TuneWish;
 use crate::trials::{Criterion, TrialPlan};
 use std::path::PathBuf;
 
@@ -13,6 +14,10 @@ pub enum TrialAction {
     Start,
     /// Arm the hand, and run the plan as soon as that holds.
     ArmAndStart,
+    /// This is the wish of the search now. Sends nothing.
+    Wish(Box<TuneWish>),
+    /// Search for the settings of the wish, in the arming that is in force, or as soon as the hand is armed for it.
+    Find,
     /// Give a session this note.
     Note(SessionId, String),
     /// Give a session these tags, separated by commas.

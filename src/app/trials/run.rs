@@ -3,12 +3,20 @@
 use crate::app::env::running::Running;
 use crate::app::trials::state::SessionId;
 use crate::hand::{ArmEpoch, Moment};
-use crate::tasks::series::{SeriesReport, SeriesStep};
+use crate::tasks::tune::TuneStep;
 use crate::trials::Abort;
-use crate::trials::plan::{PlanError, TrialPlan};
+use crate::trials::find::Finding;
+use crate::trials::plan::TrialPlan;
 use crate::trials::series::SeriesView;
 use std::time::Duration;
 use tokio::sync::oneshot;
+
+/// How a series ended: why early, if it did, and what a search came to.
+#[derive(Debug)]
+pub(crate) struct SeriesEnd {
+    pub(crate) aborted: Option<Abort>,
+    pub(crate) finding: Option<Finding>,
+}
 
 /// A running series.
 #[derive(Debug)]
@@ -27,7 +35,7 @@ pub struct SeriesRun {
     /// About how long one trial takes with the rest after it.
     pub(crate) each: Duration,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
-    pub(crate) task: Option<Running<SeriesStep, Result<SeriesReport, PlanError>>>,
+    pub(crate) task: Option<Running<TuneStep, SeriesEnd>>,
 }
 
 impl SeriesRun {

@@ -3,6 +3,7 @@
 use crate::app::notices::NoticeKind;
 use crate::app::trials::lines::JointLines;
 use crate::hand::Moment;
+use crate::trials::find::{FindProgress, Finding, TuneWish};
 use crate::trials::recording::TrialRecording;
 use crate::trials::session::SessionHead;
 use crate::trials::{Trial, TrialPlan, TrialSummary};
@@ -116,11 +117,54 @@ impl TrialSession {
     }
 }
 
+/// What a series is to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SeriesPlan {
+    /// All settings of a grid.
+    Grid(TrialPlan),
+    /// Search for the fastest close under a limit.
+    Search(TuneWish),
+}
+
+impl SeriesPlan {
+    /// The plan of its trials; of a search that of the first.
+    pub fn trials(&self) -> TrialPlan {
+        match self {
+            Self::Grid(plan) => plan.clone(),
+            Self::Search(wish) => wish.plan(wish.first_setting()),
+        }
+    }
+
+    /// Whether it makes sense.
+    pub fn is_sound(&self) -> bool {
+        match self {
+            Self::Grid(plan) => plan.check().is_ok(),
+            Self::Search(wish) => wish.check().is_ok(),
+        }
+    }
+}
+
+/// The search that runs or ran last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    pub wish: TuneWish,
+    /// Where its trials are.
+    pub session: SessionId,
+    /// Where it stands; `None` before its first word.
+    pub progress: Option<FindProgress>,
+    /// What it came to; `None` while it runs, and if it was ended early.
+    pub finding: Option<Finding>,
+}
+
 /// Everything about trials that the window shows.
 #[derive(Debug, Clone, Default)]
 pub struct TrialsState {
     /// The plan that is being written.
     pub plan: TrialPlan,
+    /// The wish that is being written.
+    pub wish: TuneWish,
+    /// The search that runs or ran last.
+    pub search: Option<Search>,
     /// The session whose series runs now.
     pub running: Option<SessionId>,
     /// What was tried here or opened, the oldest first.

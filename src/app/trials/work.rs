@@ -7,13 +7,15 @@ use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
-use crate::app::trials::run::SeriesRun;
-use crate::app::trials::state::{SessionId, SessionOrigin, TrialsState};
+use crate::app::trials::run::{SeriesEnd, SeriesRun};
+use crate::app::trials::state::{Search, SeriesPlan, SessionId, SessionOrigin, TrialsState};
 use crate::hand::{ArmEpoch, Dof, HandSample, Moment, PerDof};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, series};
+use crate::tasks::tune::{TuneStart, TuneStep, tune};
+use crate::trials::find::Finder;
 use crate::trials::plan_settings::to_settings;
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
@@ -58,8 +60,10 @@ impl TrialsState {
                 }
             }
             TrialAction::CancelForget => self.to_confirm = None,
+            TrialAction::Wish(wish) => self.wish = *wish,
             TrialAction::Start
             | TrialAction::ArmAndStart
+            | TrialAction::Find
             | TrialAction::Open(_)
             | TrialAction::Save(..) => {}
         }
@@ -70,6 +74,11 @@ impl TrialsState {
         if self.running != Some(id) {
             self.to_keep.push_back(id);
         }
+    }
+
+    /// The search whose trials go into this session.
+    fn search_of(&mut self, id: SessionId) -> Option<&mut Search> {
+        self.search.as_mut().filter(|search| search.session == id)
     }
 
     /// A series that was broken off with its link has ended there: no hand has it any more. What to tell of it.
@@ -127,7 +136,12 @@ pub(crate) struct SeriesNews {
 
 impl SeriesRun {
     /// Begins the series that is planned.
-    pub(crate) fn begin(hand: SeriesHand<'_>, trials: &mut TrialsState, ctx: &Ctx<'_>) -> Self {
+    pub(crate) fn begin(
+        hand: SeriesHand<'_>,
+        wanted: SeriesPlan,
+        trials: &mut TrialsState,
+        ctx: &Ctx<'_>,
+    ) -> Self {
         let SeriesHand {
             link,
             lease,
@@ -135,14 +149,7 @@ impl SeriesRun {
             seen,
             connection,
         } = hand;
-        let plan = trials.plan.clone();
-        let start = SeriesStart {
-            plan: plan.clone(),
-            epoch,
-            lease,
-            seen,
-            clock: ctx.env.clock,
-        };
+        let (plan, clock) = (wanted.trials(), ctx.env.clock);
         let (end, ended) = oneshot::channel();
         let ended = async move {
             match ended.await {
@@ -150,15 +157,58 @@ impl SeriesRun {
                 Err(_gone) => std::future::pending().await,
             }
         };
+        let finder = match &wanted {
+            SeriesPlan::Search(wish) => Finder::new(wish.clone()).ok(),
+            SeriesPlan::Grid(_) => None,
+        };
+        let own = plan.clone();
         let task = Running::start(ctx.env, |steps| async move {
             let tell = |step| {
                 steps.tell(step);
                 true
             };
-            series(&link, start, ended, tell).await
+            match finder {
+                Some(finder) => {
+                    let start = TuneStart {
+                        finder,
+                        epoch,
+                        lease,
+                        seen,
+                        clock,
+                    };
+                    let report = tune(&link, start, ended, tell).await;
+                    SeriesEnd {
+                        aborted: report.series.aborted,
+                        finding: report.finding,
+                    }
+                }
+                None => {
+                    let start = SeriesStart {
+                        plan: own,
+                        epoch,
+                        lease,
+                        seen,
+                        clock,
+                    };
+                    let tell = |step| tell(TuneStep::Series(step));
+                    let report = series(&link, start, ended, tell).await;
+                    SeriesEnd {
+                        aborted: report.ok().and_then(|report| report.aborted),
+                        finding: None,
+                    }
+                }
+            }
         });
         let head = session_head(plan.clone(), connection);
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
+        if let SeriesPlan::Search(wish) = wanted {
+            trials.search = Some(Search {
+                wish,
+                session,
+                progress: None,
+                finding: None,
+            });
+        }
         (trials.last, trials.running) = (Some(session), Some(session));
         let (count, whole) = estimate::series(&plan);
         Self {
@@ -189,7 +239,12 @@ impl SeriesRun {
         let (steps, end) = task.news();
         for (at, step) in steps {
             match step {
-                SeriesStep::View(view) => {
+                TuneStep::Progress(progress) => {
+                    if let Some(search) = trials.search_of(self.session) {
+                        search.progress = Some(*progress);
+                    }
+                }
+                TuneStep::Series(SeriesStep::View(view)) => {
                     if view.number != self.view.number {
                         (self.since, self.zero) = (at, at);
                         let closed = Dof::ALL
@@ -205,12 +260,16 @@ impl SeriesRun {
                     }
                     self.view = view;
                 }
-                SeriesStep::Trial(trial) => trials.add_trial(self.session, *trial),
+                TuneStep::Series(SeriesStep::Trial(trial)) => {
+                    trials.add_trial(self.session, *trial)
+                }
             }
         }
         news.end = end.map(|end| {
-            let aborted = end.ok().and_then(|report| report.aborted);
-            trials.close(self.session, aborted)
+            if let Some(search) = trials.search_of(self.session) {
+                search.finding = end.finding;
+            }
+            trials.close(self.session, end.aborted)
         });
         news
     }

@@ -9,6 +9,8 @@ use std::time::Duration;
 
 /// The smallest limit that can be asked for, g: sensors rarely tell less from their noise.
 pub const LIMIT_MIN_G: i16 = 30;
+/// The limit if nobody says, g.
+const LIMIT_G: i16 = 500;
 /// What a grasp holds with if nobody says: this share of the limit.
 pub const HOLD_SHARE: f64 = 0.4;
 /// The most that a grasp may be asked to hold with: the rest is for what a drive runs past its threshold.
@@ -72,6 +74,12 @@ pub enum WishError {
     Plan(#[from] PlanError),
 }
 
+impl Default for TuneWish {
+    fn default() -> Self {
+        Self::new(&[Dof::Index], LIMIT_G)
+    }
+}
+
 impl TuneWish {
     /// A wish for some joints from open, with what is usual for the rest.
     pub fn new(joints: &[Dof], limit_g: i16) -> Self {
@@ -128,7 +136,7 @@ impl TuneWish {
     }
 
     /// What the first, slow trial is made with.
-    pub(crate) fn first_setting(&self) -> TrialSetting {
+    pub fn first_setting(&self) -> TrialSetting {
         let hold = f64::from(self.hold_g);
         TrialSetting {
             speed: Speed::SLOWEST_MEASURED,
@@ -137,7 +145,7 @@ impl TuneWish {
     }
 
     /// A trial of this setting in one stage.
-    pub(crate) fn plan(&self, setting: TrialSetting) -> TrialPlan {
+    pub fn plan(&self, setting: TrialSetting) -> TrialPlan {
         let limit = f64::from(self.limit_g);
         let ceiling = (limit * CEILING_SHARE).max(limit + CEILING_MORE_G);
         TrialPlan {

@@ -37,6 +37,7 @@ impl TrackRow<'_> {
         let moved = self.track.put(ui, look, place, self.id);
         let (scale, tip) = (self.scale, look.say(main::NUMBER_TIP));
         let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
+            .needs_enter()
             .disabled(self.track.disabled)
             .decimals(scale.decimals);
         let value = self.track.target.map(|target| scale.shown(target));

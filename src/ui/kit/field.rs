@@ -1,4 +1,4 @@
-//! Fields that are typed into. A number counts with Enter, a line of text when it is left, and neither with Esc. Knows
+//! Fields that are typed into. What is typed counts when the field is left, what is sent to a hand with Enter alone, and neither with Esc. Knows
 //! nothing of what they name.
 
 use crate::ui::kit::controls;
@@ -30,6 +30,8 @@ struct Field<'a> {
     disabled: Option<&'a str>,
     max: usize,
     is_number: bool,
+    /// What was typed counts when the field is left, not with Enter alone.
+    counts_when_left: bool,
 }
 
 impl Field<'_> {
@@ -62,7 +64,8 @@ impl Field<'_> {
         let mut refused = own.refused;
         let mut text = typed.clone().unwrap_or_else(|| value.to_owned());
         let response = self.edit_ui(ui, (pane.look, refused.is_some()), &mut text, (id, rect));
-        if self.is_number && response.gained_focus() {
+        let by_tab = ui.input(|input| input.key_pressed(Key::Tab));
+        if (self.is_number || by_tab) && response.gained_focus() {
             select_all(ui, id, &text);
         }
         let mut is_typed = typed.is_some();
@@ -73,10 +76,10 @@ impl Field<'_> {
         let mut new = None;
         // The second pass of a frame sees the focus lost again, and no key: what was refused stays refused.
         if is_typed && refused.is_none() && response.lost_focus() {
-            is_typed = if self.is_number {
-                key(Key::Enter)
-            } else {
+            is_typed = if self.counts_when_left {
                 !key(Key::Escape)
+            } else {
+                key(Key::Enter)
             };
             let read = is_typed.then(|| read(text.trim()));
             (new, refused) = match read {
@@ -166,6 +169,7 @@ impl<'a> TextField<'a> {
             disabled: None,
             max,
             is_number: false,
+            counts_when_left: true,
         })
     }
 
@@ -194,7 +198,7 @@ impl<'a> TextField<'a> {
     }
 }
 
-/// A field for a number.
+/// A field for a number, which counts when the field is left.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
     name: &'a str,
@@ -202,6 +206,7 @@ pub(crate) struct NumberField<'a> {
     disabled: Option<&'a str>,
     range: RangeInclusive<f64>,
     decimals: usize,
+    counts_when_left: bool,
 }
 
 impl<'a> NumberField<'a> {
@@ -213,12 +218,19 @@ impl<'a> NumberField<'a> {
             disabled: None,
             range,
             decimals: 0,
+            counts_when_left: true,
         }
     }
 
     /// Nothing can be typed now, for this reason.
     pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
         self.disabled = reason;
+        self
+    }
+
+    /// What was typed counts with Enter alone, not when the field is left: it is sent to a hand.
+    pub(crate) const fn needs_enter(mut self) -> Self {
+        self.counts_when_left = false;
         self
     }
 
@@ -266,6 +278,7 @@ impl<'a> NumberField<'a> {
             disabled: self.disabled,
             max: TYPED_MAX,
             is_number: true,
+            counts_when_left: self.counts_when_left,
         };
         field.ui(ui, pane, &shown, read)
     }

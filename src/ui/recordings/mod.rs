@@ -18,7 +18,7 @@ use crate::ui::recordings::table::{MarkedStretch, RecordingTable};
 use crate::ui::text::recordings;
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{ProgressBar, Ui, vec2};
+use egui::{Frame, Panel, ProgressBar, Ui, vec2};
 use std::time::Duration;
 
 /// Other programs record too: the list is looked for again so often while it is open.
@@ -60,7 +60,12 @@ impl RecordingsView {
             }
             folder_ui(ui, pane);
             foot_ui(ui, pane);
-            exports_ui(ui, pane);
+            if !pane.state.recordings.exports.is_empty() {
+                // Below the list, whose rows stay under the pointer.
+                let foot = Panel::bottom("exports").resizable(false);
+                let foot = foot.show_separator_line(false).frame(Frame::NONE);
+                foot.show(ui, |ui| exports_ui(ui, pane));
+            }
             self.list_ui(ui, pane);
         });
     }

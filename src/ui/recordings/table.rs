@@ -5,12 +5,13 @@ use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, Re
 use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
 use crate::ui::hand::panel;
-use crate::ui::kit::{Button, Label, Look, Pane, TextField, Weight, format};
+use crate::ui::kit::{Button, Label, Look, Pane, TextField, ViewRequest, Weight, format};
 use crate::ui::plots::times::length;
 use crate::ui::recordings::marks;
 use crate::ui::recordings::strip;
 use crate::ui::text::{Text, notices, recordings};
 use crate::ui::theme;
+use crate::ui::view::Place;
 use egui::{
     Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
     Vec2, WidgetInfo, vec2,
@@ -232,13 +233,16 @@ impl RecordingTable<'_> {
         let named = look.pair(look.say(recordings::REPLAY), &title);
         let replay = Button::said(look, recordings::REPLAY).named(&named);
         let open = RecordingAction::Open(item.path.clone());
-        replay.on_click(ui, pane, Action::Recording(open));
+        if replay.ui(ui, look).clicked() {
+            pane.actions.push(Action::Recording(open));
+            pane.open(ViewRequest::Place(Place::Live));
+        }
         let named = look.pair(look.say(recordings::MORE), &title);
         let more = Button::said(look, recordings::MORE).named(&named);
         let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
         let close = egui::PopupCloseBehavior::CloseOnClickOutside;
         Popup::menu(&more).close_behavior(close).show(|ui| {
-            ui.set_min_width(220.0);
+            ui.set_width(260.0);
             let field = TextField::new(look.say(recordings::RENAME), NAME_MAX);
             let field = field.hint(look.tip(recordings::RENAME));
             if let Some(name) = field.ui(ui, pane, &item.about.name) {

@@ -81,4 +81,18 @@ texts! {
     KEY_ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
     KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
     KEY_ESCAPE: "While the hand rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
+    LIVE_WORDS: "speed force threshold angle joint index thumb finger slider plot", "速度 力 角度 自由度 手指 曲线";
+    TOUCH_WORDS: "fingertip tactile heat", "指尖 触觉 受力";
+    TUNE_WORDS: "trial series find settings plan", "试验 寻找 设置 计划";
+    COMPARE_WORDS: "results trials best", "结果 试验 最佳";
+    FAULTS_WORDS: "fault error message status", "故障 错误 消息 状态";
+    POSES_WORDS: "pose sequence demo gesture", "姿态 动作 演示 手势";
+    DEVICE_WORDS: "flash save default parameter speed force id baud reset calibrate backup", "闪存 保存 默认 参数 速度 力 复位 校准 备份";
+    CONNECTION_WORDS: "connect disconnect address port scan hand add", "连接 断开 地址 端口 扫描 添加";
+    INPUTS_WORDS: "gateway stream program dds foxglove gamepad follow exhibition", "网关 数据流 程序 手柄 跟随 展示";
+    TRAFFIC_WORDS: "frames bytes wire modbus export", "报文 字节 总线 导出";
+    RECORDINGS_WORDS: "export csv save file replay import", "导出 保存 文件 回放 导入";
+    HAND_WORDS: "connect disconnect address port scan flash save default parameter traffic", "连接 断开 地址 端口 扫描 闪存 保存 默认 参数 报文";
+    LANGUAGE_WORDS: "language", "语言";
+    THEME_WORDS: "theme colours light dark", "主题 颜色";
 }

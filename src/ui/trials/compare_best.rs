@@ -155,7 +155,7 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
 }
 
 /// Whether the best is kept, and why it cannot be.
-fn kept_ui(ui: &mut Ui, pane: &Pane<'_>, values: &Params, refusal: Option<&str>) {
+pub(crate) fn kept_ui(ui: &mut Ui, pane: &Pane<'_>, values: &Params, refusal: Option<&str>) {
     let (look, palette) = (pane.look, pane.look.palette);
     let book = &pane.state.hand().params;
     let is_held = !values.is_empty() && book.live_params().with(values) == book.live_params();
@@ -174,7 +174,7 @@ fn kept_ui(ui: &mut Ui, pane: &Pane<'_>, values: &Params, refusal: Option<&str>)
 }
 
 /// The values after power-up that this setting stands for.
-fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
+pub(crate) fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
     let speed = Value::Number(setting.speed.get().into());
     let force = Value::Number(setting.force.get().into());
     [

@@ -9,6 +9,7 @@ pub(crate) mod compare_list;
 pub(crate) mod compare_table;
 #[cfg(test)]
 pub(crate) mod compare_tests;
+pub(crate) mod find_form;
 pub(crate) mod plot;
 pub(crate) mod start;
 pub(crate) mod tune;

@@ -2,7 +2,7 @@
 //! A stop, and whatever forbids the start, takes the hold back.
 
 use crate::app::action::Action;
-use crate::app::trials::{StartRefusal, TrialAction};
+use crate::app::trials::{SeriesPlan, StartRefusal, TrialAction};
 use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Pane, Weight};
 use crate::ui::text::{main, tune, words};
@@ -23,10 +23,14 @@ pub(crate) struct StartButton {
 
 impl StartButton {
     /// Draws the button over what it needs.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, wanted: &SeriesPlan) {
         let (look, palette) = (pane.look, pane.look.palette);
         let is_armed = pane.state.hand().connection.is_armed();
-        let reason = refusal(pane);
+        let reason = refusal(pane, wanted);
+        let [start, arm_and_start] = match wanted {
+            SeriesPlan::Grid(_) => [TrialAction::Start, TrialAction::ArmAndStart],
+            SeriesPlan::Search(_) => [TrialAction::Find, TrialAction::Find],
+        };
         let text = if is_armed {
             tune::START_BUTTON
         } else {
@@ -41,10 +45,10 @@ impl StartButton {
         if is_armed {
             *self = Self::default();
             if response.clicked() {
-                pane.actions.push(Action::Trial(TrialAction::Start));
+                pane.actions.push(Action::Trial(start));
             }
         } else if self.is_held(ui, pane, &response) {
-            pane.actions.push(Action::Trial(TrialAction::ArmAndStart));
+            pane.actions.push(Action::Trial(arm_and_start));
         }
         let (words, color) = match (&reason, is_armed) {
             (Some(reason), _) => (reason.as_str(), palette.warn),
@@ -105,9 +109,9 @@ fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
 }
 
 /// Why the series cannot begin, in words.
-fn refusal(pane: &Pane<'_>) -> Option<String> {
+fn refusal(pane: &Pane<'_>, wanted: &SeriesPlan) -> Option<String> {
     let (look, state) = (pane.look, pane.state);
-    let (hand, plan) = (state.hand(), &state.trials.plan);
+    let hand = state.hand();
     if let Some(recorded) = pane.recorded() {
         return Some(recorded.into());
     }
@@ -120,10 +124,10 @@ fn refusal(pane: &Pane<'_>) -> Option<String> {
     if state.trials.running.is_some() {
         return Some(look.say(main::SERIES_RUNS).into());
     }
-    if plan.check().is_err() {
+    if !wanted.is_sound() {
         return Some(look.say(tune::PLAN_WRONG).into());
     }
-    match hand.series_refusal(plan) {
+    match hand.series_refusal(&wanted.trials()) {
         Some(StartRefusal::Runs) => Some(look.say(main::SERIES_RUNS).into()),
         Some(StartRefusal::Locked(dof)) => {
             Some(look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]))

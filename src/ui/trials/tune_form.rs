@@ -18,7 +18,7 @@ use std::time::Duration;
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of the words before a field: all fields begin at one edge.
-const CAPTION: f32 = 112.0;
+pub(crate) const CAPTION: f32 = 112.0;
 /// Speed of a fast part unless the user says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 

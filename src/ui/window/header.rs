@@ -34,11 +34,14 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
         faults_ui(ui, pane, is_wide);
         recording_ui(ui, pane, is_wide);
         kit::left_ui(ui, |ui| {
-            hand_ui(ui, pane);
-            ui.spacing_mut().item_spacing.x = 0.0;
+            // First, so that they stay where they are whatever the hand says.
+            let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
             for place in Place::ALL {
                 place_ui(ui, pane, place, view.place() == place);
             }
+            ui.spacing_mut().item_spacing.x = gap;
+            ui.add_space(theme::PAD);
+            hand_ui(ui, pane);
             sharing_ui(ui, pane);
         });
     });
@@ -268,15 +271,15 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     if let (Some(endpoint), false) = (&pane.state.hand().connection.endpoint, simulated) {
         let text = endpoint.to_string();
         let width = kit::text_width(ui, &text, theme::number());
-        if width + PLACES < ui.available_width() {
+        if width + LINK < ui.available_width() {
             let label = Label::new(&text, palette.muted).number().ui(ui);
             label.on_hover_text(look.say(main::ENDPOINT_TIP));
         }
     }
 }
 
-/// Room that the places and the link need.
-const PLACES: f32 = 520.0;
+/// Room that the link and what shares the hand need.
+const LINK: f32 = 220.0;
 
 /// A place, marked while it is open.
 fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {

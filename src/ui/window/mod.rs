@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! +----------------------------------------------------------+
-//! | hand, link   Live Tune Recordings Hand Share    arm, STOP |
+//! | Live Tune Recordings Hand Share   hand, link    arm, STOP |
 //! | status: warning, what moves the hand, message, note      |
 //! | several hands: a strip for each, with its STOP            |
 //! +----------+----------------+------------------------------+

@@ -3,6 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
+use crate::app::hands::action::HandsAction;
 use crate::app::layout::RoomLayouts;
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::PlotWindow;
@@ -40,6 +41,8 @@ struct Listed {
     name: String,
     /// In both languages and lower case, to be searched.
     names: String,
+    /// What is found there, to be searched after the names.
+    about: String,
     keys: String,
 }
 
@@ -219,6 +222,9 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
             Action::PlotWindow(span),
         )
     }));
+    if pane.state.hands.has_room() {
+        acts.push((window::ADD_HAND, "", Action::Hands(HandsAction::Add)));
+    }
     if pane.recorded().is_none() {
         acts.push((window::RECORD, "", Action::Recording(record)));
         if hand.readings.faults.nothing_to_clear().is_none() {
@@ -226,6 +232,44 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
         }
     }
     acts
+}
+
+/// Words of what is found behind a command, beside its name.
+fn about(wish: Wish) -> String {
+    let more = match wish {
+        Wish::Opens(ViewRequest::View(view)) => view_words(view),
+        Wish::Opens(ViewRequest::Place(place)) => place_words(place),
+        Wish::Language => window::LANGUAGE_WORDS,
+        Wish::Theme => window::THEME_WORDS,
+        _ => return String::new(),
+    };
+    format!("{} {}", more.en, more.zh)
+}
+
+const fn view_words(view: View) -> Text {
+    match view {
+        View::Live => window::LIVE_WORDS,
+        View::Touch => window::TOUCH_WORDS,
+        View::Tune => window::TUNE_WORDS,
+        View::Compare => window::COMPARE_WORDS,
+        View::Faults => window::FAULTS_WORDS,
+        View::Poses => window::POSES_WORDS,
+        View::Device => window::DEVICE_WORDS,
+        View::Connection => window::CONNECTION_WORDS,
+        View::Inputs => window::INPUTS_WORDS,
+        View::Traffic => window::TRAFFIC_WORDS,
+        View::Recordings => window::RECORDINGS_WORDS,
+    }
+}
+
+const fn place_words(place: Place) -> Text {
+    match place {
+        Place::Live => window::LIVE_WORDS,
+        Place::Tune => window::TUNE_WORDS,
+        Place::Recordings => window::RECORDINGS_WORDS,
+        Place::Hand => window::HAND_WORDS,
+        Place::Share => window::INPUTS_WORDS,
+    }
 }
 
 /// All commands whose names have each word that was typed; those that begin with the first stand first.
@@ -238,6 +282,7 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
             command: Command::Wish(wish),
             name: look.say(text).to_owned(),
             names: format!("{} {}", text.en, text.zh).to_lowercase(),
+            about: about(wish).to_lowercase(),
             keys: wish.keys(),
         }
     };
@@ -272,26 +317,29 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
             command: Command::Entry(entry),
             name: look.entry_name(poses, entry).to_owned(),
             names: format!("{} {}", names.text, names.zh).to_lowercase(),
+            about: String::new(),
             keys: key.unwrap_or_default(),
         })
     });
     let typed = typed.to_lowercase();
     let has_all = |listed: &Listed| {
         let mut words = typed.split_whitespace();
-        words.all(|word| listed.names.contains(word))
+        words.all(|word| listed.names.contains(word) || listed.about.contains(word))
     };
     let unkeyed = unkeyed(ui, pane).into_iter();
     let unkeyed = unkeyed.map(|(text, which, action)| Listed {
         command: Command::Act(action),
         name: format!("{} {which}", look.say(text)).trim().to_owned(),
         names: format!("{} {} {which}", text.en, text.zh).to_lowercase(),
+        about: String::new(),
         keys: String::new(),
     });
     let all = wishes.chain(entries).chain(unkeyed);
     let mut found: Vec<Listed> = all.filter(has_all).collect();
     found.sort_by_key(|listed| {
         let mut words = listed.names.split_whitespace();
-        !words.any(|word| word.starts_with(typed.trim()))
+        let begins = words.any(|word| word.starts_with(typed.trim()));
+        (!begins, !listed.names.contains(typed.trim()))
     });
     found
 }

@@ -99,6 +99,8 @@ fn trials() -> Vec<TrialAction> {
         TrialAction::Plan(Box::default()),
         TrialAction::Start,
         TrialAction::ArmAndStart,
+        TrialAction::Wish(Box::default()),
+        TrialAction::Find,
         TrialAction::Note(id, "note".into()),
         TrialAction::Tags(id, "tag".into()),
         TrialAction::Forget(id),

@@ -52,6 +52,7 @@ impl Try {
             Row::Series => &[
                 Start::Window(Window::series),
                 Start::Window(Window::armed_series),
+                Start::Window(Window::search),
             ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],

@@ -27,6 +27,7 @@ use handscope::poses::library::{EntryId, PoseId};
 use handscope::record::LinkState;
 use handscope::sim::SharedHand;
 use handscope::transport::Endpoint;
+use handscope::trials::find::TuneWish;
 use handscope::trials::{Limits, TrialGrid, TrialPlan, TrialSetting};
 use std::sync::Arc;
 use std::time::Duration;
@@ -161,6 +162,18 @@ impl Window {
     /// The same by the one button that arms and starts.
     pub(super) fn armed_series(self) -> Self {
         self.trials(|window| window.act(Action::Trial(TrialAction::ArmAndStart)))
+    }
+
+    /// A search that closes and closes.
+    pub(super) fn search(mut self) -> Self {
+        let wish = TuneWish {
+            closes: 100,
+            ..TuneWish::new(&FINGERS, 2000)
+        };
+        self.act(Action::Trial(TrialAction::Wish(Box::new(wish))));
+        self.act(Action::Trial(TrialAction::Find));
+        self.until("it closes", |window| window.hand.angles()[3] < 980);
+        self
     }
 
     fn trials(mut self, start: impl FnOnce(&mut Self)) -> Self {

@@ -151,6 +151,7 @@ impl Person {
 /// Writes the plan: the index closes onto the cup at two speeds.
 fn plan(person: &mut Person) {
     person.open("Tune", View::Tune);
+    person.press("Try a grid");
     person.unfold("Approach, times and limits");
     for (field, text) in [
         ("Index from", "600"),

@@ -5,6 +5,7 @@ mod compare;
 mod device;
 mod exhibit;
 mod faults;
+mod find;
 mod hands;
 mod inputs;
 mod joints;

@@ -1016,7 +1016,7 @@ fn a_trial_is_replayed_from_two_seconds_before_its_closing_command() {
     };
     let mut bench = Bench::kept(config, HAND, LARGE);
     bench.wait(1000);
-    bench.show(View::Tune);
+    tune::grid(&mut bench);
     bench.run(40);
     tune::short(&mut bench);
     tune::arm(&mut bench);

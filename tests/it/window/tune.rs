@@ -40,6 +40,12 @@ pub(crate) fn enter(bench: &mut Bench, field: &str, text: &str) {
     bench.run(60);
 }
 
+/// Shows the plan of a grid.
+pub(crate) fn grid(bench: &mut Bench) {
+    bench.show(View::Tune);
+    bench.click("Try a grid");
+}
+
 /// A live hand with a hard block in it, on the view of the plan.
 pub(crate) fn on_block() -> Bench {
     let config = SimConfig {
@@ -48,7 +54,7 @@ pub(crate) fn on_block() -> Bench {
     };
     let mut bench = Bench::open(config, crate::setup::window::LARGE);
     bench.wait(1000);
-    bench.show(View::Tune);
+    grid(&mut bench);
     bench
 }
 
@@ -121,7 +127,7 @@ fn tried() -> Bench {
         scenario: Scenario::Rigid,
         ..SimConfig::default()
     });
-    bench.show(View::Tune);
+    grid(&mut bench);
     short(&mut bench);
     arm(&mut bench);
     bench.click("Start trials");
@@ -343,7 +349,7 @@ fn a_series_runs_to_its_end_and_leaves_the_hand_disarmed() {
     ] {
         assert_eq!(bench.typed(field), "-", "{field}: each trial sets its own");
     }
-    bench.show(View::Tune);
+    grid(&mut bench);
     finish(&mut bench, 60_000);
     assert!(
         !bench.state().hand().connection.is_armed(),
@@ -424,7 +430,7 @@ fn the_best_is_made_the_default_by_a_click_and_the_yes_of_its_card() {
         scenario: Scenario::Rigid,
         ..SimConfig::default()
     });
-    bench.show(View::Tune);
+    grid(&mut bench);
     short(&mut bench);
     enter(&mut bench, "Speeds to try", "50, 250");
     arm(&mut bench);
@@ -577,7 +583,7 @@ fn nothing_moves_by_opening_the_view_or_by_arming() {
 fn start_and_target_of_a_joint_have_room_in_the_smallest_window() {
     let mut bench = Bench::open(SimConfig::default(), egui::vec2(1024.0, 640.0));
     bench.wait(1000);
-    bench.show(View::Tune);
+    grid(&mut bench);
     for field in ["Index from", "Index to"] {
         assert!(
             bench.rect(Role::TextInput, field).width() >= 48.0,
