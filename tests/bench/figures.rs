@@ -21,6 +21,10 @@ mod record;
 mod report;
 mod scene;
 mod start;
+mod tune;
+#[path = "../it/trials/virtual_hand.rs"]
+#[expect(dead_code, reason = "the tests use more of it")]
+mod virtual_hand;
 mod waiting;
 
 use crate::report::{Failure, Report};
@@ -53,7 +57,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 15] = [
+const PARTS: [Part; 16] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -69,6 +73,7 @@ const PARTS: [Part; 15] = [
     ("waiting", waiting::run),
     ("record", record::run),
     ("several", hands::run),
+    ("tune", tune::run),
 ];
 
 fn main() -> ExitCode {
