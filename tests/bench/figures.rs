@@ -23,7 +23,13 @@ mod scene;
 mod start;
 mod tune;
 #[path = "../it/trials/virtual_hand.rs"]
-#[expect(dead_code, reason = "the tests use more of it")]
+#[expect(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    reason = "it is a file of the tests, which use more of it and may stop at what is wrong"
+)]
 mod virtual_hand;
 mod waiting;
 

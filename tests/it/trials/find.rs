@@ -92,7 +92,7 @@ fn what_keeps_it_from_a_claim_is_said() {
     assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
     let at_start = Object {
         contacts: PerDof::splat(Some(Contact {
-            angle: 1010.0,
+            angle: 1002.0,
             stiffness: 13.0,
             breaks_at_g: None,
         })),
