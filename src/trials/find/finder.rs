@@ -258,7 +258,7 @@ impl Finder {
                 self.rise(rises)
             }
             FindPhase::Confirming(confirmation) => {
-                confirmation.add(facts);
+                confirmation.add(facts, &self.joints, at);
                 self.confirmed()
             }
         }
