@@ -39,7 +39,7 @@ pub(crate) struct SimArgs {
     quirks: Vec<Quirk>,
     /// The body of the hands, from a file; --print-body writes one to start from
     #[arg(long, value_name = "FILE", value_parser = body)]
-    body: Option<BodyParams>,
+    body: Option<Box<BodyParams>>,
     /// Print the default body with its units, and end
     #[arg(long, exclusive = true, group = "wire")]
     print_body: bool,
@@ -116,7 +116,7 @@ fn hands(args: &SimArgs) -> Option<SimHands> {
             id: id.get(),
             scenario: args.scenario,
             personality: personality(&args.quirks),
-            body: args.body.unwrap_or_default(),
+            body: args.body.as_deref().copied().unwrap_or_default(),
         });
         SharedHand::new(hand, begun)
     });
@@ -147,8 +147,9 @@ fn few_ids(text: &str) -> Result<HandIds, String> {
 }
 
 /// Reads the file of a body.
-fn body(path: &str) -> Result<BodyParams, String> {
-    file::read(Path::new(path)).map_err(|error| error.to_string())
+fn body(path: &str) -> Result<Box<BodyParams>, String> {
+    let body = file::read(Path::new(path)).map_err(|error| error.to_string())?;
+    Ok(Box::new(body))
 }
 
 /// A switch and a position that it has.

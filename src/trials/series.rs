@@ -59,7 +59,7 @@ enum TrialSource {
 #[derive(Debug, Clone)]
 enum SeriesPhase {
     Waiting { until: Moment },
-    Running(Box<Runner>, PlannedTrial),
+    Running(Box<Runner>, Box<PlannedTrial>),
     Over,
 }
 
@@ -240,7 +240,7 @@ impl TrialSeries {
         };
         self.number += 1;
         let runner = Runner::new(&cell.plan, cell.setting, &self.contact, self.epoch);
-        self.phase = SeriesPhase::Running(Box::new(runner), cell);
+        self.phase = SeriesPhase::Running(Box::new(runner), Box::new(cell));
         self.tick(sample, link, now)
     }
 

@@ -22,6 +22,16 @@ mod record;
 mod report;
 mod scene;
 mod start;
+mod tune;
+#[path = "../it/trials/virtual_hand.rs"]
+#[expect(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    reason = "it is a file of the tests, which use more of it and may stop at what is wrong"
+)]
+mod virtual_hand;
 mod waiting;
 
 use crate::report::{Failure, Report};
@@ -71,6 +81,7 @@ const PARTS: [Part; 16] = [
     ("waiting", waiting::run),
     ("record", record::run),
     ("several", hands::run),
+    ("tune", tune::run),
 ];
 
 fn main() -> ExitCode {

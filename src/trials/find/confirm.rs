@@ -3,6 +3,7 @@
 use crate::hand::Dof;
 use crate::trials::find::close::CloseFacts;
 use crate::trials::find::finding::JointClaim;
+use crate::trials::find::growth::Contact;
 use crate::trials::find::joint::JointModel;
 use crate::trials::find::tolerance::tolerance_factor;
 use crate::trials::find::wish::TuneWish;
@@ -11,6 +12,8 @@ use crate::trials::find::wish::TuneWish;
 #[derive(Debug, Clone, PartialEq)]
 struct JointCloses {
     dof: Dof,
+    /// Standard deviation that the peaks are taken to have at least, g: by the search as a whole.
+    least_sigma_g: f64,
     peaks_g: Vec<f64>,
     holds_g: Vec<f64>,
 }
@@ -26,6 +29,7 @@ impl Confirmation {
     pub(crate) fn new(dofs: impl Iterator<Item = Dof>) -> Self {
         let joints = dofs.map(|dof| JointCloses {
             dof,
+            least_sigma_g: 0.0,
             peaks_g: Vec::new(),
             holds_g: Vec::new(),
         });
@@ -35,9 +39,10 @@ impl Confirmation {
         }
     }
 
-    /// Takes a close of which all was measured.
-    pub(crate) fn add(&mut self, facts: &[CloseFacts]) {
-        for (joint, facts) in self.joints.iter_mut().zip(facts) {
+    /// Takes a close of which all was measured, and what scatter the whole search expects at this setting.
+    pub(crate) fn add(&mut self, facts: &[CloseFacts], models: &[JointModel], at: Contact) {
+        for ((joint, facts), model) in self.joints.iter_mut().zip(facts).zip(models) {
+            joint.least_sigma_g = model.growth.scatter(at);
             joint.peaks_g.extend(facts.peak_g);
             joint.holds_g.extend(facts.steady_g);
         }
@@ -51,7 +56,7 @@ impl Confirmation {
 
     /// The highest bound of all joints, g.
     pub(crate) fn bound(&self, wish: &TuneWish) -> f64 {
-        let bounds = self.joints.iter().map(|joint| bound(&joint.peaks_g, wish));
+        let bounds = self.joints.iter().map(|joint| joint.bound(wish));
         bounds.fold(0.0, f64::max)
     }
 
@@ -73,7 +78,7 @@ impl Confirmation {
         let claim = |(joint, model): (&JointCloses, &JointModel)| JointClaim {
             dof: joint.dof,
             contact_angle: model.contact().unwrap_or_default(),
-            peak_bound_g: bound(&joint.peaks_g, wish),
+            peak_bound_g: joint.bound(wish),
             peaks_g: joint.peaks_g.clone(),
             hold_g: joint.least(),
             stiffness_g: model.stiffness(),
@@ -86,22 +91,24 @@ impl JointCloses {
     fn least(&self) -> f64 {
         self.holds_g.iter().copied().fold(f64::INFINITY, f64::min)
     }
-}
 
-/// What peaks to come stay below, by these: g.
-fn bound(peaks: &[f64], wish: &TuneWish) -> f64 {
-    let highest = peaks.iter().copied().fold(0.0, f64::max);
-    if wish.distribution_free {
-        return highest;
+    /// What peaks to come stay below, by these: g.
+    fn bound(&self, wish: &TuneWish) -> f64 {
+        let peaks = &self.peaks_g;
+        let highest = peaks.iter().copied().fold(0.0, f64::max);
+        if wish.distribution_free {
+            return highest;
+        }
+        let factor = tolerance_factor(peaks.len(), wish.assurance());
+        let Some((mean, factor)) = mean(peaks).zip(factor) else {
+            return f64::INFINITY;
+        };
+        let n: f64 = peaks.iter().map(|_| 1.0).sum();
+        let spread: f64 = peaks.iter().map(|peak| (peak - mean).powi(2)).sum();
+        // Ten closes may happen to be alike; no bound is below what was seen.
+        let sigma = (spread / (n - 1.0)).sqrt().max(self.least_sigma_g);
+        (mean + factor * sigma).max(highest)
     }
-    let factor = tolerance_factor(peaks.len(), wish.assurance());
-    let Some((mean, factor)) = mean(peaks).zip(factor) else {
-        return f64::INFINITY;
-    };
-    let n: f64 = peaks.iter().map(|_| 1.0).sum();
-    let spread: f64 = peaks.iter().map(|peak| (peak - mean).powi(2)).sum();
-    // No bound is below what was seen.
-    (mean + factor * (spread / (n - 1.0)).sqrt()).max(highest)
 }
 
 fn mean(values: &[f64]) -> Option<f64> {
@@ -115,11 +122,18 @@ mod tests {
 
     #[test]
     fn the_bound_is_mean_and_factor_or_the_largest() {
-        let peaks = [480.0, 470.0, 475.0, 478.0, 472.0];
+        let mut closes = JointCloses {
+            dof: Dof::Index,
+            least_sigma_g: 0.0,
+            peaks_g: vec![480.0, 470.0, 475.0, 478.0, 472.0],
+            holds_g: Vec::new(),
+        };
         let mut wish = TuneWish::new(&[Dof::Index], 500);
         let s = (68.0_f64 / 4.0).sqrt();
-        assert!((bound(&peaks, &wish) - (475.0 + 4.20 * s)).abs() < 0.1);
+        assert!((closes.bound(&wish) - (475.0 + 4.20 * s)).abs() < 0.1);
+        closes.least_sigma_g = 10.0;
+        assert!((closes.bound(&wish) - (475.0 + 42.0)).abs() < 0.1);
         wish.distribution_free = true;
-        assert_eq!(bound(&peaks, &wish), 480.0);
+        assert_eq!(closes.bound(&wish), 480.0);
     }
 }

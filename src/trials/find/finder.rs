@@ -231,6 +231,8 @@ impl Finder {
     }
 
     fn take(&mut self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
+        // In noise no contact can be told, so it goes first.
+        self.check_noise(facts)?;
         let slips = self.look(facts)?;
         let at = self.at(self.speed());
         let wish = &self.wish;
@@ -243,7 +245,6 @@ impl Finder {
                 return Err(gives);
             }
         }
-        self.check_noise()?;
         let over = self.tried.last().is_some_and(|own| own.over_limit);
         if over || slips {
             self.barred = self.barred.min(BARRED_FROM * self.speed());
@@ -257,7 +258,7 @@ impl Finder {
                 self.rise(rises)
             }
             FindPhase::Confirming(confirmation) => {
-                confirmation.add(facts);
+                confirmation.add(facts, &self.joints, at);
                 self.confirmed()
             }
         }
@@ -315,10 +316,10 @@ impl Finder {
         self.untold.extend(new);
     }
 
-    fn check_noise(&self) -> Result<(), NoClaim> {
+    fn check_noise(&self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
         let limit = self.limit();
-        for joint in &self.joints {
-            let noise_g = joint.noise_g();
+        for joint in facts.iter().filter(|joint| !joint.is_dead) {
+            let noise_g = joint.noise_g;
             let least_g = (LIMIT_SIGMAS * noise_g).max(f64::from(LIMIT_MIN_G));
             if limit < least_g {
                 return Err(NoClaim::Noise {

@@ -106,7 +106,7 @@ impl PeakGrowth {
             .filter(|fit| is_strange || fit.misfit <= best.misfit + POSSIBLE);
         let most = possible.map(|fit| {
             if is_strange {
-                STRANGE_MORE * self.from_fastest(at, fit.shape)
+                STRANGE_MORE * self.grown_from_fastest(at, fit.shape)
             } else {
                 (fit.scale + 2.0 * fit.unsure) * fit.shape.over_g(at)
             }
@@ -180,7 +180,7 @@ impl PeakGrowth {
     }
 
     /// The fastest trial's overshoot, continued along a shape.
-    fn from_fastest(&self, at: Contact, shape: Shape) -> f64 {
+    fn grown_from_fastest(&self, at: Contact, shape: Shape) -> f64 {
         let fastest = self.seen.iter();
         let fastest = fastest.max_by(|(a, _), (b, _)| a.speed.total_cmp(&b.speed));
         fastest.map_or(0.0, |(from, over)| {

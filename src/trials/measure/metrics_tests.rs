@@ -272,3 +272,25 @@ fn a_dwell_too_short_for_it_has_no_steady_force() {
     assert_eq!(metrics.settle_time_s, None);
     near("peak", metrics.peak_force_g, 900.0, 100.0);
 }
+
+#[test]
+fn a_halt_between_two_stages_is_no_stop() {
+    let mut curves = PLAIN.curves(|_| true);
+    // It halts from 0.3 to 0.4 s, and is told to go on just before it says so.
+    let status = |point: &crate::trials::measure::curve::CurvePoint| {
+        let halts = (0.3..0.4).contains(&point.t);
+        let code = f64::from(Status::PositionReached.raw());
+        (point.t, if halts { code } else { point.v })
+    };
+    curves.status = curves.status.points().iter().map(status).collect();
+    let stop = |slow_s| {
+        let span = DwellSpan {
+            slow_s,
+            end_s: END_S,
+            threshold_g: 500.0,
+        };
+        measure_joint(Dof::Index, &curves, span).time_to_stop_s
+    };
+    near("without its stages", stop(None), 0.3, 0.01);
+    near("with its stages", stop(Some(0.29)), STOP_S, 0.01);
+}

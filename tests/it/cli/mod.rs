@@ -34,6 +34,7 @@ mod several;
 mod trial;
 #[cfg(unix)]
 mod tune;
+mod tune_close;
 mod usage;
 #[cfg(unix)]
 mod web_page;

@@ -1,35 +1,278 @@
-//! The search for the fastest close under a limit, on bodies that it does not know.
+//! The search for the fastest close under a limit, on bodies that it does not know, and what keeps it from one.
 
-use crate::trials::virtual_hand::{STIFFNESSES, case};
-use handscope::hand::Dof;
-use handscope::trials::find::TuneWish;
+use crate::setup::hand;
+use crate::setup::link;
+use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
+use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
+use handscope::link::{LinkConfig, Owner};
+use handscope::record::{LinkState, Record};
+use handscope::sim::body_file::random::random;
+use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::tasks::series::{RATES, SeriesStep, Stop, arm_limits};
+use handscope::tasks::tune::{TuneReport, TuneStart, TuneStep, tune};
+use handscope::trials::find::{FindStage, Finder, NoClaim, TuneWish};
+use handscope::trials::{Abort, TrialSeries};
+use std::time::Duration;
+use tokio::sync::oneshot;
 
-/// All of the bench, by hand: `cargo test --test it -- --ignored find::study --nocapture`.
+const LIMIT: i16 = 500;
+
+fn wish() -> TuneWish {
+    TuneWish::new(&[Dof::Index], LIMIT)
+}
+
 #[test]
-#[ignore = "minutes; the bench has it"]
-fn study() {
-    let number = |name: &str, or: u64| std::env::var(name).map_or(or, |text| text.parse().unwrap());
-    let (from, bodies, checks) = (
-        number("FROM", 0),
-        number("BODIES", 4),
-        number("CHECKS", 0) as usize,
+fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
+    let (mut above, mut checked) = (0, 0);
+    for (seed, stiffness) in [(0, 13.0), (5, 40.0), (11, 3.0), (14, 25.0)] {
+        let case = case(seed, stiffness, (&wish(), 20));
+        assert!(case.claims, "{case:?}");
+        assert!(case.close_s < 1.15 * case.best_s, "{case:?}");
+        assert!(case.highest_g < 1.1 * f64::from(LIMIT), "{case:?}");
+        assert!(case.trials <= 45 && case.took_s < 200.0, "{case:?}");
+        above += case.above;
+        checked += case.checked;
+    }
+    assert_eq!(checked, 80);
+    assert!(above <= 4, "{above} of {checked}");
+}
+
+#[test]
+fn a_fragile_object_is_never_broken() {
+    for seed in 0..3 {
+        let mut hand = VirtualHand::new(random(seed), seed, &object(20.0, Some(700.0)));
+        let run = hand.tune(&wish());
+        let highest = highest_g(&run);
+        assert!(run.finding.unwrap().result.is_ok());
+        assert!(highest < 650.0, "{highest}");
+    }
+}
+
+fn highest_g(run: &Run) -> f64 {
+    let joints = run.trials.iter().flat_map(|trial| &trial.summary.joints);
+    let peaks = joints.filter_map(|joint| joint.peak_force_g);
+    peaks.fold(0.0, f64::max)
+}
+
+/// Searches while something happens after so many closes.
+fn meanwhile(
+    body: BodyParams,
+    before: &Object,
+    wish: &TuneWish,
+    mut happens: impl FnMut(&mut SimHand, usize),
+) -> Run {
+    let mut hand = VirtualHand::new(body, 3, before);
+    let series = hand.search(wish);
+    let mut last = usize::MAX;
+    hand.run(series, |hand, series: &mut TrialSeries| {
+        let number = series.view().number;
+        if number != last {
+            last = number;
+            happens(hand, number);
+        }
+    })
+}
+
+fn none(run: Run) -> NoClaim {
+    assert_eq!(run.aborted, None);
+    assert!(!run.stopped);
+    run.finding.unwrap().result.unwrap_err()
+}
+
+#[test]
+fn what_keeps_it_from_a_claim_is_said() {
+    let usual = BodyParams::default();
+    let block = object(13.0, None);
+    let dof = Dof::Index;
+    let no_object = meanwhile(usual, &Object::none(), &wish(), |_, _| ());
+    assert_eq!(none(no_object), NoClaim::NoContact { dof });
+    let mut short = wish();
+    short.close[dof] = Some(Angle::nearest(700));
+    let out_of_reach = meanwhile(usual, &block, &short, |_, _| ());
+    assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
+    let at_start = Object {
+        contacts: PerDof::splat(Some(Contact {
+            angle: 1002.0,
+            stiffness: 13.0,
+            breaks_at_g: None,
+        })),
+    };
+    let touching = none(meanwhile(usual, &at_start, &wish(), |_, _| ()));
+    assert_eq!(touching, NoClaim::Touching { dof });
+    let mut noisy = usual;
+    noisy.joints[dof].force_noise_g = 60.0;
+    let low = TuneWish::new(&[dof], 200);
+    let noise = none(meanwhile(noisy, &block, &low, |_, _| ()));
+    assert!(matches!(noise, NoClaim::Noise { .. }), "{noise}");
+    let dead = none(meanwhile(usual, &block, &wish(), |hand, number| {
+        hand.set_dead(dof, number >= 1);
+    }));
+    assert_eq!(dead, NoClaim::Dead { dof });
+    let taken = none(meanwhile(usual, &block, &wish(), |hand, number| {
+        if number == 6 {
+            hand.set_object(&Object::none());
+        }
+    }));
+    assert_eq!(taken, NoClaim::Lost { dof });
+    let gives = none(meanwhile(usual, &block, &wish(), |hand, number| {
+        if number == 6 {
+            hand.set_object(&object(4.0, None));
+        }
+    }));
+    assert!(matches!(gives, NoClaim::Gives { .. }), "{gives}");
+    for own in [dead, noise, gives, taken] {
+        let words = own.to_string();
+        assert!(words.contains("index") && words.contains(':'), "{words}");
+    }
+}
+
+#[test]
+fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
+    let usual = BodyParams::default();
+    let block = object(13.0, None);
+    let fault = meanwhile(usual, &block, &wish(), |hand, number| {
+        if number == 5 {
+            hand.inject_fault(Dof::Middle, Fault::OverCurrent);
+        }
+    });
+    assert!(matches!(
+        fault.aborted,
+        Some(Abort::Fault {
+            dof: Dof::Middle,
+            ..
+        })
+    ));
+    assert!(fault.stopped && fault.finding.is_none());
+    assert_eq!(fault.trials.len(), 5);
+    let locked = meanwhile(usual, &block, &wish(), |hand, _| {
+        hand.set_jam(Dof::Index, Some(800.0));
+    });
+    assert!(matches!(
+        locked.aborted,
+        Some(Abort::Fault {
+            dof: Dof::Index,
+            ..
+        })
+    ));
+    assert!(locked.stopped);
+}
+
+#[test]
+fn two_joints_share_a_setting_and_each_has_its_bound() {
+    let both = TuneWish::new(&[Dof::Index, Dof::ThumbBend], 600);
+    let mut hand = VirtualHand::new(random(2), 2, &object(13.0, None));
+    let claim = hand.tune(&both).finding.unwrap().result.unwrap();
+    assert_eq!(claim.joints.len(), 2);
+    assert!(claim.joints.iter().all(|joint| joint.peak_bound_g <= 600.0));
+    let words = claim.to_string();
+    assert!(
+        words.starts_with("Index and Thumb bend on this object: close in"),
+        "{words}"
     );
-    let wish = TuneWish::new(&[Dof::Index], number("LIMIT", 500) as i16);
-    for seed in from..from + bodies {
-        for stiffness in STIFFNESSES {
-            let case = case(seed, stiffness, (&wish, checks));
-            println!(
-                "{seed} {stiffness:4} {:5.2} of {:5.2} ({:4.2}) highest {:4.0} trials {:3} {:4.0} s above {}/{}: {}",
-                case.close_s,
-                case.best_s,
-                case.close_s / case.best_s,
-                case.highest_g,
-                case.trials,
-                case.took_s,
-                case.above,
-                case.checked,
-                case.words
-            );
+}
+
+#[test]
+fn without_a_distribution_the_bound_is_the_largest_of_22_closes() {
+    let free = TuneWish {
+        closes: 22,
+        distribution_free: true,
+        ..wish()
+    };
+    let mut hand = VirtualHand::new(random(1), 1, &object(25.0, None));
+    let finding = hand.tune(&free).finding.unwrap();
+    let claim = finding.result.unwrap();
+    assert_eq!((claim.closes, claim.assurance.coverage), (22, 0.9));
+    let highest = claim.joints[0].peaks_g.iter().copied().fold(0.0, f64::max);
+    assert_eq!(claim.peak_bound_g(), highest);
+    assert_eq!(finding.tried.iter().filter(|own| own.confirms).count(), 22);
+}
+
+/// A search over a link; it ends when the person sends.
+async fn over_a_link(ends_after: Option<usize>) -> (TuneReport, Vec<TuneStep>, LinkState) {
+    let hand = hand::shared(SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    });
+    let config = LinkConfig {
+        rates: RATES,
+        ..link::config("rs485:test", link::to_hand(hand))
+    };
+    let clock = config.clock;
+    let (link, mut records) = handscope::link::open(config, &tokio::runtime::Handle::current());
+    let mut seen = HandSample::default();
+    while seen.faults.is_none() || seen.angle.is_none() || seen.temperature.is_none() {
+        if let Some(Record::Reading { sample, .. }) = records.next().await {
+            seen = *sample;
         }
     }
+    let mut wish = wish();
+    wish.start[Dof::Index] = Some(Angle::nearest(620));
+    let finder = Finder::new(wish).unwrap();
+    let lease = link.grant(Owner::Task);
+    link.arm(lease, arm_limits(&finder.plan())).unwrap();
+    while link.status().armed.is_none() {
+        let _record = records.next().await;
+    }
+    let start = TuneStart {
+        finder,
+        epoch: link.status().armed.unwrap(),
+        lease,
+        seen,
+        clock,
+    };
+    let (person, ended) = oneshot::channel();
+    let mut person = Some(person);
+    let ended = async move {
+        match ended.await {
+            Ok(()) => Abort::Person,
+            Err(_gone) => std::future::pending().await,
+        }
+    };
+    let mut steps = Vec::new();
+    let report = tune(&link, start, ended, |step| {
+        let trials = |step: &TuneStep| matches!(step, TuneStep::Series(SeriesStep::Trial(_)));
+        steps.push(step);
+        let count = steps.iter().filter(|own| trials(own)).count();
+        if ends_after.is_some_and(|after| count >= after)
+            && let Some(person) = person.take()
+        {
+            person.send(()).unwrap();
+        }
+        true
+    })
+    .await;
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    (report, steps, link.status().state)
+}
+
+#[tokio::test(start_paused = true)]
+async fn over_a_link_it_claims_tells_its_progress_and_disarms() {
+    let (report, steps, state) = over_a_link(None).await;
+    assert_eq!(report.series.aborted, None);
+    let claim = report.finding.unwrap().result.unwrap();
+    assert!(claim.peak_bound_g() <= f64::from(LIMIT));
+    assert_eq!(state, LinkState::Monitoring);
+    let stages: Vec<FindStage> = steps
+        .iter()
+        .filter_map(|step| match step {
+            TuneStep::Progress(progress) => Some(progress.stage),
+            TuneStep::Series(_) => None,
+        })
+        .collect();
+    assert_eq!(stages.first(), Some(&FindStage::Probing));
+    assert!(
+        stages.contains(&FindStage::Confirming { done: 9, of: 10 }),
+        "{stages:?}"
+    );
+    assert_eq!(stages.last(), Some(&FindStage::Over));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_person_ends_it_at_once_and_the_hand_is_held() {
+    let (report, _, state) = over_a_link(Some(3)).await;
+    assert_eq!(report.series.aborted, Some(Abort::Person));
+    assert!(matches!(report.series.stop, Some(Stop::Confirmed { .. })));
+    assert!(report.finding.is_none());
+    assert_eq!(report.tried.len(), 3);
+    assert_ne!(state, LinkState::Armed);
 }

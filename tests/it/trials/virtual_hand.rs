@@ -28,6 +28,7 @@ const JOINT: Dof = Dof::Index;
 /// The object's place, units of ANGLE_ACT.
 const PLACE: f64 = 550.0;
 /// g for each position count: from a soft ball to the published block.
+#[allow(dead_code, reason = "the bench uses it")]
 pub(crate) const STIFFNESSES: [f64; 5] = [3.0, 7.0, 13.0, 25.0, RIGID_G_PER_COUNT];
 
 /// A simulated hand and what was read of it.
@@ -99,7 +100,7 @@ impl VirtualHand {
             Group::ForceSet,
         ];
         let is_seldom = self.round % SELDOM == 1;
-        let tactile = (self.round % 2 == 0).then_some(Group::Tactile(Finger::Index));
+        let tactile = (self.round.is_multiple_of(2)).then_some(Group::Tactile(Finger::Index));
         let groups = often
             .into_iter()
             .chain(seldom.into_iter().filter(|_| is_seldom))
@@ -211,9 +212,7 @@ pub(crate) fn object(stiffness: f64, breaks_at_g: Option<f64>) -> Object {
 /// What one search came to, against the truth.
 #[derive(Debug, Clone)]
 pub(crate) struct Case {
-    pub(crate) seed: u64,
-    pub(crate) stiffness: f64,
-    /// The claim's words, or why there is none.
+    /// Seed of the body, stiffness, and the claim's words, or why there is none.
     pub(crate) words: String,
     pub(crate) claims: bool,
     /// Closes to come that were above the bound, of so many.
@@ -242,9 +241,7 @@ pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)
     let peaks = run.trials.iter().filter_map(peak);
     let highest_g = peaks.fold(0.0, f64::max);
     let mut case = Case {
-        seed,
-        stiffness,
-        words: format!("{:?}", run.aborted),
+        words: format!("{seed} {stiffness}: {:?}", run.aborted),
         claims: false,
         above: 0,
         checked: 0,
@@ -269,9 +266,12 @@ pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)
         })
         .collect();
     match finding.result {
-        Err(none) => case.words = none.to_string(),
+        Err(none) => case.words = format!("{seed} {stiffness}: {none}"),
         Ok(claim) => {
-            case.words = format!("{claim}; {} {:?}", claim.setting, claim.approach);
+            case.words = format!(
+                "{seed} {stiffness}: {claim}; {} {:?}",
+                claim.setting, claim.approach
+            );
             case.claims = true;
             case.close_s = claim.close_s;
             if checks > 0 {

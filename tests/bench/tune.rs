@@ -1,0 +1,89 @@
+//! The search for the fastest close under a limit, on bodies that it does not know, in virtual time: whether its claims hold in
+//! closes to come, and how its closes compare with the best that could be claimed.
+
+use crate::report::{Aim, Failure, Report};
+use crate::virtual_hand::{Case, STIFFNESSES, VirtualHand, case, object};
+use handscope::hand::Dof;
+use handscope::sim::body_file::random::random;
+use handscope::trials::find::TuneWish;
+
+/// Bodies, each with every stiffness.
+const BODIES: u64 = 20;
+/// Closes that each claim is checked by, and how many of them may be above a bound for 95 of 100.
+const CHECKS: usize = 60;
+const ABOVE: usize = 3;
+const LIMIT_G: i16 = 500;
+/// What breaks, beyond this.
+const BREAKS_AT_G: f64 = 700.0;
+
+pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
+    let wish = TuneWish::new(&[Dof::Index], LIMIT_G);
+    let bodies = (0..BODIES).flat_map(|seed| STIFFNESSES.map(|own| (seed, own)));
+    let cases: Vec<Case> = bodies
+        .map(|(seed, stiffness)| case(seed, stiffness, (&wish, CHECKS)))
+        .collect();
+    let share = |is: &dyn Fn(&Case) -> bool| {
+        let count: f64 = cases.iter().filter(|own| is(own)).map(|_| 1.0).sum();
+        let all: f64 = cases.iter().map(|_| 1.0).sum();
+        100.0 * count / all
+    };
+    let limit = f64::from(LIMIT_G);
+    report.row(
+        "searches that end with a claim",
+        share(&|own| own.claims),
+        "%",
+        Aim::None,
+    )?;
+    let is_false = |own: &Case| own.above > ABOVE;
+    report.row(
+        "  claims that 60 more closes refute",
+        share(&is_false),
+        "%",
+        Aim::AtMost(5.0),
+    )?;
+    let is_slow = |own: &Case| own.claims && own.close_s > 1.1 * own.best_s;
+    report.row(
+        "  closes over 10 % slower than the best",
+        share(&is_slow),
+        "%",
+        Aim::AtMost(10.0),
+    )?;
+    let is_rough = |own: &Case| own.highest_g > 1.1 * limit;
+    report.row(
+        "  with a trial over 1.1 of the limit",
+        share(&is_rough),
+        "%",
+        Aim::AtMost(5.0),
+    )?;
+    let is_over = |own: &Case| own.highest_g > limit;
+    report.row(
+        "  with a trial over the limit",
+        share(&is_over),
+        "%",
+        Aim::None,
+    )?;
+    let mut took: Vec<f64> = cases.iter().map(|own| own.took_s).collect();
+    took.sort_by(f64::total_cmp);
+    let median = took.get(took.len() / 2).copied().unwrap_or_default();
+    report.row(
+        "  how long one takes, median",
+        median,
+        "s",
+        Aim::AtMost(180.0),
+    )?;
+    let broken = (0..BODIES).filter(|seed| breaks(*seed, &wish)).map(|_| 1.0);
+    report.row(
+        "  fragile objects broken",
+        broken.sum(),
+        "",
+        Aim::AtMost(0.0),
+    )
+}
+
+fn breaks(seed: u64, wish: &TuneWish) -> bool {
+    let mut hand = VirtualHand::new(random(seed), seed, &object(20.0, Some(BREAKS_AT_G)));
+    let run = hand.tune(wish);
+    let joints = run.trials.iter().flat_map(|trial| &trial.summary.joints);
+    let mut peaks = joints.filter_map(|joint| joint.peak_force_g);
+    peaks.any(|peak| peak >= BREAKS_AT_G)
+}
