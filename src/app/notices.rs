@@ -157,6 +157,8 @@ pub enum NoticeKind {
     },
     /// Something happened to the file that a hand is recorded into.
     Recording(RecorderNotice),
+    /// The disk does not take what is recorded, in the system's words. It is tried again.
+    RecordingStalled { why: String },
     /// A recording was to be shown while something goes on at the hand that the user must see.
     NotReplayedNow,
     /// Something was asked of a hand while a recording is shown. Nothing was sent.

@@ -64,7 +64,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 16] = [
+const PARTS: [Part; 17] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),

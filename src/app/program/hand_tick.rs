@@ -179,9 +179,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
     let wanted = settings.records(connection.is_simulated());
     match (recording, connection.link()) {
         (Some(recording), Some(link)) if wanted => {
-            for notice in recording.tick(ctx.now) {
-                ctx.notices.push(ctx.now, NoticeKind::Recording(notice));
-            }
+            recording.tick(&mut ctx.notices, ctx.now);
             recording.settings(settings, ctx.now);
             // Half of a reading is no news.
             if !params.is_busy() {

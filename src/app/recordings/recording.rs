@@ -3,6 +3,7 @@
 use crate::app::env::Env;
 use crate::app::files::settings_file;
 use crate::app::layout::Layout;
+use crate::app::notices::{HandNotices, NoticeKind};
 use crate::app::settings::{Settings, Zoom};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -11,7 +12,7 @@ use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{
-    Opening, PART_LENGTH, Recorder, RecorderNotice, RecorderStatus, RecordingPlan, SystemDisk,
+    Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
 use crate::store::BackgroundJob;
@@ -91,14 +92,26 @@ impl HandRecording {
         })
     }
 
-    /// Brings the status up to date, and takes in what the hand was asked for; gives what happened to the file since.
-    pub(crate) fn tick(&mut self, now: Moment) -> Vec<RecorderNotice> {
+    /// Brings the status up to date, and takes in what the hand was asked for, and tells what happened to the file since.
+    pub(crate) fn tick(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
         let told = self.status.notices.len();
-        self.status = self.recorder.status();
+        let before = std::mem::replace(&mut self.status, self.recorder.status()).trouble;
+        match (&before, &self.status.trouble) {
+            (None, Some(why)) => {
+                let why = why.clone();
+                notices.push(now, NoticeKind::RecordingStalled { why });
+            }
+            (Some(_), None) => {
+                notices.withdraw(|what| matches!(what, NoticeKind::RecordingStalled { .. }));
+            }
+            _ => {}
+        }
         if let Some(kept) = BackgroundJob::take_from(&mut self.asking) {
             self.params(&kept, now);
         }
-        self.status.notices.iter().skip(told).cloned().collect()
+        for notice in self.status.notices.iter().skip(told) {
+            notices.push(now, NoticeKind::Recording(notice.clone()));
+        }
     }
 
     /// Ends the file and waits for that, at most a few seconds.

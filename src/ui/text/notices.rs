@@ -297,6 +297,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             &[&path.display(), &not_opened(look, why)],
         ),
         NoticeKind::Recording(notice) => recording(look, notice),
+        NoticeKind::RecordingStalled { why } => look.fill(recordings::STALLED, &[why]),
         NoticeKind::NotReplayedNow => look.say(recordings::NOT_NOW).to_owned(),
         NoticeKind::Recorded => look.say(recordings::IS_RECORDING).to_owned(),
         NoticeKind::RecordingsPlanned {

@@ -75,6 +75,7 @@ texts! {
 
     RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
     NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";
+    STALLED: "Recording stalled, nothing of now is on disk: {}. It is tried again.", "录制受阻，当前数据没有写入磁盘：{}。程序会重试。";
     TROUBLE: "Recording stalled", "录制受阻", "The disk does not take what is recorded. It is tried again; what finds no room in memory is counted and said in the file.", "磁盘无法写入录制数据。程序会重试；内存中放不下的数据会被计数并在文件中注明。";
     FILE: "File: {}", "文件：{}";
     RATE: "{} MB so far, {} MB an hour", "已录 {} MB，每小时 {} MB";

@@ -11,6 +11,7 @@ use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceSte
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::poses::starter::starter;
 use handscope::poses::{Play, Preset};
+use handscope::sim::Object;
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
@@ -97,6 +98,55 @@ async fn what_is_played_runs_at_its_own_speed_and_force_and_gives_the_own_back()
         assert_eq!(holds(&bench, SPEED_SET), [200; 6], "{what}");
         assert_eq!(holds(&bench, FORCE_SET), [500; 6], "{what}");
     }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_joint_that_presses_after_a_pose_keeps_its_threshold_until_it_is_told_something_else() {
+    let mut bench = Bench::live().await;
+    bench
+        .hand
+        .with(|hand, _| hand.set_object(&Object::rigid(600.0)));
+    let (pose, _) = library(&mut bench);
+    for dof in Dof::ALL {
+        let edit = PoseEdit::Angle(dof, Angle::nearest(300));
+        bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+    }
+    let edit = PoseEdit::Force(Force::nearest(300));
+    bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+    bench.arm().await;
+    bench.act(Action::Recall(pose));
+    bench.until("pose", is_over).await;
+    bench.run(3000).await;
+    assert_eq!(holds(&bench, FORCE_SET)[3], 300, "it presses");
+    let held = bench.hand().held_otherwise(Dof::Index);
+    assert_eq!(held.force.map(Force::get), Some(300), "and that is shown");
+    bench.act(Action::Target(Dof::Index, Angle::MAX));
+    bench.run(100).await;
+    let forces = holds(&bench, FORCE_SET);
+    assert_eq!((forces[3], forces[2]), (500, 300), "told, and not told");
+}
+
+#[tokio::test(start_paused = true)]
+async fn who_takes_a_joint_from_a_demo_leaves_the_others_what_they_were_sent_with() {
+    let mut bench = Bench::live().await;
+    let (pose, _) = library(&mut bench);
+    for edit in [
+        PoseEdit::Speed(Speed::nearest(25)),
+        PoseEdit::Force(Force::nearest(300)),
+    ] {
+        bench.act(Action::Library(LibraryEdit::Pose(pose, edit)));
+    }
+    bench.arm().await;
+    bench.act(Action::Recall(pose));
+    bench.run(300).await;
+    bench.act(Action::Target(Dof::Index, Angle::nearest(900)));
+    bench.run(300).await;
+    let (speeds, forces) = (holds(&bench, SPEED_SET), holds(&bench, FORCE_SET));
+    assert_eq!((speeds[3], forces[3]), (200, 500), "the one that was taken");
+    assert_eq!((speeds[2], forces[2]), (25, 300), "one that goes on");
+    bench.run(12_000).await;
+    let (speeds, forces) = (holds(&bench, SPEED_SET), holds(&bench, FORCE_SET));
+    assert_eq!((speeds[2], forces[2]), (200, 500), "once it is there");
 }
 
 #[tokio::test(start_paused = true)]

@@ -120,6 +120,18 @@ fn half_a_number_and_one_out_of_range_stage_nothing_and_staging_writes_nothing()
     assert_eq!(staged(&bench, INDEX), Some(Value::Number(25)));
     stage(&mut bench, "Index speed staged", "1001");
     assert_eq!(staged(&bench, INDEX), Some(Value::Number(25)));
+    // A field that is left is as good as Enter, as it sends nothing.
+    for typed in ["30", "31"] {
+        bench.type_into("Index speed staged", typed);
+        bench.key(Key::Tab);
+        bench.run(60);
+        let number = typed.parse().unwrap();
+        assert_eq!(staged(&bench, INDEX), Some(Value::Number(number)));
+    }
+    bench.type_into("Index speed staged", "40");
+    bench.key(Key::Escape);
+    bench.run(60);
+    assert_eq!(staged(&bench, INDEX), Some(Value::Number(31)), "given back");
     bench.click("Drop Index speed");
     bench.run(60);
     assert_eq!(staged(&bench, INDEX), None);

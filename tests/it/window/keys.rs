@@ -2,6 +2,7 @@
 
 use crate::setup::window::{Bench, Role};
 use egui::{Key, Modifiers};
+use handscope::app::action::Action;
 use handscope::app::settings::{AngleUnit, Language, PlotWindow, Settings, Theme};
 use handscope::hand::Dof;
 use handscope::ui::View;
@@ -370,6 +371,48 @@ fn the_palette_finds_a_view_an_act_and_a_pose_in_either_language() {
     }
     assert!(bench.state().settings.hold_to_run);
     assert_eq!(bench.state().settings.plot_window, PlotWindow::M5);
+}
+
+#[test]
+fn the_palette_finds_what_a_view_holds_and_what_a_setting_is_called() {
+    let mut bench = Bench::live();
+    for (typed, view) in [
+        ("flash", View::Device),
+        ("闪存", View::Device),
+        ("export", View::Recordings),
+        ("gateway", View::Inputs),
+        ("trial", View::Tune),
+    ] {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", typed);
+        bench.key(Key::Enter);
+        bench.run(100);
+        assert_eq!(bench.view().place(), view.place(), "{typed}");
+    }
+    for typed in ["language", "语言", "theme", "add a hand", "index", "速度"] {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", typed);
+        bench.run(100);
+        assert!(!bench.shows("Nothing is called so."), "{typed}");
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+    }
+}
+
+#[test]
+fn the_places_stay_where_they_are_whatever_the_hand_says() {
+    let mut bench = Bench::live();
+    let places = ["Live", "Tune", "Recordings", "Hand", "Share"];
+    let at = |bench: &Bench| places.map(|name| bench.rect(Role::Button, name).min.x);
+    let before = at(&bench);
+    bench.click("Arm the hand");
+    bench.run(300);
+    assert_eq!(at(&bench), before, "armed");
+    bench.act(Action::Disconnect);
+    bench.run(300);
+    assert_eq!(at(&bench), before, "without a hand");
 }
 
 #[test]
