@@ -264,9 +264,10 @@ fn impossible_values_break_no_view_and_are_shown_as_they_are() {
     assert_eq!(bench.reading("Ring check"), "diff");
     bench.show(View::Connection);
     bench.run(100);
-    for code in ["4", "255", "8", "254", "7", "3"] {
+    // Those that have a word stand as that, below a fault.
+    for code in ["255", "8", "254"] {
         let in_words = format!("({code})");
-        let told = bench.shows(code) || !bench.texts_with(&in_words).is_empty();
+        let told = !bench.texts_with(&in_words).is_empty();
         assert!(told, "status {code}: {:?}", bench.texts());
     }
     bench.show(View::Faults);
