@@ -66,7 +66,7 @@ async fn one_act_arms_and_starts_once_the_arming_holds() {
     arm_and_start(&mut bench);
     assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_some());
     bench.run(300).await;
-    assert!(bench.hand().series.is_some() && !bench.hand().series_asked.is_some());
+    assert!(bench.hand().series.is_some() && bench.hand().series_asked.is_none());
     let addresses = bench.addresses();
     let limits = addresses.iter().take(2).copied().collect::<Vec<u16>>();
     assert_eq!(
@@ -94,7 +94,7 @@ async fn what_ends_the_wish_to_start_leaves_the_hand_at_rest() {
         end(&mut bench);
         bench.run(3000).await;
         assert!(bench.hand().series.is_none(), "{why}");
-        assert!(!bench.hand().series_asked.is_some(), "{why}");
+        assert!(bench.hand().series_asked.is_none(), "{why}");
         assert!(bench.state().trials.sessions.is_empty(), "{why}");
         let is_told = bench.told().contains(&NoticeKind::SeriesNotBegun);
         assert_eq!(is_told, why == "other plan", "{why}");
@@ -107,7 +107,7 @@ async fn a_window_that_hung_since_starts_nothing_late() {
     arm_and_start(&mut bench);
     bench.hang(3000).await;
     bench.run(500).await;
-    assert!(bench.hand().series.is_none() && !bench.hand().series_asked.is_some());
+    assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
     assert!(bench.told().contains(&NoticeKind::SeriesNotBegun));
 }
 
@@ -128,7 +128,7 @@ async fn a_hand_that_cannot_be_armed_begins_nothing_and_says_why() {
     arm_and_start(&mut bench);
     bench.run(8000).await;
     assert!(bench.hand().series.is_none() && !bench.hand().connection.is_armed());
-    assert!(!bench.hand().series_asked.is_some());
+    assert!(bench.hand().series_asked.is_none());
     let why = |told: &NoticeKind| matches!(told, NoticeKind::ArmRefused(_));
     let told = bench.told();
     assert!(told.iter().any(why) || told.contains(&NoticeKind::SeriesNotBegun));
@@ -143,7 +143,7 @@ async fn a_plan_that_makes_no_sense_sends_nothing() {
     start(&mut bench);
     arm_and_start(&mut bench);
     bench.run(300).await;
-    assert!(bench.hand().series.is_none() && !bench.hand().series_asked.is_some());
+    assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
