@@ -81,8 +81,8 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, find, inputs, main, notices, panels, poses, recordings, scan,
-        traffic, tune, window,
+        cards, device, exhibit, inputs, main, notices, panels, poses, recordings, scan, traffic,
+        tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
@@ -90,7 +90,7 @@ mod tests {
             cards::ALL,
             device::ALL,
             exhibit::ALL,
-            find::ALL,
+            tune::find::ALL,
             notices::ALL,
             inputs::ALL,
             main::ALL,

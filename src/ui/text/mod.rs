@@ -4,7 +4,6 @@ pub(crate) mod cards;
 pub(crate) mod device;
 pub(crate) mod errors;
 pub(crate) mod exhibit;
-pub(crate) mod find;
 pub(crate) mod inputs;
 pub(crate) mod main;
 pub(crate) mod notices;

@@ -1,5 +1,7 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
+pub(crate) mod find;
+
 use crate::app::trials::SessionDifference;
 use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
