@@ -9,6 +9,8 @@ mod foxglove;
 mod frames;
 #[cfg(unix)]
 mod gateway;
+mod grip;
+mod grip_table;
 mod hand;
 mod hands;
 mod idle;
@@ -53,7 +55,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 15] = [
+const PARTS: [Part; 16] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -62,6 +64,7 @@ const PARTS: [Part; 15] = [
     ("fleet", fleet::run),
     ("ui", frames::run),
     ("hand", hand::run),
+    ("grip", grip::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

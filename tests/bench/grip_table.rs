@@ -203,7 +203,7 @@ impl Plan {
                 end,
             }),
             vanishes: event == 6,
-            opens: chance.i16(100..1000),
+            opens: chance.i16(500..1000),
         }
     }
 }
@@ -316,7 +316,7 @@ impl Truth {
             .collect();
         let states = states?;
         let holds = states.contains(&Holding);
-        [TooHard, Slipping, Lost, Moving, Holding, Empty, Open]
+        [Slipping, TooHard, Lost, Moving, Holding, Empty, Open]
             .into_iter()
             .find(|state| states.contains(state) && !(*state == Lost && holds))
     }
@@ -342,14 +342,14 @@ impl FingerTruth {
         if TOO_HARD_G.contains(&load) || TOUCHES_G.contains(&load) {
             return None;
         }
+        if load > TOUCHES_G.end && slides {
+            return Some(GripState::Slipping);
+        }
         if load > TOO_HARD_G.end {
-            self.was_held = true;
+            self.was_held |= !moves;
             return Some(GripState::TooHard);
         }
         if load > TOUCHES_G.start {
-            if slides {
-                return Some(GripState::Slipping);
-            }
             // What was just pressed in still creeps.
             if moves {
                 return None;

@@ -124,6 +124,7 @@ impl FingerEstimator {
             is_stopped_by_force: bend.status == Status::ForceReached,
             is_blocked: drives(Status::is_protective),
             is_overloaded: drives(|status| status == Status::CurrentProtection),
+            is_force_known: by_force.is_some(),
             contact,
             load_g: joints.clone().map(load_g).fold(tip_g, f32::max),
             current_ma: joints.clone().filter_map(|joint| joint.current_ma).max(),
@@ -173,43 +174,43 @@ impl FingerEstimator {
         match now {
             now if now.is_moving => GripState::Moving,
             now if now.is_open(thresholds) => GripState::Open,
-            // It pushes against something that no sensor feels.
-            now if now.is_blocked => GripState::Unknown,
+            // Something stopped it, which the fingertip alone does not feel.
+            now if now.is_blocked && !now.is_force_known => GripState::Unknown,
             _ => GripState::Empty,
         }
     }
 
     fn touching(&mut self, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
-        let was_too_hard = self.estimate.state == GripState::TooHard;
-        let share = if was_too_hard { SOFTER } else { 1.0 };
-        let too_hard = now.load_g >= f32::from(thresholds.too_hard_g) * share;
-        let draws = |ma: i16| i32::from(ma) >= i32::from(thresholds.too_hard_ma);
-        if too_hard || now.is_overloaded || now.current_ma.is_some_and(draws) {
-            return GripState::TooHard;
-        }
         // Touched by somebody, not gripping.
-        let is_idle = now.is_open(thresholds) && !now.is_stopped_by_force;
-        if now.is_releasing || (is_idle && !now.is_moving) {
+        let is_idle = now.is_open(thresholds) && !now.is_stopped_by_force && !now.is_moving;
+        if now.is_releasing || is_idle {
             self.held = None;
-            return if now.is_moving {
-                GripState::Moving
-            } else {
-                GripState::Open
-            };
         }
-        let was_held = self.held.is_some();
-        if was_held || !now.is_moving {
+        let is_held = self.held.is_some() || !(now.is_moving || is_idle);
+        let slips = |last: f64| now.at.secs() - last <= SLIP_TOLD_S;
+        let is_slipping = self.held.is_some() && self.slip.last().is_some_and(slips);
+        if is_held && !now.is_releasing {
             self.held = Some(HeldAt {
                 angle: now.angle,
                 gone: None,
             });
         }
-        let slips = |last: f64| now.at.secs() - last <= SLIP_TOLD_S;
-        match now.is_moving {
-            _ if was_held && self.slip.last().is_some_and(slips) => GripState::Slipping,
-            true => GripState::Moving,
-            false => GripState::Holding,
+        match now {
+            _ if is_slipping => GripState::Slipping,
+            now if self.is_too_hard(now, thresholds) => GripState::TooHard,
+            now if now.is_moving => GripState::Moving,
+            _ if is_idle => GripState::Open,
+            _ => GripState::Holding,
         }
+    }
+
+    fn is_too_hard(&self, now: &FingerNow, thresholds: &GripThresholds) -> bool {
+        let was_too_hard = self.estimate.state == GripState::TooHard;
+        let share = if was_too_hard { SOFTER } else { 1.0 };
+        let draws = |ma: i16| i32::from(ma) >= i32::from(thresholds.too_hard_ma);
+        now.load_g >= f32::from(thresholds.too_hard_g) * share
+            || now.is_overloaded
+            || now.current_ma.is_some_and(draws)
     }
 
     /// Contact is missed at a finger that did not open: for a moment that may be noise, then what it held is lost.
@@ -238,6 +239,8 @@ struct FingerNow {
     /// A drive stopped to protect itself.
     is_blocked: bool,
     is_overloaded: bool,
+    /// The zero of its force sensors is known.
+    is_force_known: bool,
     /// `None` if no fingertip tells, and the zero of the force sensor was not learnt yet.
     contact: Option<bool>,
     /// The largest of fingertip and joints.
