@@ -13,7 +13,8 @@ use crate::sim::object::Object;
 use crate::sim::personality::{
     Beyond, ChangeAck, Doubles, GapAnswer, Personality, SpeedZero, TactileCheck, Turnaround,
 };
-use crate::sim::scenario::{self, Ailment, Order, Scenario};
+use crate::sim::pull::{Pull, PullPhase};
+use crate::sim::scenario::{self, Ailment, Order, Scenario, Slip};
 use crate::sim::supply::Supply;
 use crate::sim::touch::{SENSOR_MS, TouchSensors};
 use std::collections::VecDeque;
@@ -137,6 +138,8 @@ pub struct SimHand {
     began_at: PerDof<f64>,
     /// It says what was recorded: no body, no script, and writes change nothing.
     follows_recording: bool,
+    /// How its object is pulled, or is about to be.
+    pull: Option<Pull>,
 }
 
 impl SimHand {
@@ -169,6 +172,7 @@ impl SimHand {
             frozen: false,
             began_at: PerDof::splat(0.0),
             follows_recording: false,
+            pull: None,
         };
         hand.target_actual();
         hand
@@ -355,6 +359,23 @@ impl SimHand {
         self.published_ms = None;
     }
 
+    /// Lets somebody pull at its object, or leave it alone.
+    pub fn set_pull(&mut self, pull: Option<Pull>) {
+        self.pull = pull;
+        self.published_ms = None;
+    }
+
+    /// Force of the object on each fingertip, g, whatever the hand tells.
+    pub fn true_loads(&self) -> PerFinger<f64> {
+        PerFinger::from_fn(|finger| self.body.fingertip_g(finger))
+    }
+
+    /// Whether its object slides now, whatever the hand tells.
+    pub fn object_slides(&self) -> bool {
+        let phase = self.pull.map(|pull| pull.phase(self.now_ms));
+        matches!(phase, Some(PullPhase::Slides(_)))
+    }
+
     /// Presses a fingertip with so many grams, or lets it go with 0.
     pub fn press_tip(&mut self, finger: Finger, grams: f64) {
         self.pressed_g[finger] = grams;
@@ -438,6 +459,7 @@ impl SimHand {
             Scenario::Faults => self.script_faults(),
             _ => {}
         }
+        self.pull_object();
         if self.supply.is_off(self.now_ms) {
             if self.supply.fails(self.now_ms) {
                 self.restart();
@@ -497,6 +519,28 @@ impl SimHand {
         let slip = scenario::slip(Scenario::Grasp, self.now_ms);
         for dof in Dof::ALL {
             self.body.drive_mut(dof).set_grip(slip.grip);
+        }
+    }
+
+    fn pull_object(&mut self) {
+        let Some(pull) = self.pull else {
+            return;
+        };
+        let grip = pull.slip(self.now_ms).grip;
+        for dof in Dof::ALL {
+            self.body.drive_mut(dof).set_grip(grip);
+        }
+        if pull.is_lost(self.now_ms) {
+            self.body.set_object(&Object::none());
+            self.pull = None;
+        }
+    }
+
+    /// How the object slid on the fingertips when they measured.
+    fn slip(&self, measured_ms: u64) -> Slip {
+        match self.pull {
+            Some(pull) => pull.slip(measured_ms),
+            None => scenario::slip(self.config.scenario, measured_ms),
         }
     }
 
@@ -564,7 +608,7 @@ impl SimHand {
         self.published_ms = Some(self.now_ms);
         live::publish_drives(&mut self.memory, &self.body);
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
-        let slip = scenario::slip(self.config.scenario, measured_ms);
+        let slip = self.slip(measured_ms);
         for finger in Finger::ALL {
             let mut press = live::press(&self.body, finger);
             press.force_g += scenario::touched_g(self.config.scenario, finger, measured_ms);

@@ -12,6 +12,7 @@ mod number;
 mod obey;
 pub mod object;
 pub mod personality;
+pub mod pull;
 pub mod scenario;
 pub mod serve;
 mod supply;
@@ -28,5 +29,6 @@ pub use personality::{
     OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES,
     SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients, Turnaround,
 };
+pub use pull::{Pull, PullEnd};
 pub use scenario::{Scenario, UnknownScenario};
 pub use serve::{SharedHand, SimHands};

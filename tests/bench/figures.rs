@@ -9,6 +9,8 @@ mod foxglove;
 mod frames;
 #[cfg(unix)]
 mod gateway;
+mod grip;
+mod grip_table;
 mod hand;
 mod hands;
 mod idle;
@@ -64,7 +66,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 17] = [
+const PARTS: [Part; 18] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -73,6 +75,7 @@ const PARTS: [Part; 17] = [
     ("fleet", fleet::run),
     ("ui", frames::run),
     ("hand", hand::run),
+    ("grip", grip::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

@@ -62,6 +62,11 @@ impl Report {
         line(&format!("{what:<62}{:>12} ({why})", "n/a"))
     }
 
+    /// Lines that belong to the figures before.
+    pub(crate) fn text(&mut self, lines: &str) -> Result<(), Failure> {
+        line(lines)
+    }
+
     pub(crate) fn end(self) -> Result<(), Failure> {
         match self.missed {
             0 => line("every aim is met"),

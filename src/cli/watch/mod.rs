@@ -10,8 +10,9 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::watch::datagrams::Datagrams;
-use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
+use crate::cli::watch::telemetry::{sample_and_grip_json, sample_text, stats_json, stats_text};
 use crate::cli::watch::wire::FramePrinter;
+use crate::hand::grip::GripEstimator;
 use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
@@ -42,6 +43,8 @@ struct Watch<'a> {
     datagrams: Option<Datagrams>,
     /// Frames are printed in place of values.
     frames: Option<FramePrinter>,
+    /// What the hand grips, from all readings.
+    grip: GripEstimator,
     /// State reads taken so far; each of them is a line of JSON.
     taken: u64,
     last_text: Option<Moment>,
@@ -62,6 +65,7 @@ impl<'a> Watch<'a> {
             args,
             out,
             clock,
+            grip: GripEstimator::default(),
             taken: 0,
             last_text: None,
             answered: false,
@@ -149,6 +153,8 @@ impl<'a> Watch<'a> {
         let Record::Reading { sample, fresh } = record else {
             return Ok(());
         };
+        let read = sample.newest(fresh).unwrap_or_default();
+        let grip = self.grip.take(&sample, fresh, read);
         let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
             return Ok(());
         };
@@ -159,11 +165,11 @@ impl<'a> Watch<'a> {
         self.taken += 1;
         let at = angle.received;
         if let Some(datagrams) = &mut self.datagrams {
-            datagrams.send(&sample_json(&sample, at));
+            datagrams.send(&sample_and_grip_json(&sample, &grip, at));
             return Ok(());
         }
         if self.args.json {
-            return self.out.object(&sample_json(&sample, at));
+            return self.out.object(&sample_and_grip_json(&sample, &grip, at));
         }
         let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
         if self.last_text.is_some_and(is_soon) {

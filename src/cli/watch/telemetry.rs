@@ -1,5 +1,6 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
+use crate::hand::grip::{Grip, GripEstimate};
 use crate::hand::{
     Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, RateClass, Status, TactileBlock,
 };
@@ -33,6 +34,40 @@ pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
         fields.extend(measured);
     }
     object
+}
+
+/// One sample with the grip that it shows at `at`.
+pub(crate) fn sample_and_grip_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value {
+    let mut object = sample_json(sample, at);
+    if let Value::Object(fields) = &mut object {
+        fields.insert("grip".into(), grip_json(&grip.at(at), at));
+    }
+    object
+}
+
+/// A grip as JSON: state, beginning and age of the grasp and of each finger.
+fn grip_json(grip: &Grip, now: Moment) -> Value {
+    let mut object = estimate_json(&grip.grasp, now);
+    let fingers = grip.fingers.iter().map(|(finger, estimate)| {
+        let mut object = estimate_json(estimate, now);
+        object.insert("finger".into(), finger.name().into());
+        Value::Object(object)
+    });
+    object.insert("fingers".into(), fingers.collect());
+    Value::Object(object)
+}
+
+fn estimate_json(estimate: &GripEstimate, now: Moment) -> Map<String, Value> {
+    let age_s = estimate.age(now).map(|age| age.as_secs_f64());
+    let fields = [
+        ("state", json!(estimate.state)),
+        ("since_s", json!(estimate.since.secs())),
+        ("age_s", json!(age_s)),
+    ];
+    fields
+        .map(|(key, value)| (key.to_owned(), value))
+        .into_iter()
+        .collect()
 }
 
 /// The last line: the link's own statistics.
@@ -209,7 +244,8 @@ fn rounded(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::{Reply, register};
+    use crate::hand::grip::GripState;
+    use crate::hand::{PerFinger, Reply, register};
 
     #[test]
     fn what_was_not_read_is_null() {
@@ -231,6 +267,30 @@ mod tests {
         assert_eq!(json["tactile"].as_array().unwrap().len(), 5);
         assert_eq!(json["tactile"][0]["finger"], "little");
         assert!(json["tactile"][4]["raw"].is_null());
+    }
+
+    #[test]
+    fn a_grip_has_state_beginning_and_age_and_is_unknown_when_it_is_old() {
+        let asked = Moment::from_micros(1_000_000);
+        let held = GripEstimate {
+            state: GripState::Holding,
+            since: asked,
+            asked: Some(asked),
+        };
+        let grip = Grip {
+            fingers: PerFinger::splat(held),
+            grasp: GripEstimate::default(),
+            fresh_for: Duration::from_millis(500),
+        };
+        let at = |micros| Moment::from_micros(micros);
+        let json = sample_and_grip_json(&HandSample::default(), &grip, at(1_250_000));
+        let grip_then = &json["grip"];
+        assert_eq!(grip_then["state"], "unknown");
+        assert!(grip_then["age_s"].is_null());
+        let thumb = json!({"finger": "thumb", "state": "holding", "since_s": 1.0, "age_s": 0.25});
+        assert_eq!(grip_then["fingers"][4], thumb);
+        let json = sample_and_grip_json(&HandSample::default(), &grip, at(1_750_000));
+        assert_eq!(json["grip"]["fingers"][0]["state"], "unknown");
     }
 
     #[test]

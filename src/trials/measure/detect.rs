@@ -1,14 +1,7 @@
 //! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
 
+use crate::hand::grip::slip::median;
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
-
-/// The middle value; of an even number the mean of the two. `None` of nothing.
-pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let (low, high) = (sorted.len().checked_sub(1)? / 2, sorted.len() / 2);
-    Some((sorted.get(low)? + sorted.get(high)?) / 2.0)
-}
 
 /// Level and noise of a curve at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,9 +13,10 @@
 //! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most;
 //! * temperatures are whole degrees, read some times a second.
 
+use crate::hand::grip::slip::median;
 use crate::hand::{Angle, Dof, Status};
 use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
-use crate::trials::measure::detect::{RestLevel, begins, median, passes, rest};
+use crate::trials::measure::detect::{RestLevel, begins, passes, rest};
 use crate::trials::measure::slip::{SlipEvent, slips};
 use crate::trials::plan::{TrialPlan, TrialSetting};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};

@@ -1,21 +1,10 @@
 //! Slips of a held object: jumps of friction or of the tangential force's direction. Computes from curves, nothing else.
 
+use crate::hand::grip::GripThresholds;
+use crate::hand::grip::slip::{APART_S, BEFORE_LEAST, HELD_N, HeldMoment, SlipDetector, SlipJump};
 use crate::trials::measure::curve::{JointCurves, TimeSeries};
-use crate::trials::measure::detect::median;
 use serde::{Deserialize, Serialize};
 
-/// Normal force below which there is nothing to slip, N.
-const HELD_N: f64 = 0.2;
-/// The reference: the median of this many seconds before.
-const BEFORE_S: f64 = 0.5;
-/// Rise of tangential by normal force that is a slip.
-const RATIO_JUMP: f64 = 0.12;
-/// Turn of the tangential force that is a slip, degrees.
-const TURN_DEG: f64 = 25.0;
-/// Slips nearer to each other than this are one.
-const APART_S: f64 = 0.4;
-/// Values that are needed before a jump can be told.
-const BEFORE_LEAST: usize = 3;
 /// Tangential and normal force that are read together are at most this far apart.
 const TOGETHER_S: f64 = 0.001;
 
@@ -30,14 +19,6 @@ pub struct SlipEvent {
     pub turn_deg: Option<f64>,
 }
 
-/// One moment of holding.
-#[derive(Debug, Clone, Copy)]
-struct HeldMoment {
-    t: f64,
-    ratio: f64,
-    direction: Option<f64>,
-}
-
 /// The slips from one time to another; `None` if the fingertip told too little to know.
 ///
 /// A jump counts if two readings in a row show it, so slips are seen one reading late and those shorter than two
@@ -48,30 +29,32 @@ pub fn slips(curves: &JointCurves, from: f64, to: f64) -> Option<Vec<SlipEvent>>
         return None;
     }
     let mut found: Vec<SlipEvent> = Vec::new();
-    let mut pending: Option<SlipEvent> = None;
-    let mut last = f64::NEG_INFINITY;
-    for (at, now) in held.iter().enumerate() {
-        let earlier = held.get(..at).unwrap_or_default();
-        let jump = jump(earlier, now, last);
-        match (jump, pending.take()) {
-            (None, _) => {}
-            (Some(slip), None) => pending = Some(slip),
-            (Some(slip), Some(first)) => {
-                let near = found.last_mut().filter(|_| first.at_s - last < APART_S);
-                match near {
-                    Some(known) => known.widen(&slip),
-                    None => {
-                        let mut first = first;
-                        first.widen(&slip);
-                        found.push(first);
-                    }
-                }
-                last = now.t;
-                pending = Some(slip);
+    let mut detector = SlipDetector::new(&GripThresholds::default());
+    for now in held {
+        let before = detector.last().unwrap_or(f64::NEG_INFINITY);
+        let Some((first, second)) = detector.take(now) else {
+            continue;
+        };
+        match found.last_mut().filter(|_| first.t - before < APART_S) {
+            Some(known) => known.widen(&second.into()),
+            None => {
+                let mut slip = SlipEvent::from(first);
+                slip.widen(&second.into());
+                found.push(slip);
             }
         }
     }
     Some(found)
+}
+
+impl From<SlipJump> for SlipEvent {
+    fn from(jump: SlipJump) -> Self {
+        Self {
+            at_s: jump.t,
+            ratio_jump: jump.ratio,
+            turn_deg: jump.turn_deg,
+        }
+    }
 }
 
 impl SlipEvent {
@@ -102,37 +85,6 @@ fn moments(curves: &JointCurves, from: f64, to: f64) -> Vec<HeldMoment> {
             })
         })
         .collect()
-}
-
-/// How a moment differs from those before it. Moments of a slip that is going on are no measure.
-fn jump(earlier: &[HeldMoment], now: &HeldMoment, slipping: f64) -> Option<SlipEvent> {
-    let recent = |moment: &&HeldMoment| moment.t >= now.t - BEFORE_S;
-    let calm = |moment: &&HeldMoment| moment.t < slipping - APART_S || moment.t > slipping;
-    let before: Vec<&HeldMoment> = earlier.iter().filter(recent).filter(calm).collect();
-    if before.len() < BEFORE_LEAST {
-        return None;
-    }
-    let ratios: Vec<f64> = before.iter().map(|moment| moment.ratio).collect();
-    let ratio_jump = now.ratio - median(&ratios)?;
-    let turn_deg = turn(&before, now);
-    let is_slip = ratio_jump >= RATIO_JUMP || turn_deg.is_some_and(|turn| turn >= TURN_DEG);
-    is_slip.then_some(SlipEvent {
-        at_s: now.t,
-        ratio_jump,
-        turn_deg,
-    })
-}
-
-/// Degrees between a direction and the middle of those before, the short way round.
-fn turn(before: &[&HeldMoment], now: &HeldMoment) -> Option<f64> {
-    let direction = now.direction?;
-    let round = |degrees: f64| (degrees + 180.0).rem_euclid(360.0) - 180.0;
-    let first = before.iter().find_map(|moment| moment.direction)?;
-    let away: Vec<f64> = before
-        .iter()
-        .filter_map(|moment| Some(round(moment.direction? - first)))
-        .collect();
-    Some(round(direction - first - median(&away)?).abs())
 }
 
 #[cfg(test)]

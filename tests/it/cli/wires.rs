@@ -69,6 +69,8 @@ fn both_wires_at_once_agree_and_lose_nothing() {
         assert_eq!(line["tactile"][4]["finger"], "thumb");
         assert_eq!(line["tactile"][4]["check_ok"], true);
         assert_eq!(line["temp_c"].as_array().unwrap().len(), 6);
+        assert_eq!(line["grip"]["fingers"][4]["finger"], "thumb");
+        assert!(line["grip"]["state"].is_string(), "{line}");
     }
     for key in [
         "angle",

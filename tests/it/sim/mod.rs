@@ -2,6 +2,7 @@
 
 mod bodies;
 mod drive;
+mod grips;
 mod hand;
 mod personalities;
 mod servers;
