@@ -1,8 +1,8 @@
 //! What one recorded close says about a joint and the object. Pure.
 
 use crate::hand::Dof;
+use crate::hand::grip::slip::median;
 use crate::trials::measure::curve::JointCurves;
-use crate::trials::measure::detect::median;
 use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::summary::Trial;

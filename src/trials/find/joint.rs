@@ -1,10 +1,10 @@
 //! What is known of one joint and the object before it, from the closes so far. Pure.
 
 use crate::hand::Dof;
+use crate::hand::grip::slip::median;
 use crate::trials::find::close::CloseFacts;
 use crate::trials::find::finding::NoClaim;
 use crate::trials::find::growth::{Contact, PeakGrowth};
-use crate::trials::measure::detect::median;
 
 /// Scatter of a contact as published, units of ANGLE_ACT (7.5 counts of the position), and for how many closes that counts.
 const CONTACT_SCATTER: f64 = 3.75;
