@@ -129,7 +129,7 @@ impl Reader {
         };
         if ms % self.touch_each == 1 {
             take(TOUCH);
-        } else if ms % self.state_each == 0 {
+        } else if ms.is_multiple_of(self.state_each) {
             take(STATE);
         } else {
             return None;
