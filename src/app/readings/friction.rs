@@ -11,7 +11,7 @@ const HYSTERESIS: f32 = 0.06;
 
 /// The forces of a grip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Grip {
+pub(crate) enum FrictionUse {
     /// Nothing known.
     Unknown,
     /// Too little force to say.
@@ -22,7 +22,7 @@ pub(crate) enum Grip {
 
 /// What they come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum GripState {
+pub(crate) enum FrictionState {
     /// Nothing known.
     #[default]
     Unknown,
@@ -36,7 +36,7 @@ pub(crate) enum GripState {
     Slips,
 }
 
-impl Grip {
+impl FrictionUse {
     /// As the newest block says.
     pub(crate) fn of(block: Option<&TactileBlock>) -> Self {
         let forces = block.and_then(|block| block.normal().zip(block.tangential()));
@@ -56,12 +56,12 @@ impl Grip {
     }
 }
 
-impl GripState {
+impl FrictionState {
     /// What comes after this state. A margin that wavers around a limit does not make the alarm flicker.
-    pub(crate) fn next(self, grip: Grip, friction: f32) -> Self {
+    pub(crate) fn next(self, grip: FrictionUse, friction: f32) -> Self {
         let Some(margin) = grip.margin(friction) else {
             return match grip {
-                Grip::Loose => Self::Loose,
+                FrictionUse::Loose => Self::Loose,
                 _ => Self::Unknown,
             };
         };
@@ -89,8 +89,8 @@ mod tests {
 
     #[test]
     fn the_margin_is_what_friction_leaves() {
-        let grip = Grip::of(Some(&block(4.0, 1.0)));
-        assert_eq!(grip, Grip::Ratio(0.25));
+        let grip = FrictionUse::of(Some(&block(4.0, 1.0)));
+        assert_eq!(grip, FrictionUse::Ratio(0.25));
         assert_eq!(grip.margin(0.5), Some(0.5));
         assert!(grip.margin(0.2).unwrap() < 0.0);
         assert_eq!(grip.margin(0.0), None);
@@ -98,28 +98,37 @@ mod tests {
 
     #[test]
     fn without_contact_or_sense_there_is_no_margin() {
-        assert_eq!(Grip::of(Some(&block(0.05, 1.0))), Grip::Loose);
-        assert_eq!(Grip::of(Some(&block(f32::NAN, 1.0))), Grip::Unknown);
-        assert_eq!(Grip::of(None).margin(0.5), None);
-        assert_eq!(GripState::Slips.next(Grip::Loose, 0.5), GripState::Loose);
+        assert_eq!(FrictionUse::of(Some(&block(0.05, 1.0))), FrictionUse::Loose);
         assert_eq!(
-            GripState::Slips.next(Grip::Unknown, 0.5),
-            GripState::Unknown
+            FrictionUse::of(Some(&block(f32::NAN, 1.0))),
+            FrictionUse::Unknown
+        );
+        assert_eq!(FrictionUse::of(None).margin(0.5), None);
+        assert_eq!(
+            FrictionState::Slips.next(FrictionUse::Loose, 0.5),
+            FrictionState::Loose
+        );
+        assert_eq!(
+            FrictionState::Slips.next(FrictionUse::Unknown, 0.5),
+            FrictionState::Unknown
         );
     }
 
     #[test]
     fn a_margin_that_wavers_around_the_limit_gives_one_alarm() {
-        let (mut hold, mut changes) = (GripState::Firm, 0);
+        let (mut hold, mut changes) = (FrictionState::Firm, 0);
         for step in 0..100u8 {
             // Friction 0.5: the margin wavers between -0.02 and 0.02.
             let ratio = if step % 2 == 0 { 0.51 } else { 0.49 };
-            let next = hold.next(Grip::Ratio(ratio), 0.5);
+            let next = hold.next(FrictionUse::Ratio(ratio), 0.5);
             changes += u32::from(next != hold);
             hold = next;
         }
-        assert_eq!((hold, changes), (GripState::Slips, 1));
-        assert_eq!(hold.next(Grip::Ratio(0.45), 0.5), GripState::Near);
-        assert_eq!(hold.next(Grip::Ratio(0.2), 0.5), GripState::Firm);
+        assert_eq!((hold, changes), (FrictionState::Slips, 1));
+        assert_eq!(
+            hold.next(FrictionUse::Ratio(0.45), 0.5),
+            FrictionState::Near
+        );
+        assert_eq!(hold.next(FrictionUse::Ratio(0.2), 0.5), FrictionState::Firm);
     }
 }

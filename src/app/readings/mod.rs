@@ -13,6 +13,7 @@ use crate::app::readings::faults::{FaultEntry, FaultList};
 use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
+use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
     Angle, AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger,
 };
@@ -45,6 +46,8 @@ pub struct Readings {
     pub peaks: ForcePeaks,
     /// Faults now and before.
     pub faults: FaultList,
+    /// What is gripped.
+    pub grip: GripEstimator,
 }
 
 /// What was measured of a hand, over as many connections as it was connected.
@@ -75,6 +78,7 @@ impl Readings {
                 self.tip_pace[finger].take(block.asked);
             }
         }
+        self.grip.take(sample, fresh, at);
         self.tare.begin(sample);
         if fresh.contains(Group::Force) {
             self.peaks.update(sample);
@@ -95,6 +99,15 @@ impl Readings {
     pub fn tip_freshness(&self, finger: Finger, is_live: bool, now: Moment) -> Freshness {
         let asked = self.sample.tactile[finger].map(|block| block.asked);
         freshness(asked, self.tip_pace[finger], is_live, now)
+    }
+
+    /// What is gripped now; unknown of a link that is not live.
+    pub fn grip_now(&self, is_live: bool, now: Moment) -> Grip {
+        if is_live {
+            self.grip.grip().at(now)
+        } else {
+            Grip::default()
+        }
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.

@@ -1,6 +1,7 @@
 //! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to its tip.
 
 use crate::app::readings::Freshness;
+use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Quantity};
@@ -125,6 +126,46 @@ fn figure_ui(
     if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
         let named = format!("{name} {}", look.say(panels::FINGER_TROUBLE));
         aligned(Label::new(&words, color).small().named(&named), ui, third);
+        return;
+    }
+    let state = grip(pane).fingers[finger].state;
+    // The picture shows what is open.
+    if !matches!(state, GripState::Unknown | GripState::Open) {
+        let named = format!("{name} {}", look.say(panels::FINGER_GRIP));
+        let words = Label::new(look.say(panels::grip(state)), grip_color(pane, state));
+        aligned(words.small().named(&named), ui, third);
+    }
+}
+
+fn grip(pane: &Pane<'_>) -> Grip {
+    let hand = pane.state.hand();
+    let is_live = hand.connection.is_live();
+    hand.readings.grip_now(is_live, pane.state.now)
+}
+
+/// What the grasp does to an object, in one line under the picture.
+pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
+    let state = grip(pane).grasp.state;
+    let look = pane.look;
+    let words = look.pair(look.say(panels::GRIP), look.say(panels::grip(state)));
+    let line = place.with_min_y(place.bottom() - theme::PAD);
+    let label = Label::new(&words, grip_color(pane, state)).small().center();
+    label
+        .named(look.say(panels::GRIP))
+        .put(ui, line)
+        .on_hover_text(look.tip(panels::GRIP));
+}
+
+/// Loud where the user should look.
+fn grip_color(pane: &Pane<'_>, state: GripState) -> Color32 {
+    let palette = pane.look.palette;
+    match state {
+        GripState::Unknown | GripState::Open | GripState::Moving | GripState::Empty => {
+            palette.muted
+        }
+        GripState::Holding => palette.ok,
+        GripState::Slipping | GripState::TooHard => palette.warn,
+        GripState::Lost => palette.bad,
     }
 }
 

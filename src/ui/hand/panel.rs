@@ -52,7 +52,11 @@ impl HandPanel {
         };
         let used = self.0.ui(ui, &response, &stage);
         figures::figures_ui(ui, pane, &self.0, place);
-        unknown_note(ui, look, place, &picture);
+        if picture.actual.all().is_some() {
+            figures::grip_ui(ui, pane, place);
+        } else {
+            unknown_note(ui, look, place);
+        }
         if let Some(dof) = used.joint {
             pointed::point(ui, PointedPlace::Hand, dof);
         }
@@ -177,13 +181,11 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 }
 
 /// Says under the picture what a grey finger stands for.
-fn unknown_note(ui: &mut Ui, look: Look, picture: Rect, shown: &HandPicture) {
-    if shown.actual.all().is_none() {
-        let place = picture.with_min_y(picture.bottom() - theme::PAD);
-        kit::Label::note(look, panels::UNKNOWN)
-            .center()
-            .put(ui, place);
-    }
+fn unknown_note(ui: &mut Ui, look: Look, picture: Rect) {
+    let place = picture.with_min_y(picture.bottom() - theme::PAD);
+    kit::Label::note(look, panels::UNKNOWN)
+        .center()
+        .put(ui, place);
 }
 
 /// Which hand is drawn, as a button that draws the other one.

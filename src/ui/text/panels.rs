@@ -1,8 +1,9 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
-use crate::app::readings::friction::GripState;
+use crate::app::readings::friction::FrictionState;
 use crate::app::readings::tare::{Source, TareZero};
 use crate::app::settings::Language;
+use crate::hand::grip::GripState;
 use crate::hand::{Moment, RateClass};
 use crate::sim::Scenario;
 use crate::ui::style::phrase::texts;
@@ -67,6 +68,8 @@ texts! {
 
     DRAG_FINGER: "drag to move it", "拖动即可移动";
     FINGER_FORCE: "force at the drawn finger", "图旁受力";
+    FINGER_GRIP: "grip at the drawn finger", "图旁抓握";
+    GRIP: "Grip", "抓握", "What the hand does to an object, told from angles, forces, fingertips, current and status. Slipping: the force along a fingertip rises or turns. Lost: the contact is gone, and the finger did not open. Unknown: a reading is missing or old.", "根据角度、受力、指尖、电流和状态判断手对物体的抓握情况。打滑：指尖切向力上升或转向。丢失：手指未张开而接触消失。未知：读数缺失或过期。";
     FINGER_TROUBLE: "trouble at the drawn finger", "图旁状况";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
     TARE_ALL: "Tare all", "全部去皮", "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
@@ -232,13 +235,25 @@ texts! {
         Scenario::Frozen => "Readings freeze in motion", "运动中读数冻结";
     }
 
+    /// What a finger, or the grasp, does to an object.
+    fn grip(GripState) {
+        GripState::Unknown => "Unknown", "未知";
+        GripState::Open => "Open", "张开";
+        GripState::Moving => "Moving", "运动中";
+        GripState::Empty => "Empty", "空握";
+        GripState::Holding => "Holding", "握住";
+        GripState::Slipping => "Slipping", "打滑";
+        GripState::Lost => "Lost", "丢失";
+        GripState::TooHard => "Too hard", "过紧";
+    }
+
     /// How firmly a fingertip holds.
-    fn hold(GripState) {
-        GripState::Unknown => "Not known", "未知";
-        GripState::Loose => "No contact", "没有接触";
-        GripState::Firm => "Holds", "稳定";
-        GripState::Near => "Near to slipping", "接近打滑";
-        GripState::Slips => "Slips at this friction", "按此摩擦会打滑";
+    fn hold(FrictionState) {
+        FrictionState::Unknown => "Not known", "未知";
+        FrictionState::Loose => "No contact", "没有接触";
+        FrictionState::Firm => "Holds", "稳定";
+        FrictionState::Near => "Near to slipping", "接近打滑";
+        FrictionState::Slips => "Slips at this friction", "按此摩擦会打滑";
     }
 
     /// What is read together.

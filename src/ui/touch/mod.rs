@@ -5,7 +5,7 @@ pub(crate) mod tip_channels;
 pub(crate) mod tip_detail;
 
 use crate::app::action::Action;
-use crate::app::readings::friction::GripState;
+use crate::app::readings::friction::FrictionState;
 use crate::hand::Finger;
 use crate::ui::hand::fingertip::{self, Sense, Tip};
 use crate::ui::hand::panel::{self, HandPanel};
@@ -202,7 +202,7 @@ impl TouchView {
         let (below, color) = match (sense, self.detail.hold(finger)) {
             (Sense::NoNumber, _) => (look.say(panels::NO_NUMBER).to_owned(), look.palette.warn),
             (Sense::Beyond, _) => (look.say(panels::BEYOND).to_owned(), look.palette.warn),
-            (Sense::Fine, GripState::Slips) => {
+            (Sense::Fine, FrictionState::Slips) => {
                 (look.say(panels::SLIP).to_owned(), look.palette.bad)
             }
             (Sense::Fine, _) => {

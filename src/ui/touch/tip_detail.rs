@@ -1,7 +1,7 @@
 //! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
 
 use crate::app::readings::Freshness;
-use crate::app::readings::friction::{Grip, GripState, NEAR};
+use crate::app::readings::friction::{FrictionState, FrictionUse, NEAR};
 use crate::hand::Touch;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
@@ -28,7 +28,7 @@ const COMPASS_END_RATIO: f32 = 1.5;
 pub(crate) struct TipDetail {
     pub(crate) finger: Finger,
     friction_percent: i16,
-    holds: PerFinger<GripState>,
+    holds: PerFinger<FrictionState>,
     channels: TipChannels,
     chart: ChartView,
 }
@@ -56,12 +56,13 @@ impl TipDetail {
             let block = pane.state.hand().readings.sample.tactile[finger];
             let live = pane.tip_freshness(finger) == Freshness::Live;
             let block = block.filter(|_| live).map(|block| block.value);
-            self.holds[finger] = self.holds[finger].next(Grip::of(block.as_ref()), self.friction());
+            self.holds[finger] =
+                self.holds[finger].next(FrictionUse::of(block.as_ref()), self.friction());
         }
     }
 
     /// How the grip of a fingertip stood when it was looked at last.
-    pub(crate) fn hold(&self, finger: Finger) -> GripState {
+    pub(crate) fn hold(&self, finger: Finger) -> FrictionState {
         self.holds[finger]
     }
 
@@ -134,7 +135,7 @@ impl TipDetail {
         let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
         let (block, freshness) = self.block(pane);
-        let (Grip::Ratio(ratio), Some(block)) = (Grip::of(block), block) else {
+        let (FrictionUse::Ratio(ratio), Some(block)) = (FrictionUse::of(block), block) else {
             return;
         };
         let Some(degrees) = block.direction_deg() else {
@@ -149,11 +150,11 @@ impl TipDetail {
     fn readings_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let (block, freshness) = self.block(pane);
-        let grip = Grip::of(block);
+        let grip = FrictionUse::of(block);
         let unknown = || format::UNKNOWN.to_owned();
         let ratio = match grip {
-            Grip::Ratio(ratio) => format!("{ratio:.2}"),
-            Grip::Unknown | Grip::Loose => unknown(),
+            FrictionUse::Ratio(ratio) => format!("{ratio:.2}"),
+            FrictionUse::Unknown | FrictionUse::Loose => unknown(),
         };
         let margin = grip.margin(self.friction());
         let margin = margin.map_or_else(unknown, |margin| format!("{:.0} %", margin * 100.0));
@@ -180,7 +181,7 @@ impl TipDetail {
     fn verdict_ui(&self, ui: &mut Ui, place: Rect, look: Look) {
         let hold = self.hold(self.finger);
         let color = color_of(hold, look.palette);
-        if hold == GripState::Slips {
+        if hold == FrictionState::Slips {
             let ground = place.expand2(vec2(theme::STEP, 0.0));
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
@@ -243,12 +244,12 @@ impl TipDetail {
 }
 
 /// The colour of how a grip stands.
-const fn color_of(hold: GripState, palette: &theme::Palette) -> egui::Color32 {
+const fn color_of(hold: FrictionState, palette: &theme::Palette) -> egui::Color32 {
     match hold {
-        GripState::Unknown | GripState::Loose => palette.faint,
-        GripState::Firm => palette.ok,
-        GripState::Near => palette.warn,
-        GripState::Slips => palette.bad,
+        FrictionState::Unknown | FrictionState::Loose => palette.faint,
+        FrictionState::Firm => palette.ok,
+        FrictionState::Near => palette.warn,
+        FrictionState::Slips => palette.bad,
     }
 }
 

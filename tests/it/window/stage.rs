@@ -227,3 +227,18 @@ fn a_demo_that_runs_has_a_ring() {
     bench.run(300);
     assert!(ring(&bench, "End Wave") > before);
 }
+
+#[test]
+fn what_is_gripped_is_told_at_the_fingers_and_in_one_line() {
+    let config = SimConfig {
+        scenario: Scenario::Grasp,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.until(8000, |bench| bench.reading("Grip") == "Grip: Holding");
+    let index = "Index grip at the drawn finger";
+    bench.until(4000, |bench| bench.reading(index) == "Holding");
+    bench.unplug();
+    bench.until(3000, |bench| bench.reading("Grip") == "Grip: Unknown");
+    assert!(!bench.shows(index), "nothing is told of old readings");
+}
