@@ -47,9 +47,13 @@ impl DriveWords {
             (None, Some(Status::Unknown(code))) => format!("{title} ({code})"),
             _ => title.to_owned(),
         };
-        let short = match fault {
-            Some(fault) => words::fault_short(fault, look.language).into(),
-            None => title.clone(),
+        let short = match (fault, status) {
+            // A code that the manual does not list stands beside a fault, too.
+            (Some(fault), Some(Status::Unknown(code))) => {
+                format!("{} ({code})", words::fault_short(fault, look.language))
+            }
+            (Some(fault), _) => words::fault_short(fault, look.language).into(),
+            (None, _) => title.clone(),
         };
         let lamp = look.value(freshness, live);
         let text = if live == palette.bad {
