@@ -149,7 +149,7 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     let look = pane.look;
     let words = look.pair(look.say(panels::GRIP), look.say(panels::grip(state)));
     let line = place.with_min_y(place.bottom() - theme::PAD);
-    let label = Label::new(&words, grip_color(pane, state)).small().center();
+    let label = Label::new(&words, grip_color(pane, state)).small();
     label
         .named(look.say(panels::GRIP))
         .put(ui, line)
