@@ -111,9 +111,7 @@ impl Action {
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
-            | Self::Trial(TrialAction::Start | TrialAction::ArmAndStart | TrialAction::Find) => {
-                Effect::Moves
-            }
+            | Self::Trial(TrialAction::Start(_) | TrialAction::ArmAndStart(_)) => Effect::Moves,
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)
@@ -161,7 +159,7 @@ impl Action {
             | Self::Input(InputAction::Map(_))
             | Self::Trial(
                 TrialAction::Plan(_)
-                | TrialAction::Wish(_)
+                | TrialAction::Goal(_)
                 | TrialAction::Note(..)
                 | TrialAction::Tags(..)
                 | TrialAction::Forget(_)

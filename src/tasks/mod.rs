@@ -16,7 +16,6 @@ pub mod save;
 pub mod series;
 #[cfg(test)]
 mod tests;
-pub mod tune;
 
 pub use crate::tasks::hand::{Reach, TaskHand};
 

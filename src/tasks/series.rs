@@ -1,12 +1,13 @@
 //! A series of grasp trials on a hand that the user armed: readings in, setpoints out, every reading judged as it comes, and
 //! every stop looked after until feedback shows rest. Decides nothing about trials.
 
-use crate::hand::{ArmEpoch, HandSample, PerDof, Speed};
+use crate::hand::{HandSample, PerDof, Speed};
 use crate::link::{Clock, Lease, LinkStatus, PollRates, Records};
 use crate::record::{Hold, Record};
 use crate::tasks::hand::TaskHand;
 use crate::trials::limits::{Abort, LinkView};
-use crate::trials::plan::{PlanError, TrialPlan};
+use crate::trials::plan::TrialPlan;
+use crate::trials::search::{SearchProgress, SettingsSearch};
 use crate::trials::series::{SeriesOrder, SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
@@ -31,6 +32,8 @@ pub enum SeriesStep {
     View(SeriesView),
     /// A trial is over.
     Trial(Box<Trial>),
+    /// What a search makes of its trials: at its start, and after each.
+    Search(Box<SearchProgress>),
 }
 
 /// What feedback says after a stop.
@@ -59,10 +62,8 @@ pub struct SeriesReport {
 /// What a series begins with.
 #[derive(Debug, Clone)]
 pub struct SeriesStart {
-    /// Plan of the series, already checked.
-    pub plan: TrialPlan,
-    /// The arming that the user gave for it.
-    pub epoch: ArmEpoch,
+    /// The series, in the arming that the user gave for it.
+    pub series: TrialSeries,
     /// The right to move the hand.
     pub lease: Lease,
     /// What was read until now.
@@ -71,47 +72,23 @@ pub struct SeriesStart {
     pub clock: Clock,
 }
 
-/// Runs a series. `tell` says whether it could keep what it was told; else the series ends. `ended` resolves when the user ends it. At the end the hand is not armed any more.
-///
-/// # Errors
-/// [`PlanError`]: the plan makes no sense, and nothing was sent.
+/// Runs a series to its end, and gives it back. `tell` says whether it could keep what it was told; else the series ends. `ended`
+/// resolves when the user ends it. At the end the hand is not armed any more.
 pub async fn series<H: TaskHand>(
     hand: &H,
     start: SeriesStart,
     ended: impl Future<Output = Abort>,
     mut tell: impl FnMut(SeriesStep) -> bool,
-) -> Result<SeriesReport, PlanError> {
-    let begun = BegunSeries {
-        series: TrialSeries::start(start.plan, start.epoch, start.clock.now())?,
-        lease: start.lease,
-        seen: start.seen,
-        clock: start.clock,
-    };
-    let (_series, report) = run(hand, begun, ended, |_, step| tell(step)).await;
-    Ok(report)
-}
-
-/// A series of either kind that is about to run.
-pub(crate) struct BegunSeries {
-    pub(crate) series: TrialSeries,
-    pub(crate) lease: Lease,
-    pub(crate) seen: HandSample,
-    pub(crate) clock: Clock,
-}
-
-/// Runs it to its end, and gives it back.
-pub(crate) async fn run<H: TaskHand>(
-    hand: &H,
-    begun: BegunSeries,
-    ended: impl Future<Output = Abort>,
-    mut tell: impl FnMut(&TrialSeries, SeriesStep) -> bool,
 ) -> (TrialSeries, SeriesReport) {
-    let BegunSeries {
+    let SeriesStart {
         mut series,
         lease,
         seen: mut sample,
         clock,
-    } = begun;
+    } = start;
+    if !tell_search(&series, &mut tell) {
+        let _nothing_moves_yet = series.end(Abort::NotKept, clock.now());
+    }
     let mut records = hand.records();
     hand.read_at(RATES);
     let mut ended = pin!(ended);
@@ -156,17 +133,24 @@ pub(crate) async fn run<H: TaskHand>(
 fn tell_news(
     series: &mut TrialSeries,
     shown: &mut Option<SeriesView>,
-    tell: &mut impl FnMut(&TrialSeries, SeriesStep) -> bool,
+    tell: &mut impl FnMut(SeriesStep) -> bool,
 ) -> bool {
     let mut is_kept = true;
     while let Some(trial) = series.finished() {
-        is_kept &= tell(series, SeriesStep::Trial(Box::new(trial)));
+        is_kept &= tell(SeriesStep::Trial(Box::new(trial)));
+        is_kept &= tell_search(series, tell);
     }
     let view = series.view();
     if shown.replace(view) != Some(view) {
-        is_kept &= tell(series, SeriesStep::View(view));
+        is_kept &= tell(SeriesStep::View(view));
     }
     is_kept
+}
+
+/// Tells where a search stands; true of what is none.
+fn tell_search(series: &TrialSeries, tell: &mut impl FnMut(SeriesStep) -> bool) -> bool {
+    let progress = series.settings_search().map(SettingsSearch::progress);
+    progress.is_none_or(|progress| tell(SeriesStep::Search(Box::new(progress))))
 }
 
 /// Holds, and waits for what feedback says of it.

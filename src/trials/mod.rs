@@ -9,7 +9,6 @@
 pub mod best;
 pub mod columns;
 pub mod estimate;
-pub mod find;
 pub mod limits;
 pub mod measure;
 pub mod plan;
@@ -17,6 +16,7 @@ pub mod plan_settings;
 pub mod recording;
 pub mod report;
 pub mod runner;
+pub mod search;
 pub mod series;
 #[cfg(test)]
 pub(crate) mod series_tests;

@@ -2,11 +2,11 @@
 
 use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
 use crate::hand::{ArmEpoch, Setpoints};
-use crate::trials::find::{Finder, Tried};
 use crate::trials::limits::{Abort, LinkView, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
 use crate::trials::runner::{Runner, Stage};
+use crate::trials::search::{SettingsSearch, Tried};
 use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -53,7 +53,7 @@ enum TrialSource {
     /// Speeds and thresholds of the plan, in order.
     Grid(VecDeque<GridTrial>),
     /// Each from what those before it measured.
-    Search(Box<Finder>),
+    Search(Box<SettingsSearch>),
 }
 
 #[derive(Debug, Clone)]
@@ -106,11 +106,11 @@ impl TrialSeries {
         })
     }
 
-    /// Starts a search in an arming that a person gave. Its wish was checked when the finder was made.
-    pub fn search(finder: Finder, epoch: ArmEpoch, now: Moment) -> Self {
-        let plan = finder.plan();
-        let total = finder.progress().closes_left;
-        let source = TrialSource::Search(Box::new(finder));
+    /// Starts a search in an arming that the user gave. Its goal was checked when the search was made.
+    pub fn search(search: SettingsSearch, epoch: ArmEpoch, now: Moment) -> Self {
+        let plan = search.plan();
+        let total = search.progress().closes_left;
+        let source = TrialSource::Search(Box::new(search));
         Self {
             total,
             ..Self::from(source, plan, SeriesBegin { epoch, now })
@@ -246,7 +246,7 @@ impl TrialSeries {
 
     /// The next trial, with the contact that its approach needs.
     fn pop(&mut self) -> Option<PlannedTrial> {
-        let finder = match &mut self.source {
+        let search = match &mut self.source {
             TrialSource::Grid(queue) => {
                 let GridTrial { repeat, setting } = queue.pop_front()?;
                 let mut plan = self.plan.clone();
@@ -259,12 +259,12 @@ impl TrialSeries {
                     plan,
                 });
             }
-            TrialSource::Search(finder) => finder,
+            TrialSource::Search(search) => search,
         };
-        let next = finder.next()?;
+        let next = search.next()?;
         let of_setting = |own: &&Tried| own.setting == next.setting;
-        let tried = finder.tried().iter().filter(of_setting).count();
-        self.total = self.number + finder.progress().closes_left;
+        let tried = search.tried().iter().filter(of_setting).count();
+        self.total = self.number + search.progress().closes_left;
         self.contact = next.contact;
         Some(PlannedTrial {
             repeat: (!next.is_probe).then_some(tried + 1),
@@ -274,10 +274,10 @@ impl TrialSeries {
     }
 
     /// The search that it is, if it is one.
-    pub fn finder(&self) -> Option<&Finder> {
+    pub fn settings_search(&self) -> Option<&SettingsSearch> {
         match &self.source {
             TrialSource::Grid(_) => None,
-            TrialSource::Search(finder) => Some(finder),
+            TrialSource::Search(search) => Some(search),
         }
     }
 
@@ -286,8 +286,8 @@ impl TrialSeries {
         let trial = self.close_trial()?;
         let missing = match &mut self.source {
             TrialSource::Grid(_) => self.learn_contact(&trial.summary),
-            TrialSource::Search(finder) => {
-                finder.learn(&trial);
+            TrialSource::Search(search) => {
+                search.learn(&trial);
                 None
             }
         };
@@ -297,7 +297,7 @@ impl TrialSeries {
         }
         let is_over = match &self.source {
             TrialSource::Grid(queue) => queue.is_empty(),
-            TrialSource::Search(finder) => finder.next().is_none(),
+            TrialSource::Search(search) => search.next().is_none(),
         };
         self.phase = if is_over {
             SeriesPhase::Over

@@ -5,7 +5,7 @@ use crate::report::{Aim, Failure, Report};
 use crate::virtual_hand::{Case, STIFFNESSES, VirtualHand, case, object};
 use handscope::hand::Dof;
 use handscope::sim::body_file::random::random;
-use handscope::trials::find::TuneWish;
+use handscope::trials::search::SearchGoal;
 
 /// Bodies, each with every stiffness.
 const BODIES: u64 = 20;
@@ -17,10 +17,10 @@ const LIMIT_G: i16 = 500;
 const BREAKS_AT_G: f64 = 700.0;
 
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
-    let wish = TuneWish::new(&[Dof::Index], LIMIT_G);
+    let goal = SearchGoal::new(&[Dof::Index], LIMIT_G);
     let bodies = (0..BODIES).flat_map(|seed| STIFFNESSES.map(|own| (seed, own)));
     let cases: Vec<Case> = bodies
-        .map(|(seed, stiffness)| case(seed, stiffness, (&wish, CHECKS)))
+        .map(|(seed, stiffness)| case(seed, stiffness, (&goal, CHECKS)))
         .collect();
     let share = |is: &dyn Fn(&Case) -> bool| {
         let count: f64 = cases.iter().filter(|own| is(own)).map(|_| 1.0).sum();
@@ -71,7 +71,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         "s",
         Aim::AtMost(180.0),
     )?;
-    let broken = (0..BODIES).filter(|seed| breaks(*seed, &wish)).map(|_| 1.0);
+    let broken = (0..BODIES).filter(|seed| breaks(*seed, &goal)).map(|_| 1.0);
     report.row(
         "  fragile objects broken",
         broken.sum(),
@@ -80,9 +80,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     )
 }
 
-fn breaks(seed: u64, wish: &TuneWish) -> bool {
+fn breaks(seed: u64, goal: &SearchGoal) -> bool {
     let mut hand = VirtualHand::new(random(seed), seed, &object(20.0, Some(BREAKS_AT_G)));
-    let run = hand.tune(wish);
+    let run = hand.tune(goal);
     let joints = run.trials.iter().flat_map(|trial| &trial.summary.joints);
     let mut peaks = joints.filter_map(|joint| joint.peak_force_g);
     peaks.any(|peak| peak >= BREAKS_AT_G)

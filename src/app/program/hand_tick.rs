@@ -97,7 +97,7 @@ pub(super) fn start_series(
         seen: hand.readings.sample,
         connection,
     };
-    hand.series = Some(SeriesRun::begin(at, plan, trials, ctx));
+    hand.series = SeriesRun::begin(at, plan, trials, ctx);
 }
 
 /// Begins the series that the hand was to be armed for, once it is. One that was not armed in time, or for which another
@@ -106,10 +106,7 @@ fn start_asked(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     let is_armed = hand.connection.is_armed();
     let now = ctx.now;
     let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
-    let is_other = |plan: &SeriesPlan| match plan {
-        SeriesPlan::Grid(plan) => *plan != trials.plan,
-        SeriesPlan::Search(wish) => *wish != trials.wish,
-    };
+    let is_other = |plan: &SeriesPlan| *plan != trials.planned(plan.kind());
     let is_over =
         |(plan, at): &mut (SeriesPlan, Moment)| is_armed || is_late(*at) || is_other(plan);
     let Some((plan, at)) = hand.series_asked.take_if(is_over) else {

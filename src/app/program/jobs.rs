@@ -9,8 +9,8 @@ use crate::app::params::ParamAction;
 use crate::app::program::hand_tick::start_series;
 use crate::app::program::hands;
 use crate::app::state::State;
+use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
-use crate::app::trials::{SeriesPlan, TrialAction};
 use crate::params::file::ParamsFile;
 use crate::poses::library::PoseLibrary;
 use crate::store::calendar::{since_1970, stamp};
@@ -101,36 +101,19 @@ impl Jobs {
             trials, settings, ..
         } = state;
         match action {
-            TrialAction::Start => {
+            TrialAction::Start(kind) => {
                 let mut trials = std::mem::take(trials);
+                let plan = trials.planned(kind);
                 hands::with_shown(state, env, |hand, _, ctx| {
-                    let plan = SeriesPlan::Grid(trials.plan.clone());
                     start_series(hand, plan, &mut trials, ctx);
                 });
                 state.trials = trials;
             }
-            TrialAction::ArmAndStart => {
-                let may_start = trials.running.is_none() && trials.plan.check().is_ok();
-                let plan = may_start.then(|| SeriesPlan::Grid(trials.plan.clone()));
-                hands::with_shown(state, env, |hand, _, ctx| {
-                    if let Some(plan) = plan {
-                        hand.arm_for_series(plan, ctx);
-                    }
-                });
-            }
-            TrialAction::Find => {
-                let mut trials = std::mem::take(trials);
-                let plan = SeriesPlan::Search(trials.wish.clone());
+            TrialAction::ArmAndStart(kind) => {
+                let plan = trials.planned(kind);
                 if trials.running.is_none() && plan.is_sound() {
-                    hands::with_shown(state, env, |hand, _, ctx| {
-                        if hand.connection.is_armed() {
-                            start_series(hand, plan, &mut trials, ctx);
-                        } else {
-                            hand.arm_for_series(plan, ctx);
-                        }
-                    });
+                    hands::with_shown(state, env, |hand, _, ctx| hand.arm_for_series(plan, ctx));
                 }
-                state.trials = trials;
             }
             TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
             TrialAction::Open(typed) => {

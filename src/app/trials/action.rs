@@ -1,7 +1,7 @@
 //! What the user may ask about grasp trials. Says nothing about how it is done.
 
-use crate::app::trials::state::SessionId;
-use crate::trials::find::TuneWish;
+use crate::app::trials::state::{SeriesKind, SessionId};
+use crate::trials::search::SearchGoal;
 use crate::trials::{Criterion, TrialPlan};
 use std::path::PathBuf;
 
@@ -10,14 +10,12 @@ use std::path::PathBuf;
 pub enum TrialAction {
     /// This is the plan now. Sends nothing.
     Plan(Box<TrialPlan>),
-    /// Run the plan, in the arming that is in force. Needs arming.
-    Start,
-    /// Arm the hand, and run the plan as soon as that holds.
-    ArmAndStart,
-    /// This is the wish of the search now. Sends nothing.
-    Wish(Box<TuneWish>),
-    /// Search for the settings of the wish, in the arming that is in force, or as soon as the hand is armed for it.
-    Find,
+    /// Run a series, in the arming that is in force. Needs arming.
+    Start(SeriesKind),
+    /// Arm the hand, and run a series as soon as that holds.
+    ArmAndStart(SeriesKind),
+    /// This is the goal of the search now. Sends nothing.
+    Goal(Box<SearchGoal>),
     /// Give a session this note.
     Note(SessionId, String),
     /// Give a session these tags, separated by commas.

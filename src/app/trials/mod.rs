@@ -19,6 +19,7 @@ pub use crate::app::trials::comparison::{
 pub use crate::app::trials::lines::{JointLines, TrialQuantity};
 pub use crate::app::trials::run::SeriesRun;
 pub use crate::app::trials::state::{
-    Search, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
+    Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialSession,
+    TrialsState,
 };
 pub use crate::app::trials::work::StartRefusal;

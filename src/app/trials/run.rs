@@ -3,10 +3,10 @@
 use crate::app::env::running::Running;
 use crate::app::trials::state::SessionId;
 use crate::hand::{ArmEpoch, Moment};
-use crate::tasks::tune::TuneStep;
+use crate::tasks::series::SeriesStep;
 use crate::trials::Abort;
-use crate::trials::find::Finding;
 use crate::trials::plan::TrialPlan;
+use crate::trials::search::Finding;
 use crate::trials::series::SeriesView;
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -35,7 +35,7 @@ pub struct SeriesRun {
     /// About how long one trial takes with the rest after it.
     pub(crate) each: Duration,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
-    pub(crate) task: Option<Running<TuneStep, SeriesEnd>>,
+    pub(crate) task: Option<Running<SeriesStep, SeriesEnd>>,
 }
 
 impl SeriesRun {

@@ -2,11 +2,11 @@
 
 use crate::app::notices::NoticeKind;
 use crate::app::trials::lines::JointLines;
-use crate::hand::Moment;
-use crate::trials::find::{FindProgress, Finding, TuneWish};
+use crate::hand::{ArmEpoch, Moment};
 use crate::trials::recording::TrialRecording;
+use crate::trials::search::{Finding, SearchGoal, SearchProgress, SettingsSearch};
 use crate::trials::session::SessionHead;
-use crate::trials::{Trial, TrialPlan, TrialSummary};
+use crate::trials::{Trial, TrialPlan, TrialSeries, TrialSummary};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -117,21 +117,49 @@ impl TrialSession {
     }
 }
 
+/// Which series is begun.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SeriesKind {
+    /// A search for settings.
+    #[default]
+    Search,
+    /// All settings of a grid.
+    Grid,
+}
+
 /// What a series is to do.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesPlan {
     /// All settings of a grid.
     Grid(TrialPlan),
     /// Search for the fastest close under a limit.
-    Search(TuneWish),
+    Search(SearchGoal),
 }
 
 impl SeriesPlan {
+    pub const fn kind(&self) -> SeriesKind {
+        match self {
+            Self::Grid(_) => SeriesKind::Grid,
+            Self::Search(_) => SeriesKind::Search,
+        }
+    }
+
     /// The plan of its trials; of a search that of the first.
     pub fn trials(&self) -> TrialPlan {
         match self {
             Self::Grid(plan) => plan.clone(),
-            Self::Search(wish) => wish.plan(wish.first_setting()),
+            Self::Search(goal) => goal.plan(goal.first_setting()),
+        }
+    }
+
+    /// The series, in an arming; `None` if it makes no sense.
+    pub fn begin(&self, epoch: ArmEpoch, now: Moment) -> Option<TrialSeries> {
+        match self {
+            Self::Grid(plan) => TrialSeries::start(plan.clone(), epoch, now).ok(),
+            Self::Search(goal) => {
+                let search = SettingsSearch::new(goal.clone()).ok()?;
+                Some(TrialSeries::search(search, epoch, now))
+            }
         }
     }
 
@@ -139,7 +167,7 @@ impl SeriesPlan {
     pub fn is_sound(&self) -> bool {
         match self {
             Self::Grid(plan) => plan.check().is_ok(),
-            Self::Search(wish) => wish.check().is_ok(),
+            Self::Search(goal) => goal.check().is_ok(),
         }
     }
 }
@@ -147,11 +175,11 @@ impl SeriesPlan {
 /// The search that runs or ran last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    pub wish: TuneWish,
+    pub goal: SearchGoal,
     /// Where its trials are.
     pub session: SessionId,
     /// Where it stands; `None` before its first word.
-    pub progress: Option<FindProgress>,
+    pub progress: Option<SearchProgress>,
     /// What it came to; `None` while it runs, and if it was ended early.
     pub finding: Option<Finding>,
 }
@@ -161,8 +189,8 @@ pub struct Search {
 pub struct TrialsState {
     /// The plan that is being written.
     pub plan: TrialPlan,
-    /// The wish that is being written.
-    pub wish: TuneWish,
+    /// The goal that is being written.
+    pub goal: SearchGoal,
     /// The search that runs or ran last.
     pub search: Option<Search>,
     /// The session whose series runs now.
@@ -185,6 +213,14 @@ pub struct TrialsState {
 }
 
 impl TrialsState {
+    /// What a series of this kind would do now.
+    pub fn planned(&self, kind: SeriesKind) -> SeriesPlan {
+        match kind {
+            SeriesKind::Grid => SeriesPlan::Grid(self.plan.clone()),
+            SeriesKind::Search => SeriesPlan::Search(self.goal.clone()),
+        }
+    }
+
     pub fn session(&self, id: SessionId) -> Option<&TrialSession> {
         self.sessions.iter().find(|session| session.id == id)
     }

@@ -14,9 +14,8 @@ use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{SeriesStart, SeriesStep, series};
-use crate::tasks::tune::{TuneStart, TuneStep, tune};
-use crate::trials::find::Finder;
 use crate::trials::plan_settings::to_settings;
+use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
 use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan, estimate};
@@ -60,10 +59,9 @@ impl TrialsState {
                 }
             }
             TrialAction::CancelForget => self.to_confirm = None,
-            TrialAction::Wish(wish) => self.wish = *wish,
-            TrialAction::Start
-            | TrialAction::ArmAndStart
-            | TrialAction::Find
+            TrialAction::Goal(goal) => self.goal = *goal,
+            TrialAction::Start(_)
+            | TrialAction::ArmAndStart(_)
             | TrialAction::Open(_)
             | TrialAction::Save(..) => {}
         }
@@ -135,13 +133,13 @@ pub(crate) struct SeriesNews {
 }
 
 impl SeriesRun {
-    /// Begins the series that is planned.
+    /// Begins a series; `None` if it makes no sense.
     pub(crate) fn begin(
         hand: SeriesHand<'_>,
         wanted: SeriesPlan,
         trials: &mut TrialsState,
         ctx: &Ctx<'_>,
-    ) -> Self {
+    ) -> Option<Self> {
         let SeriesHand {
             link,
             lease,
@@ -157,53 +155,29 @@ impl SeriesRun {
                 Err(_gone) => std::future::pending().await,
             }
         };
-        let finder = match &wanted {
-            SeriesPlan::Search(wish) => Finder::new(wish.clone()).ok(),
-            SeriesPlan::Grid(_) => None,
+        let start = SeriesStart {
+            series: wanted.begin(epoch, clock.now())?,
+            lease,
+            seen,
+            clock,
         };
-        let own = plan.clone();
         let task = Running::start(ctx.env, |steps| async move {
             let tell = |step| {
                 steps.tell(step);
                 true
             };
-            match finder {
-                Some(finder) => {
-                    let start = TuneStart {
-                        finder,
-                        epoch,
-                        lease,
-                        seen,
-                        clock,
-                    };
-                    let report = tune(&link, start, ended, tell).await;
-                    SeriesEnd {
-                        aborted: report.series.aborted,
-                        finding: report.finding,
-                    }
-                }
-                None => {
-                    let start = SeriesStart {
-                        plan: own,
-                        epoch,
-                        lease,
-                        seen,
-                        clock,
-                    };
-                    let tell = |step| tell(TuneStep::Series(step));
-                    let report = series(&link, start, ended, tell).await;
-                    SeriesEnd {
-                        aborted: report.ok().and_then(|report| report.aborted),
-                        finding: None,
-                    }
-                }
+            let (ended, report) = series(&link, start, ended, tell).await;
+            let search = ended.settings_search();
+            SeriesEnd {
+                aborted: report.aborted,
+                finding: search.and_then(SettingsSearch::finding),
             }
         });
         let head = session_head(plan.clone(), connection);
         let session = trials.add(head, SessionOrigin::Unsaved, Vec::new());
-        if let SeriesPlan::Search(wish) = wanted {
+        if let SeriesPlan::Search(goal) = wanted {
             trials.search = Some(Search {
-                wish,
+                goal,
                 session,
                 progress: None,
                 finding: None,
@@ -211,7 +185,7 @@ impl SeriesRun {
         }
         (trials.last, trials.running) = (Some(session), Some(session));
         let (count, whole) = estimate::series(&plan);
-        Self {
+        Some(Self {
             view: SeriesView {
                 number: 0,
                 total: count,
@@ -227,7 +201,7 @@ impl SeriesRun {
             each: whole / u32::try_from(count.max(1)).unwrap_or(u32::MAX),
             end: Some(end),
             task: Some(task),
-        }
+        })
     }
 
     /// Takes in what it did.
@@ -239,12 +213,12 @@ impl SeriesRun {
         let (steps, end) = task.news();
         for (at, step) in steps {
             match step {
-                TuneStep::Progress(progress) => {
+                SeriesStep::Search(progress) => {
                     if let Some(search) = trials.search_of(self.session) {
                         search.progress = Some(*progress);
                     }
                 }
-                TuneStep::Series(SeriesStep::View(view)) => {
+                SeriesStep::View(view) => {
                     if view.number != self.view.number {
                         (self.since, self.zero) = (at, at);
                         let closed = Dof::ALL
@@ -260,9 +234,7 @@ impl SeriesRun {
                     }
                     self.view = view;
                 }
-                TuneStep::Series(SeriesStep::Trial(trial)) => {
-                    trials.add_trial(self.session, *trial)
-                }
+                SeriesStep::Trial(trial) => trials.add_trial(self.session, *trial),
             }
         }
         news.end = end.map(|end| {

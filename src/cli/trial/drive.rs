@@ -13,7 +13,7 @@ use crate::link::{Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
-use crate::trials::{Abort, TrialPlan};
+use crate::trials::{Abort, TrialPlan, TrialSeries};
 use anyhow::bail;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
@@ -37,24 +37,13 @@ pub(crate) async fn drive(
     };
     let mut hand = ArmedHand::ready(&args.hand, plan).await?;
     let mut results = hand.results(out, wanted, plan).await?;
-    let start = SeriesStart {
-        plan: plan.clone(),
-        epoch: hand.epoch,
-        lease: hand.lease,
-        seen: hand.seen,
-        clock: hand.clock,
-    };
-    let ended = async {
-        hand.interrupt.wished().await;
-        Abort::Person
-    };
-    let report = series::series(&hand.link, start, ended, |step| results.take(step)).await?;
-    end(&hand.link, report).await;
+    let series = TrialSeries::start(plan.clone(), hand.epoch, hand.clock.now())?;
+    let (_series, report) = hand.run(series, &mut results).await;
     let trials = results.close(report.aborted, None)?;
     Ok(Outcome::of(trials, report, args.criterion()))
 }
 
-/// A hand that the person armed for trials on the command line.
+/// A hand that the user armed for trials on the command line.
 pub(crate) struct ArmedHand {
     pub(crate) link: LinkHandle,
     pub(crate) epoch: ArmEpoch,
@@ -109,14 +98,31 @@ impl ArmedHand {
             }
         }
     }
-}
 
-/// Says what a person must know of the stop, and waits until the hand is not armed any more.
-pub(crate) async fn end(link: &LinkHandle, report: SeriesReport) {
-    if report.stop == Some(Stop::NotConfirmed) {
-        say(session::NOT_CONFIRMED);
+    /// Runs a series to its end, says what the user must know of the stop, and waits until the hand is not armed any more.
+    pub(crate) async fn run(
+        &mut self,
+        series: TrialSeries,
+        results: &mut TrialResults<'_>,
+    ) -> (TrialSeries, SeriesReport) {
+        let start = SeriesStart {
+            series,
+            lease: self.lease,
+            seen: self.seen,
+            clock: self.clock,
+        };
+        let ended = async {
+            self.interrupt.wished().await;
+            Abort::Person
+        };
+        let take = |step| results.take(step);
+        let (series, report) = series::series(&self.link, start, ended, take).await;
+        if report.stop == Some(Stop::NotConfirmed) {
+            say(session::NOT_CONFIRMED);
+        }
+        disarm(&self.link).await;
+        (series, report)
     }
-    disarm(link).await;
 }
 
 /// Disarms, and waits until the link has done so.

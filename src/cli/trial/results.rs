@@ -83,6 +83,7 @@ impl<'a> TrialResults<'a> {
     pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
         match step {
             SeriesStep::View(view) => self.total = view.total,
+            SeriesStep::Search(_) => {}
             SeriesStep::Trial(trial) => {
                 if let Err(error) = self.add(*trial) {
                     self.error.get_or_insert(error);

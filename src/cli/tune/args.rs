@@ -1,12 +1,12 @@
-//! The command line of `tune` as clap sees it, and the wish that it stands for.
+//! The command line of `tune` as clap sees it, and the goal that it stands for.
 
 use crate::cli::parse::{angle, dof};
 use crate::cli::trial::args::place;
 use crate::hand::{Angle, Dof, PerDof};
 use crate::transport::Endpoint;
 use crate::trials::Limits;
-use crate::trials::find::TuneWish;
-use crate::trials::find::tolerance::FREE_95;
+use crate::trials::search::SearchGoal;
+use crate::trials::search::tolerance::FREE_95;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -62,9 +62,9 @@ pub(crate) struct TuneArgs {
 }
 
 impl TuneArgs {
-    /// The wish, unchecked.
-    pub(crate) fn wish(&self) -> TuneWish {
-        let usual = TuneWish::new(&self.joint, self.limit);
+    /// The goal, unchecked.
+    pub(crate) fn goal(&self) -> SearchGoal {
+        let usual = SearchGoal::new(&self.joint, self.limit);
         let close = PerDof::from_fn(|dof| self.joint.contains(&dof).then_some(self.close));
         let mut start = close.map(|target| target.map(|_| self.start));
         for (dof, at) in self.pose.iter().filter(|(dof, _)| close[*dof].is_none()) {
@@ -75,7 +75,7 @@ impl TuneArgs {
         } else {
             usual.closes
         };
-        TuneWish {
+        SearchGoal {
             hold_g: self.hold.unwrap_or(usual.hold_g),
             closes: self.closes.unwrap_or(closes),
             distribution_free: self.distribution_free,

@@ -6,25 +6,26 @@ mod output;
 pub(crate) use args::TuneArgs;
 
 use crate::cli::out::{Out, WrongUsage};
-use crate::cli::trial::drive::{ArmedHand, end};
+use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsWanted;
-use crate::tasks::tune::{self, TuneReport, TuneStart, TuneStep};
-use crate::trials::Abort;
-use crate::trials::find::Finder;
+use crate::cli::tune::output::SearchReport;
+use crate::trials::TrialSeries;
+use crate::trials::search::SettingsSearch;
 use anyhow::bail;
 
 /// Runs the search. Fails if it ended early, or if there is nothing to claim.
 pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
-    let finder = Finder::new(args.wish()).map_err(|error| WrongUsage::error(error.to_string()))?;
+    let search =
+        SettingsSearch::new(args.goal()).map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.arm {
         bail!(
             "nothing was moved: this search closes {} on the hand at {} about twenty times; when nothing but the object is in the way, add --arm",
-            joints(&finder.plan()),
+            joints(&search.plan()),
             args.hand
         );
     }
-    let report = search(out, args, finder).await?;
+    let report = run_search(out, args, search).await?;
     out.result(
         args.json,
         &output::json(args, &report),
@@ -37,8 +38,12 @@ pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
     }
 }
 
-async fn search(out: &mut Out, args: &TuneArgs, finder: Finder) -> anyhow::Result<TuneReport> {
-    let plan = finder.plan();
+async fn run_search(
+    out: &mut Out,
+    args: &TuneArgs,
+    search: SettingsSearch,
+) -> anyhow::Result<SearchReport> {
+    let plan = search.plan();
     let wanted = ResultsWanted {
         hand: &args.hand,
         json: args.json,
@@ -47,24 +52,15 @@ async fn search(out: &mut Out, args: &TuneArgs, finder: Finder) -> anyhow::Resul
     };
     let mut hand = ArmedHand::ready(&args.hand, &plan).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
-    let start = TuneStart {
-        finder,
-        epoch: hand.epoch,
-        lease: hand.lease,
-        seen: hand.seen,
-        clock: hand.clock,
+    let series = TrialSeries::search(search, hand.epoch, hand.clock.now());
+    let (series, ended) = hand.run(series, &mut results).await;
+    let search = series.settings_search();
+    let report = SearchReport {
+        series: ended,
+        finding: search.and_then(SettingsSearch::finding),
+        tried: search.map(|own| own.tried().to_vec()).unwrap_or_default(),
     };
-    let ended = async {
-        hand.interrupt.wished().await;
-        Abort::Person
-    };
-    let report = tune::tune(&hand.link, start, ended, |step| match step {
-        TuneStep::Series(step) => results.take(step),
-        TuneStep::Progress(_) => true,
-    })
-    .await;
-    end(&hand.link, report.series).await;
     let note = output::table(args, &report);
-    results.close(report.series.aborted, Some(("tune", note)))?;
+    results.close(ended.aborted, Some(("tune", note)))?;
     Ok(report)
 }

@@ -2,15 +2,24 @@
 
 use crate::cli::trial::output::stop_words;
 use crate::cli::tune::args::TuneArgs;
-use crate::tasks::series::Stop;
-use crate::tasks::tune::TuneReport;
-use crate::trials::find::{Claim, FoundApproach, Untold};
+use crate::tasks::series::{SeriesReport, Stop};
+use crate::trials::search::{Claim, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 
+/// How a search ended.
+pub(crate) struct SearchReport {
+    /// How its series ended.
+    pub(crate) series: SeriesReport,
+    /// What it came to; `None` if it was ended early.
+    pub(crate) finding: Option<Finding>,
+    /// Every close that was tried, also of a search that was ended early.
+    pub(crate) tried: Vec<Tried>,
+}
+
 /// The last line: `{"tune": {…}}`. What is not known is null.
-pub(crate) fn json(args: &TuneArgs, report: &TuneReport) -> Value {
+pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
     let claim = claim(report);
-    let wish = args.wish();
+    let goal = args.goal();
     let stop = report.series.stop.map(|stop| {
         let after_s = match stop {
             Stop::Confirmed { after } => Some(after.as_secs_f64()),
@@ -21,8 +30,8 @@ pub(crate) fn json(args: &TuneArgs, report: &TuneReport) -> Value {
     json!({ "tune": {
         "hand": args.hand.to_string(),
         "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
-        "limit_g": wish.limit_g,
-        "hold_g": wish.hold_g,
+        "limit_g": goal.limit_g,
+        "hold_g": goal.hold_g,
         "result": claim.map(ToString::to_string),
         "why": no_claim(report),
         "speed": claim.map(|claim| claim.setting.speed),
@@ -33,7 +42,7 @@ pub(crate) fn json(args: &TuneArgs, report: &TuneReport) -> Value {
         "peak_bound_g": claim.map(Claim::peak_bound_g),
         "confidence": claim.map(|claim| claim.assurance.confidence),
         "coverage": claim.map(|claim| claim.assurance.coverage),
-        "distribution_free": wish.distribution_free,
+        "distribution_free": goal.distribution_free,
         "trials": report.tried.len(),
         "peaks_g": claim.map(peaks),
         "joints": claim.map(|claim| &claim.joints),
@@ -45,7 +54,7 @@ pub(crate) fn json(args: &TuneArgs, report: &TuneReport) -> Value {
 }
 
 /// The same as a table for `session.toml`.
-pub(crate) fn table(args: &TuneArgs, report: &TuneReport) -> toml::Table {
+pub(crate) fn table(args: &TuneArgs, report: &SearchReport) -> toml::Table {
     let json = json(args, report);
     let table = json.get("tune").map(without_nulls);
     let table = table.and_then(|known| toml::Table::try_from(known).ok());
@@ -67,7 +76,7 @@ fn without_nulls(value: &Value) -> Value {
 }
 
 /// The same for people: what was tried, the result, what could not be told.
-pub(crate) fn lines(report: &TuneReport) -> Vec<String> {
+pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
     let Some(claim) = claim(report) else {
         return Vec::new();
     };
@@ -100,7 +109,7 @@ pub(crate) fn lines(report: &TuneReport) -> Vec<String> {
 }
 
 /// Why there is no claim, if there is none.
-pub(crate) fn no_claim(report: &TuneReport) -> Option<String> {
+pub(crate) fn no_claim(report: &SearchReport) -> Option<String> {
     let aborted = report.series.aborted;
     let early = aborted.map(|why| {
         let closes = report.tried.len();
@@ -114,7 +123,7 @@ pub(crate) fn no_claim(report: &TuneReport) -> Option<String> {
     early.or_else(|| none.map(ToString::to_string))
 }
 
-fn claim(report: &TuneReport) -> Option<&Claim> {
+fn claim(report: &SearchReport) -> Option<&Claim> {
     let finding = report
         .finding
         .as_ref()
@@ -122,7 +131,7 @@ fn claim(report: &TuneReport) -> Option<&Claim> {
     finding.and_then(|finding| finding.result.as_ref().ok())
 }
 
-fn untold(report: &TuneReport) -> &[Untold] {
+fn untold(report: &SearchReport) -> &[Untold] {
     report
         .finding
         .as_ref()

@@ -87,7 +87,7 @@ impl GripEstimator {
         }
     }
 
-    /// What needs a person comes first; a grasp holds once no finger is on its way.
+    /// What needs the user comes first; a grasp holds once no finger is on its way.
     fn grasp_state(&self, fingers: &PerFinger<GripEstimate>) -> GripState {
         let count = |state: GripState| {
             let states = fingers.as_array().iter().map(|finger| finger.state);

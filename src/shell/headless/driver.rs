@@ -12,7 +12,7 @@ use crate::app::recordings::RecordingAction;
 use crate::app::settings::Settings;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
-use crate::app::trials::TrialAction;
+use crate::app::trials::{SeriesKind, TrialAction};
 use crate::hand::Moment;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::link::{Clock, LinkTrouble};
@@ -341,7 +341,7 @@ impl Driver {
         let wishes = [
             Action::Arm,
             Action::Trial(TrialAction::Plan(Box::new(plan))),
-            Action::Trial(TrialAction::Start),
+            Action::Trial(TrialAction::Start(SeriesKind::Grid)),
         ];
         for wish in wishes {
             self.act(wish);

@@ -7,8 +7,9 @@ use crate::tasks::TaskHand;
 use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, series};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::limits::Abort;
-use crate::trials::plan::{Approach, Limits, PlanError, TrialGrid, TrialPlan};
+use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};
 use crate::trials::runner::Stage;
+use crate::trials::series::TrialSeries;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -44,7 +45,7 @@ struct Bench {
     hand: FakeHand,
     person: Option<oneshot::Sender<Abort>>,
     steps: Arc<Mutex<Vec<SeriesStep>>>,
-    task: JoinHandle<Result<SeriesReport, PlanError>>,
+    task: JoinHandle<(TrialSeries, SeriesReport)>,
 }
 
 impl Bench {
@@ -52,8 +53,7 @@ impl Bench {
         let hand = FakeHand::new();
         hand.arm_as(1);
         let start = SeriesStart {
-            plan,
-            epoch: ArmEpoch(1),
+            series: TrialSeries::start(plan, ArmEpoch(1), hand.clock.now()).unwrap(),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
             clock: hand.clock,
@@ -113,7 +113,8 @@ impl Bench {
     }
 
     async fn end(self) -> SeriesReport {
-        self.task.await.unwrap().unwrap()
+        let (_series, report) = self.task.await.unwrap();
+        report
     }
 }
 
@@ -125,9 +126,10 @@ fn is_move(asked: &Asked) -> bool {
 async fn a_plan_that_makes_no_sense_sends_nothing() {
     let mut senseless = plan();
     senseless.grid.speeds = vec![Speed::MIN];
-    let bench = Bench::start(senseless);
-    let hand = bench.hand.clone();
-    bench.task.await.unwrap().unwrap_err();
+    // There is no series then that a task could be given.
+    let hand = FakeHand::new();
+    hand.arm_as(1);
+    TrialSeries::start(senseless, ArmEpoch(1), hand.clock.now()).unwrap_err();
     assert_eq!(hand.asked(), []);
 }
 

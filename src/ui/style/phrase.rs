@@ -90,7 +90,7 @@ mod tests {
             cards::ALL,
             device::ALL,
             exhibit::ALL,
-            tune::find::ALL,
+            tune::search::ALL,
             notices::ALL,
             inputs::ALL,
             main::ALL,

@@ -9,8 +9,8 @@ pub(crate) mod compare_list;
 pub(crate) mod compare_table;
 #[cfg(test)]
 pub(crate) mod compare_tests;
-pub(crate) mod find_form;
 pub(crate) mod plot;
+pub(crate) mod search_form;
 pub(crate) mod start;
 pub(crate) mod tune;
 pub(crate) mod tune_form;

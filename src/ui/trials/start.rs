@@ -2,7 +2,7 @@
 //! A stop, and whatever forbids the start, takes the hold back.
 
 use crate::app::action::Action;
-use crate::app::trials::{SeriesPlan, StartRefusal, TrialAction};
+use crate::app::trials::{SeriesKind, SeriesPlan, StartRefusal, TrialAction};
 use crate::hand::Moment;
 use crate::ui::kit::{self, Button, Pane, Weight};
 use crate::ui::text::{main, tune, words};
@@ -23,14 +23,11 @@ pub(crate) struct StartButton {
 
 impl StartButton {
     /// Draws the button over what it needs.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, wanted: &SeriesPlan) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, kind: SeriesKind) {
+        let wanted = &pane.state.trials.planned(kind);
         let (look, palette) = (pane.look, pane.look.palette);
         let is_armed = pane.state.hand().connection.is_armed();
         let reason = refusal(pane, wanted);
-        let [start, arm_and_start] = match wanted {
-            SeriesPlan::Grid(_) => [TrialAction::Start, TrialAction::ArmAndStart],
-            SeriesPlan::Search(_) => [TrialAction::Find, TrialAction::Find],
-        };
         let text = if is_armed {
             tune::START_BUTTON
         } else {
@@ -45,10 +42,11 @@ impl StartButton {
         if is_armed {
             *self = Self::default();
             if response.clicked() {
-                pane.actions.push(Action::Trial(start));
+                pane.actions.push(Action::Trial(TrialAction::Start(kind)));
             }
         } else if self.is_held(ui, pane, &response) {
-            pane.actions.push(Action::Trial(arm_and_start));
+            pane.actions
+                .push(Action::Trial(TrialAction::ArmAndStart(kind)));
         }
         let (words, color) = match (&reason, is_armed) {
             (Some(reason), _) => (reason.as_str(), palette.warn),

@@ -1,31 +1,23 @@
 //! The view of grasp trials: the plan at the left, what came and comes of it at the right. Holds text in progress only.
 
-use crate::app::trials::SeriesPlan;
+use crate::app::trials::SeriesKind;
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::{self, Button, Pane, ViewRequest, Weight, format};
-use crate::ui::text::tune::find;
+use crate::ui::text::tune::search;
 use crate::ui::text::{Text, tune};
 use crate::ui::theme::{self, Icon};
 use crate::ui::trials::compare::ResultsView;
-use crate::ui::trials::find_form;
+use crate::ui::trials::search_form;
 use crate::ui::trials::start::StartButton;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::view::View;
 use egui::{Frame, Panel, Ui};
 
-/// What is tried.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-enum Way {
-    #[default]
-    Find,
-    Grid,
-}
-
 /// What the view needs between frames.
 #[derive(Debug, Default)]
 pub(crate) struct TuneView {
-    way: Way,
+    kind: SeriesKind,
     form: TuneForm,
     start: StartButton,
     results: ResultsView,
@@ -44,26 +36,24 @@ impl TuneView {
                     fold_ui(ui, pane, fold, View::Compare);
                 });
                 ui.horizontal(|ui| {
-                    let all = [(Way::Find, find::FIND), (Way::Grid, find::GRID)];
-                    kit::pick_ui(ui, look, (&mut self.way, find::WAY), all);
+                    let all = [
+                        (SeriesKind::Search, search::FIND),
+                        (SeriesKind::Grid, search::GRID),
+                    ];
+                    kit::pick_ui(ui, look, (&mut self.kind, search::WAY), all);
                 });
                 let start = Panel::bottom("start").resizable(false);
                 let start = start.show_separator_line(false).frame(Frame::NONE);
-                let trials = &pane.state.trials;
-                let wanted = match self.way {
-                    Way::Find => SeriesPlan::Search(trials.wish.clone()),
-                    Way::Grid => SeriesPlan::Grid(trials.plan.clone()),
-                };
                 start.show(ui, |ui| {
                     ui.add_space(theme::GAP);
-                    if self.way == Way::Grid {
+                    if self.kind == SeriesKind::Grid {
                         meaning_ui(ui, pane);
                     }
-                    self.start.ui(ui, pane, &wanted);
+                    self.start.ui(ui, pane, self.kind);
                 });
-                match self.way {
-                    Way::Find => find_form::ui(ui, pane),
-                    Way::Grid => self.form.ui(ui, pane),
+                match self.kind {
+                    SeriesKind::Search => search_form::ui(ui, pane),
+                    SeriesKind::Grid => self.form.ui(ui, pane),
                 }
             });
         });

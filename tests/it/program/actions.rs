@@ -17,7 +17,7 @@ use handscope::app::readings::faults::FaultKind;
 use handscope::app::recordings::{RecordingAction, RecordingExport, RecordingForm};
 use handscope::app::scan::ScanTarget;
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
-use handscope::app::trials::{SessionId, TrialAction};
+use handscope::app::trials::{SeriesKind, SessionId, TrialAction};
 use handscope::exhibit::run::ExhibitWish;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::{Persistence, by_address};
@@ -97,10 +97,11 @@ fn trials() -> Vec<TrialAction> {
     let id = SessionId(0);
     vec![
         TrialAction::Plan(Box::default()),
-        TrialAction::Start,
-        TrialAction::ArmAndStart,
-        TrialAction::Wish(Box::default()),
-        TrialAction::Find,
+        TrialAction::Start(SeriesKind::Grid),
+        TrialAction::ArmAndStart(SeriesKind::Grid),
+        TrialAction::Goal(Box::default()),
+        TrialAction::Start(SeriesKind::Search),
+        TrialAction::ArmAndStart(SeriesKind::Search),
         TrialAction::Note(id, "note".into()),
         TrialAction::Tags(id, "tag".into()),
         TrialAction::Forget(id),
@@ -500,7 +501,7 @@ async fn in_a_series_nothing_passes_that_would_come_between_it_and_the_hand() {
         }
         let mut bench = Bench::armed().await;
         bench.things();
-        bench.act(Action::Trial(TrialAction::Start));
+        bench.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
         bench.run(300).await;
         let before = Dof::ALL.map(|dof| bench.hand().controls.joints[dof].speed);
         bench.act(action.clone());

@@ -5,7 +5,7 @@ use crate::setup::line::Trouble;
 use crate::setup::window::{FORCE_SET, SPEED_SET};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
-use handscope::app::trials::{SessionOrigin, StartRefusal, TrialAction};
+use handscope::app::trials::{SeriesKind, SessionOrigin, StartRefusal, TrialAction};
 use handscope::hand::{Angle, Dof, Force, Speed};
 use handscope::poses::Preset;
 use handscope::trials::Abort;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use tokio::time::Duration;
 
 fn start(bench: &mut Bench) {
-    bench.act(Action::Trial(TrialAction::Start));
+    bench.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
 }
 
 /// A series that runs.
@@ -55,7 +55,7 @@ async fn a_series_needs_an_arming_and_free_joints() {
 }
 
 fn arm_and_start(bench: &mut Bench) {
-    bench.act(Action::Trial(TrialAction::ArmAndStart));
+    bench.act(Action::Trial(TrialAction::ArmAndStart(SeriesKind::Grid)));
 }
 
 #[tokio::test(start_paused = true)]

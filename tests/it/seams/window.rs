@@ -14,7 +14,7 @@ use handscope::app::hands::action::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;
-use handscope::app::trials::action::TrialAction;
+use handscope::app::trials::{SeriesKind, TrialAction};
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
@@ -27,7 +27,7 @@ use handscope::poses::library::{EntryId, PoseId};
 use handscope::record::LinkState;
 use handscope::sim::SharedHand;
 use handscope::transport::Endpoint;
-use handscope::trials::find::TuneWish;
+use handscope::trials::search::SearchGoal;
 use handscope::trials::{Limits, TrialGrid, TrialPlan, TrialSetting};
 use std::sync::Arc;
 use std::time::Duration;
@@ -155,23 +155,23 @@ impl Window {
     pub(super) fn series(self) -> Self {
         self.trials(|window| {
             window.arm();
-            window.act(Action::Trial(TrialAction::Start));
+            window.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
         })
     }
 
     /// The same by the one button that arms and starts.
     pub(super) fn armed_series(self) -> Self {
-        self.trials(|window| window.act(Action::Trial(TrialAction::ArmAndStart)))
+        self.trials(|window| window.act(Action::Trial(TrialAction::ArmAndStart(SeriesKind::Grid))))
     }
 
     /// A search that closes and closes.
     pub(super) fn search(mut self) -> Self {
-        let wish = TuneWish {
+        let goal = SearchGoal {
             closes: 100,
-            ..TuneWish::new(&FINGERS, 2000)
+            ..SearchGoal::new(&FINGERS, 2000)
         };
-        self.act(Action::Trial(TrialAction::Wish(Box::new(wish))));
-        self.act(Action::Trial(TrialAction::Find));
+        self.act(Action::Trial(TrialAction::Goal(Box::new(goal))));
+        self.act(Action::Trial(TrialAction::ArmAndStart(SeriesKind::Search)));
         self.until("it closes", |window| window.hand.angles()[3] < 980);
         self
     }

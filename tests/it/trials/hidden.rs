@@ -4,7 +4,7 @@ use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
-use handscope::app::trials::TrialAction;
+use handscope::app::trials::{SeriesKind, TrialAction};
 use handscope::hand::{Angle, Dof, Force, PerDof, Speed};
 use handscope::link::Clock;
 use handscope::trials::{Abort, EarlyEnd, Limits, TrialGrid, TrialPlan};
@@ -48,7 +48,7 @@ impl Hidden {
         self.act(Action::Trial(TrialAction::Plan(Box::new(plan))));
         self.act(Action::Arm);
         self.draw(Duration::from_millis(400)).await;
-        self.act(Action::Trial(TrialAction::Start));
+        self.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
         assert!(self.app.state().hand().series.is_some());
     }
 }

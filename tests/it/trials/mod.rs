@@ -1,6 +1,6 @@
 //! Grasp trials on the simulated hand.
 
-mod find;
 mod hidden;
+mod search;
 mod series;
 mod virtual_hand;

@@ -11,8 +11,8 @@ use handscope::sim::body_file::JointBody;
 use handscope::sim::body_file::random::random;
 use handscope::sim::body_file::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::trials::find::tolerance::{Assurance, tolerance_factor};
-use handscope::trials::find::{Claim, Finder, Finding, FoundApproach, TuneWish};
+use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
+use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
 use handscope::trials::{
     Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
     Until,
@@ -82,7 +82,7 @@ impl VirtualHand {
             meanwhile(&mut self.hand, &mut series);
         }
         Run {
-            finding: series.finder().and_then(Finder::finding),
+            finding: series.settings_search().and_then(SettingsSearch::finding),
             aborted: series.aborted(),
             stopped,
             trials,
@@ -134,17 +134,17 @@ impl VirtualHand {
     }
 
     /// Searches.
-    pub(crate) fn tune(&mut self, wish: &TuneWish) -> Run {
-        let finder = Finder::new(wish.clone()).unwrap();
-        self.run(TrialSeries::search(finder, EPOCH, self.now), |_, _| ())
+    pub(crate) fn tune(&mut self, goal: &SearchGoal) -> Run {
+        let search = SettingsSearch::new(goal.clone()).unwrap();
+        self.run(TrialSeries::search(search, EPOCH, self.now), |_, _| ())
     }
 
-    pub(crate) fn search(&self, wish: &TuneWish) -> TrialSeries {
-        TrialSeries::search(Finder::new(wish.clone()).unwrap(), EPOCH, self.now)
+    pub(crate) fn search(&self, goal: &SearchGoal) -> TrialSeries {
+        TrialSeries::search(SettingsSearch::new(goal.clone()).unwrap(), EPOCH, self.now)
     }
 
     /// The same setting so many times more.
-    pub(crate) fn repeat(&mut self, claim: &Claim, wish: &TuneWish, times: usize) -> Vec<Trial> {
+    pub(crate) fn repeat(&mut self, claim: &Claim, goal: &SearchGoal, times: usize) -> Vec<Trial> {
         let fast = match claim.approach {
             FoundApproach::OneStage => None,
             FoundApproach::TwoStage { fast_speed, margin } => {
@@ -152,14 +152,14 @@ impl VirtualHand {
                 Some((Speed::nearest(fast_speed), Angle::nearest(at)))
             }
         };
-        self.closes(claim.setting, fast, (wish, times))
+        self.closes(claim.setting, fast, (goal, times))
     }
 
     fn closes(
         &mut self,
         setting: TrialSetting,
         fast: Option<(Speed, Angle)>,
-        (wish, times): (&TuneWish, usize),
+        (goal, times): (&SearchGoal, usize),
     ) -> Vec<Trial> {
         let plan = TrialPlan {
             grid: TrialGrid {
@@ -175,11 +175,11 @@ impl VirtualHand {
                     until: Until::Angle(at),
                 },
             },
-            start: wish.start,
-            close: wish.close,
+            start: goal.start,
+            close: goal.close,
             limits: handscope::trials::Limits {
                 ceiling_g: 4000,
-                ..wish.limits
+                ..goal.limits
             },
             ..TrialPlan::default()
         };
@@ -231,12 +231,12 @@ pub(crate) struct Case {
 }
 
 /// One search on one body and one stiffness.
-pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)) -> Case {
+pub(crate) fn case(seed: u64, stiffness: f64, (goal, checks): (&SearchGoal, usize)) -> Case {
     let body = random(seed);
     let object = object(stiffness, None);
     let mut hand = VirtualHand::new(body, seed, &object);
     let begun = hand.now;
-    let run = hand.tune(wish);
+    let run = hand.tune(goal);
     let took_s = hand.now.since(begun).as_secs_f64();
     let peaks = run.trials.iter().filter_map(peak);
     let highest_g = peaks.fold(0.0, f64::max);
@@ -275,7 +275,7 @@ pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)
             case.claims = true;
             case.close_s = claim.close_s;
             if checks > 0 {
-                let more = hand.repeat(&claim, wish, checks);
+                let more = hand.repeat(&claim, goal, checks);
                 case.checked = more.len();
                 let bound = claim.peak_bound_g();
                 case.above = more
@@ -284,7 +284,7 @@ pub(crate) fn case(seed: u64, stiffness: f64, (wish, checks): (&TuneWish, usize)
                     .filter(|own| *own > bound)
                     .count();
             }
-            case.best_s = best_s(&mut hand, &body.joints[JOINT], (stiffness, wish));
+            case.best_s = best_s(&mut hand, &body.joints[JOINT], (stiffness, goal));
         }
     }
     case
@@ -295,10 +295,10 @@ fn peak(trial: &Trial) -> Option<f64> {
 }
 
 /// The quickest close of a fine grid whose bound from so many closes is under the limit and that holds, by the body itself.
-fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &TuneWish)) -> f64 {
+fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, goal): (f64, &SearchGoal)) -> f64 {
     let own = stiffness * body.stiffness_factor;
-    let hold = f64::from(wish.hold_g);
-    let limit = f64::from(wish.limit_g);
+    let hold = f64::from(goal.hold_g);
+    let limit = f64::from(goal.limit_g);
     let over = |speed: f64, threshold_g: f64| {
         let met = MetThreshold {
             speed: speed * body.counts_per_speed / (2000.0 / 600.0),
@@ -314,7 +314,7 @@ fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &Tu
         };
         (10..2000_i16).find(holds).unwrap()
     };
-    let k = tolerance_factor(wish.closes, Assurance::USUAL).unwrap();
+    let k = tolerance_factor(goal.closes, Assurance::USUAL).unwrap();
     let scatter = k * body.latency_scatter_ms / body.latency_ms;
     let fits = |speed: &i16| {
         let threshold = least((*speed).into());
@@ -332,7 +332,7 @@ fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, wish): (f64, &Tu
     let margin = 3.3 * body.contact_scatter / 2.0 + 2.0;
     let halt = Angle::nearest((contact + margin).ceil() as i64);
     let times = [None, Some((Speed::MAX, halt))].map(|fast| {
-        let trials = hand.closes(setting, fast, (wish, 4));
+        let trials = hand.closes(setting, fast, (goal, 4));
         let times = trials
             .iter()
             .filter_map(|trial| trial.summary.joints[0].time_to_stop_s);

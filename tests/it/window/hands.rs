@@ -11,7 +11,7 @@ use handscope::app::hands::action::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Settings;
 use handscope::app::slot::SlotId;
-use handscope::app::trials::TrialAction;
+use handscope::app::trials::{SeriesKind, TrialAction};
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof};
 use handscope::poses::library::{EntryId, PoseId};
@@ -540,7 +540,7 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     );
     assert!(bench.state().trials.running.is_some());
     arm(&mut bench);
-    bench.act(Action::Trial(TrialAction::Start));
+    bench.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
     bench.run(100);
     assert!(
         bench.state().hand().series.is_none(),

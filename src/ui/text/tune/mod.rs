@@ -1,6 +1,6 @@
 //! Sentences of the plan of grasp trials, its running, and what was measured.
 
-pub(crate) mod find;
+pub(crate) mod search;
 
 use crate::app::trials::SessionDifference;
 use crate::app::trials::TrialQuantity;

@@ -8,24 +8,25 @@ use handscope::link::{LinkConfig, Owner};
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_file::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::tasks::series::{RATES, SeriesStep, Stop, arm_limits};
-use handscope::tasks::tune::{TuneReport, TuneStart, TuneStep, tune};
-use handscope::trials::find::{FindStage, Finder, NoClaim, TuneWish};
+use handscope::tasks::series::{
+    RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, series,
+};
+use handscope::trials::search::{Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch};
 use handscope::trials::{Abort, TrialSeries};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
 const LIMIT: i16 = 500;
 
-fn wish() -> TuneWish {
-    TuneWish::new(&[Dof::Index], LIMIT)
+fn goal() -> SearchGoal {
+    SearchGoal::new(&[Dof::Index], LIMIT)
 }
 
 #[test]
 fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
     let (mut above, mut checked) = (0, 0);
     for (seed, stiffness) in [(0, 13.0), (5, 40.0), (11, 3.0), (14, 25.0)] {
-        let case = case(seed, stiffness, (&wish(), 20));
+        let case = case(seed, stiffness, (&goal(), 20));
         assert!(case.claims, "{case:?}");
         assert!(case.close_s < 1.15 * case.best_s, "{case:?}");
         assert!(case.highest_g < 1.1 * f64::from(LIMIT), "{case:?}");
@@ -41,7 +42,7 @@ fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
 fn a_fragile_object_is_never_broken() {
     for seed in 0..3 {
         let mut hand = VirtualHand::new(random(seed), seed, &object(20.0, Some(700.0)));
-        let run = hand.tune(&wish());
+        let run = hand.tune(&goal());
         let highest = highest_g(&run);
         assert!(run.finding.unwrap().result.is_ok());
         assert!(highest < 650.0, "{highest}");
@@ -58,11 +59,11 @@ fn highest_g(run: &Run) -> f64 {
 fn meanwhile(
     body: BodyParams,
     before: &Object,
-    wish: &TuneWish,
+    goal: &SearchGoal,
     mut happens: impl FnMut(&mut SimHand, usize),
 ) -> Run {
     let mut hand = VirtualHand::new(body, 3, before);
-    let series = hand.search(wish);
+    let series = hand.search(goal);
     let mut last = usize::MAX;
     hand.run(series, |hand, series: &mut TrialSeries| {
         let number = series.view().number;
@@ -84,9 +85,9 @@ fn what_keeps_it_from_a_claim_is_said() {
     let usual = BodyParams::default();
     let block = object(13.0, None);
     let dof = Dof::Index;
-    let no_object = meanwhile(usual, &Object::none(), &wish(), |_, _| ());
+    let no_object = meanwhile(usual, &Object::none(), &goal(), |_, _| ());
     assert_eq!(none(no_object), NoClaim::NoContact { dof });
-    let mut short = wish();
+    let mut short = goal();
     short.close[dof] = Some(Angle::nearest(700));
     let out_of_reach = meanwhile(usual, &block, &short, |_, _| ());
     assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
@@ -97,24 +98,24 @@ fn what_keeps_it_from_a_claim_is_said() {
             breaks_at_g: None,
         })),
     };
-    let touching = none(meanwhile(usual, &at_start, &wish(), |_, _| ()));
+    let touching = none(meanwhile(usual, &at_start, &goal(), |_, _| ()));
     assert_eq!(touching, NoClaim::Touching { dof });
     let mut noisy = usual;
     noisy.joints[dof].force_noise_g = 60.0;
-    let low = TuneWish::new(&[dof], 200);
+    let low = SearchGoal::new(&[dof], 200);
     let noise = none(meanwhile(noisy, &block, &low, |_, _| ()));
     assert!(matches!(noise, NoClaim::Noise { .. }), "{noise}");
-    let dead = none(meanwhile(usual, &block, &wish(), |hand, number| {
+    let dead = none(meanwhile(usual, &block, &goal(), |hand, number| {
         hand.set_dead(dof, number >= 1);
     }));
     assert_eq!(dead, NoClaim::Dead { dof });
-    let taken = none(meanwhile(usual, &block, &wish(), |hand, number| {
+    let taken = none(meanwhile(usual, &block, &goal(), |hand, number| {
         if number == 6 {
             hand.set_object(&Object::none());
         }
     }));
     assert_eq!(taken, NoClaim::Lost { dof });
-    let gives = none(meanwhile(usual, &block, &wish(), |hand, number| {
+    let gives = none(meanwhile(usual, &block, &goal(), |hand, number| {
         if number == 6 {
             hand.set_object(&object(4.0, None));
         }
@@ -130,7 +131,7 @@ fn what_keeps_it_from_a_claim_is_said() {
 fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     let usual = BodyParams::default();
     let block = object(13.0, None);
-    let fault = meanwhile(usual, &block, &wish(), |hand, number| {
+    let fault = meanwhile(usual, &block, &goal(), |hand, number| {
         if number == 5 {
             hand.inject_fault(Dof::Middle, Fault::OverCurrent);
         }
@@ -144,7 +145,7 @@ fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     ));
     assert!(fault.stopped && fault.finding.is_none());
     assert_eq!(fault.trials.len(), 5);
-    let locked = meanwhile(usual, &block, &wish(), |hand, _| {
+    let locked = meanwhile(usual, &block, &goal(), |hand, _| {
         hand.set_jam(Dof::Index, Some(800.0));
     });
     assert!(matches!(
@@ -159,7 +160,7 @@ fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
 
 #[test]
 fn two_joints_share_a_setting_and_each_has_its_bound() {
-    let both = TuneWish::new(&[Dof::Index, Dof::ThumbBend], 600);
+    let both = SearchGoal::new(&[Dof::Index, Dof::ThumbBend], 600);
     let mut hand = VirtualHand::new(random(2), 2, &object(13.0, None));
     let claim = hand.tune(&both).finding.unwrap().result.unwrap();
     assert_eq!(claim.joints.len(), 2);
@@ -173,10 +174,10 @@ fn two_joints_share_a_setting_and_each_has_its_bound() {
 
 #[test]
 fn without_a_distribution_the_bound_is_the_largest_of_22_closes() {
-    let free = TuneWish {
+    let free = SearchGoal {
         closes: 22,
         distribution_free: true,
-        ..wish()
+        ..goal()
     };
     let mut hand = VirtualHand::new(random(1), 1, &object(25.0, None));
     let finding = hand.tune(&free).finding.unwrap();
@@ -187,8 +188,15 @@ fn without_a_distribution_the_bound_is_the_largest_of_22_closes() {
     assert_eq!(finding.tried.iter().filter(|own| own.confirms).count(), 22);
 }
 
+/// How a search over a link ended.
+struct SearchEnd {
+    series: SeriesReport,
+    finding: Option<Finding>,
+    tried: usize,
+}
+
 /// A search over a link; it ends when the person sends.
-async fn over_a_link(ends_after: Option<usize>) -> (TuneReport, Vec<TuneStep>, LinkState) {
+async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, LinkState) {
     let hand = hand::shared(SimConfig {
         scenario: Scenario::Rigid,
         ..SimConfig::default()
@@ -205,17 +213,17 @@ async fn over_a_link(ends_after: Option<usize>) -> (TuneReport, Vec<TuneStep>, L
             seen = *sample;
         }
     }
-    let mut wish = wish();
-    wish.start[Dof::Index] = Some(Angle::nearest(620));
-    let finder = Finder::new(wish).unwrap();
+    let mut goal = goal();
+    goal.start[Dof::Index] = Some(Angle::nearest(620));
+    let search = SettingsSearch::new(goal).unwrap();
     let lease = link.grant(Owner::Task);
-    link.arm(lease, arm_limits(&finder.plan())).unwrap();
+    link.arm(lease, arm_limits(&search.plan())).unwrap();
     while link.status().armed.is_none() {
         let _record = records.next().await;
     }
-    let start = TuneStart {
-        finder,
-        epoch: link.status().armed.unwrap(),
+    let epoch = link.status().armed.unwrap();
+    let start = SeriesStart {
+        series: TrialSeries::search(search, epoch, clock.now()),
         lease,
         seen,
         clock,
@@ -229,8 +237,8 @@ async fn over_a_link(ends_after: Option<usize>) -> (TuneReport, Vec<TuneStep>, L
         }
     };
     let mut steps = Vec::new();
-    let report = tune(&link, start, ended, |step| {
-        let trials = |step: &TuneStep| matches!(step, TuneStep::Series(SeriesStep::Trial(_)));
+    let (ended, report) = series(&link, start, ended, |step| {
+        let trials = |step: &SeriesStep| matches!(step, SeriesStep::Trial(_));
         steps.push(step);
         let count = steps.iter().filter(|own| trials(own)).count();
         if ends_after.is_some_and(|after| count >= after)
@@ -242,7 +250,13 @@ async fn over_a_link(ends_after: Option<usize>) -> (TuneReport, Vec<TuneStep>, L
     })
     .await;
     tokio::time::sleep(Duration::from_millis(200)).await;
-    (report, steps, link.status().state)
+    let search = ended.settings_search().unwrap();
+    let end = SearchEnd {
+        series: report,
+        finding: search.finding(),
+        tried: search.tried().len(),
+    };
+    (end, steps, link.status().state)
 }
 
 #[tokio::test(start_paused = true)]
@@ -252,19 +266,19 @@ async fn over_a_link_it_claims_tells_its_progress_and_disarms() {
     let claim = report.finding.unwrap().result.unwrap();
     assert!(claim.peak_bound_g() <= f64::from(LIMIT));
     assert_eq!(state, LinkState::Monitoring);
-    let stages: Vec<FindStage> = steps
+    let stages: Vec<SearchStage> = steps
         .iter()
         .filter_map(|step| match step {
-            TuneStep::Progress(progress) => Some(progress.stage),
-            TuneStep::Series(_) => None,
+            SeriesStep::Search(progress) => Some(progress.stage),
+            SeriesStep::View(_) | SeriesStep::Trial(_) => None,
         })
         .collect();
-    assert_eq!(stages.first(), Some(&FindStage::Probing));
+    assert_eq!(stages.first(), Some(&SearchStage::Probing));
     assert!(
-        stages.contains(&FindStage::Confirming { done: 9, of: 10 }),
+        stages.contains(&SearchStage::Confirming { done: 9, of: 10 }),
         "{stages:?}"
     );
-    assert_eq!(stages.last(), Some(&FindStage::Over));
+    assert_eq!(stages.last(), Some(&SearchStage::Over));
 }
 
 #[tokio::test(start_paused = true)]
@@ -273,6 +287,6 @@ async fn a_person_ends_it_at_once_and_the_hand_is_held() {
     assert_eq!(report.series.aborted, Some(Abort::Person));
     assert!(matches!(report.series.stop, Some(Stop::Confirmed { .. })));
     assert!(report.finding.is_none());
-    assert_eq!(report.tried.len(), 3);
+    assert_eq!(report.tried, 3);
     assert_ne!(state, LinkState::Armed);
 }

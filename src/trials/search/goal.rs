@@ -1,10 +1,10 @@
-//! What a person wants of a close, checked once, and the plan that its trials are made from. Runs nothing.
+//! What the user wants of a close, checked once, and the plan that its trials are made from. Runs nothing.
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::trials::find::tolerance::{Assurance, FREE_90, FREE_95};
 use crate::trials::plan::{
     Approach, Limits, PlanError, TrialGrid, TrialPlan, TrialSetting, WAY_MIN,
 };
+use crate::trials::search::tolerance::{Assurance, FREE_90, FREE_95};
 use std::time::Duration;
 
 /// The smallest limit that can be asked for, g: sensors rarely tell less from their noise.
@@ -29,7 +29,7 @@ const REST: Duration = Duration::from_millis(300);
 
 /// The fastest close that is wanted: its peak stays under a limit, and it holds with some force.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TuneWish {
+pub struct SearchGoal {
     /// Limit of the peak on each joint, g.
     pub limit_g: i16,
     /// What is left on each joint once the grip has relaxed, g at least.
@@ -44,15 +44,15 @@ pub struct TuneWish {
     pub close: PerDof<Option<Angle>>,
     /// The temperatures; the ceiling of the force comes from the limit.
     pub limits: Limits,
-    /// In the words of a person.
+    /// In the words of the user.
     pub note: String,
     /// Words to find it by.
     pub tags: Vec<String>,
 }
 
-/// Why a wish cannot be tried.
+/// Why a goal cannot be tried.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum WishError {
+pub enum GoalError {
     /// A limit outside what can be measured and set.
     #[error("a limit of {got} g is not between {LIMIT_MIN_G} and {} g", Force::RATED.get())]
     Limit { got: i16 },
@@ -74,14 +74,14 @@ pub enum WishError {
     Plan(#[from] PlanError),
 }
 
-impl Default for TuneWish {
+impl Default for SearchGoal {
     fn default() -> Self {
         Self::new(&[Dof::Index], LIMIT_G)
     }
 }
 
-impl TuneWish {
-    /// A wish for some joints from open, with what is usual for the rest.
+impl SearchGoal {
+    /// A goal for some joints from open, with what is usual for the rest.
     pub fn new(joints: &[Dof], limit_g: i16) -> Self {
         let of = |angle| PerDof::from_fn(|dof| joints.contains(&dof).then_some(angle));
         Self {
@@ -116,21 +116,21 @@ impl TuneWish {
     /// Checks it.
     ///
     /// # Errors
-    /// [`WishError`]: what has to change.
-    pub fn check(&self) -> Result<(), WishError> {
+    /// [`GoalError`]: what has to change.
+    pub fn check(&self) -> Result<(), GoalError> {
         let (limit, hold, got) = (self.limit_g, self.hold_g, self.closes);
         if !(LIMIT_MIN_G..=Force::RATED.get()).contains(&limit) {
-            return Err(WishError::Limit { got: limit });
+            return Err(GoalError::Limit { got: limit });
         }
         let most = whole(f64::from(limit) * HOLD_SHARE_MAX);
         if !(0..=most).contains(&hold) {
-            return Err(WishError::Hold { hold, limit, most });
+            return Err(GoalError::Hold { hold, limit, most });
         }
         if !(CLOSES_MIN..=CLOSES_MAX).contains(&got) {
-            return Err(WishError::Closes { got });
+            return Err(GoalError::Closes { got });
         }
         if self.distribution_free && got < FREE_90 {
-            return Err(WishError::TooFew { got });
+            return Err(GoalError::TooFew { got });
         }
         Ok(self.plan(self.first_setting()).check()?)
     }
@@ -196,20 +196,20 @@ mod tests {
 
     #[test]
     fn a_wish_that_cannot_be_tried_is_refused_with_what_has_to_change() {
-        let good = TuneWish::new(&[Dof::Index], 500);
+        let good = SearchGoal::new(&[Dof::Index], 500);
         assert_eq!(good.check(), Ok(()));
         assert_eq!(good.hold_g, 200);
         for (change, words) in [
-            ((|w| w.limit_g = 29) as fn(&mut TuneWish), "30 and 2000"),
+            ((|w| w.limit_g = 29) as fn(&mut SearchGoal), "30 and 2000"),
             (|w| w.limit_g = 2001, "30 and 2000"),
             (|w| w.hold_g = 401, "at most 400 g"),
             (|w| w.closes = 4, "5 and 100"),
             (|w| w.distribution_free = true, "59 say 95 of 100"),
             (|w| w.close = PerDof::splat(None), "no joint takes part"),
         ] {
-            let mut wish = good.clone();
-            change(&mut wish);
-            let error = wish.check().unwrap_err().to_string();
+            let mut goal = good.clone();
+            change(&mut goal);
+            let error = goal.check().unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
     }

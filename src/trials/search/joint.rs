@@ -2,9 +2,9 @@
 
 use crate::hand::Dof;
 use crate::hand::grip::slip::median;
-use crate::trials::find::close::CloseFacts;
-use crate::trials::find::finding::NoClaim;
-use crate::trials::find::growth::{Contact, PeakGrowth};
+use crate::trials::search::close::CloseFacts;
+use crate::trials::search::finding::NoClaim;
+use crate::trials::search::growth::{Contact, PeakGrowth};
 
 /// Scatter of a contact as published, units of ANGLE_ACT (7.5 counts of the position), and for how many closes that counts.
 const CONTACT_SCATTER: f64 = 3.75;

@@ -3,17 +3,17 @@
 //! nothing and reads no clock.
 
 use crate::hand::{Angle, Force, PerDof, Speed};
-use crate::trials::find::close::CloseFacts;
-use crate::trials::find::confirm::Confirmation;
-use crate::trials::find::finding::{
-    Claim, FindProgress, FindStage, Finding, FoundApproach, NoClaim, Tried, Untold,
-};
-use crate::trials::find::growth::Contact;
-use crate::trials::find::joint::JointModel;
-use crate::trials::find::tolerance::tolerance_factor;
-use crate::trials::find::wish::{LIMIT_MIN_G, TuneWish, WishError, whole};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::seconds;
+use crate::trials::search::close::CloseFacts;
+use crate::trials::search::confirm::Confirmation;
+use crate::trials::search::finding::{
+    Claim, Finding, FoundApproach, NoClaim, SearchProgress, SearchStage, Tried, Untold,
+};
+use crate::trials::search::goal::{GoalError, LIMIT_MIN_G, SearchGoal, whole};
+use crate::trials::search::growth::Contact;
+use crate::trials::search::joint::JointModel;
+use crate::trials::search::tolerance::tolerance_factor;
 use crate::trials::summary::Trial;
 use std::time::Duration;
 
@@ -62,7 +62,7 @@ pub struct NextClose {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum FindPhase {
+enum SearchPhase {
     First,
     Second,
     Rising { rises: usize },
@@ -78,10 +78,10 @@ pub(crate) struct Choice {
 
 /// A search under way.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finder {
-    wish: TuneWish,
+pub struct SettingsSearch {
+    goal: SearchGoal,
     joints: Vec<JointModel>,
-    phase: FindPhase,
+    phase: SearchPhase,
     choice: Choice,
     threshold_g: f64,
     /// Speeds from here on are over the limit.
@@ -94,22 +94,22 @@ pub struct Finder {
     took: Option<Duration>,
 }
 
-impl Finder {
-    /// A search for this wish.
+impl SettingsSearch {
+    /// A search for this goal.
     ///
     /// # Errors
-    /// [`WishError`]: it cannot be tried.
-    pub fn new(wish: TuneWish) -> Result<Self, WishError> {
-        wish.check()?;
-        let first = wish.first_setting();
-        let joints = wish.joints().map(JointModel::new).collect();
+    /// [`GoalError`]: it cannot be tried.
+    pub fn new(goal: SearchGoal) -> Result<Self, GoalError> {
+        goal.check()?;
+        let first = goal.first_setting();
+        let joints = goal.joints().map(JointModel::new).collect();
         let setting = TrialSetting {
-            speed: gentle(&wish, first),
+            speed: gentle(&goal, first),
             ..first
         };
         Ok(Self {
             joints,
-            phase: FindPhase::First,
+            phase: SearchPhase::First,
             choice: Choice {
                 setting,
                 approach: FoundApproach::OneStage,
@@ -121,18 +121,18 @@ impl Finder {
             untold: Vec::new(),
             result: None,
             took: None,
-            wish,
+            goal,
         })
     }
 
     /// The plan that its trials begin with: joints, ways, limits. Speed and threshold are the first's.
     pub fn plan(&self) -> TrialPlan {
-        self.wish.plan(self.choice.setting)
+        self.goal.plan(self.choice.setting)
     }
 
     /// What was wished for.
-    pub const fn wish(&self) -> &TuneWish {
-        &self.wish
+    pub const fn goal(&self) -> &SearchGoal {
+        &self.goal
     }
 
     /// What it came to, once it is over.
@@ -151,24 +151,24 @@ impl Finder {
     }
 
     /// Where it stands.
-    pub fn progress(&self) -> FindProgress {
-        let of = self.wish.closes;
+    pub fn progress(&self) -> SearchProgress {
+        let of = self.goal.closes;
         let (stage, closes_left) = match &self.phase {
-            _ if self.result.is_some() => (FindStage::Over, 0),
-            FindPhase::First => (FindStage::Probing, of + 8),
-            FindPhase::Second => (FindStage::Probing, of + 7),
-            FindPhase::Rising { rises } => (
-                FindStage::Rising,
+            _ if self.result.is_some() => (SearchStage::Over, 0),
+            SearchPhase::First => (SearchStage::Probing, of + 8),
+            SearchPhase::Second => (SearchStage::Probing, of + 7),
+            SearchPhase::Rising { rises } => (
+                SearchStage::Rising,
                 of + 6_usize.saturating_sub(*rises).max(1),
             ),
-            FindPhase::Confirming(confirmation) => {
+            SearchPhase::Confirming(confirmation) => {
                 let done = confirmation.closes();
-                (FindStage::Confirming { done, of }, of - done.min(of))
+                (SearchStage::Confirming { done, of }, of - done.min(of))
             }
         };
         let each = self.took.unwrap_or(CLOSE_TAKES);
         let left = u32::try_from(closes_left).map_or(Duration::MAX, |n| each.saturating_mul(n));
-        FindProgress {
+        SearchProgress {
             stage,
             tried: self.tried.clone(),
             closes_left,
@@ -181,7 +181,7 @@ impl Finder {
         if self.result.is_some() {
             return None;
         }
-        let mut plan = self.wish.plan(self.choice.setting);
+        let mut plan = self.goal.plan(self.choice.setting);
         if let FoundApproach::TwoStage { fast_speed, margin } = self.choice.approach {
             plan.approach = Approach::TwoStage {
                 fast: Speed::nearest(fast_speed),
@@ -196,7 +196,7 @@ impl Finder {
             plan,
             setting: self.choice.setting,
             contact,
-            is_probe: matches!(self.phase, FindPhase::First | FindPhase::Second),
+            is_probe: matches!(self.phase, SearchPhase::First | SearchPhase::Second),
         })
     }
 
@@ -235,10 +235,10 @@ impl Finder {
         self.check_noise(facts)?;
         let slips = self.look(facts)?;
         let at = self.at(self.speed());
-        let wish = &self.wish;
+        let goal = &self.goal;
         for (joint, facts) in self.joints.iter_mut().zip(facts) {
-            if self.phase == FindPhase::First {
-                let (start, _) = wish.way(joint.dof);
+            if self.phase == SearchPhase::First {
+                let (start, _) = goal.way(joint.dof);
                 joint.learn_rate(facts, start, at.speed);
             }
             if let Some(gives) = joint.learn(facts, at) {
@@ -251,13 +251,13 @@ impl Finder {
             return self.narrow(facts, slips);
         }
         match &mut self.phase {
-            FindPhase::First => self.probe_again(),
-            FindPhase::Second => self.rise(0),
-            FindPhase::Rising { rises } => {
+            SearchPhase::First => self.probe_again(),
+            SearchPhase::Second => self.rise(0),
+            SearchPhase::Rising { rises } => {
                 let rises = *rises + 1;
                 self.rise(rises)
             }
-            FindPhase::Confirming(confirmation) => {
+            SearchPhase::Confirming(confirmation) => {
                 confirmation.add(facts, &self.joints, at);
                 self.confirmed()
             }
@@ -267,7 +267,7 @@ impl Finder {
     /// What ends it at once; whether the object slipped.
     fn look(&mut self, facts: &[CloseFacts]) -> Result<bool, NoClaim> {
         let mut slips = false;
-        let is_first = self.phase == FindPhase::First;
+        let is_first = self.phase == SearchPhase::First;
         for joint in facts {
             let dof = joint.dof;
             if joint.is_dead {
@@ -324,7 +324,7 @@ impl Finder {
             if limit < least_g {
                 return Err(NoClaim::Noise {
                     dof: joint.dof,
-                    limit_g: self.wish.limit_g,
+                    limit_g: self.goal.limit_g,
                     noise_g,
                     least_g,
                 });
@@ -334,7 +334,7 @@ impl Finder {
     }
 
     fn limit(&self) -> f64 {
-        f64::from(self.wish.limit_g)
+        f64::from(self.goal.limit_g)
     }
 
     fn speed(&self) -> f64 {
@@ -350,7 +350,7 @@ impl Finder {
 
     /// The threshold that leaves what is wished for.
     fn choose_threshold(&mut self) {
-        let hold = f64::from(self.wish.hold_g);
+        let hold = f64::from(self.goal.hold_g);
         let joints = self.joints.iter();
         let needs = joints.map(|joint| {
             let least = THRESHOLD_MIN_G.max(THRESHOLD_SIGMAS * joint.noise_g());
@@ -361,7 +361,7 @@ impl Finder {
     }
 
     fn probe_again(&mut self) -> Result<(), NoClaim> {
-        self.phase = FindPhase::Second;
+        self.phase = SearchPhase::Second;
         self.choose_threshold();
         let speed = self.speed();
         let approach = FoundApproach::TwoStage {
@@ -401,7 +401,7 @@ impl Finder {
     /// The way to the contact of the joint that has the least, units of ANGLE_ACT.
     fn room(&self) -> f64 {
         let room = self.joints.iter().map(|joint| {
-            let (start, _) = self.wish.way(joint.dof);
+            let (start, _) = self.goal.way(joint.dof);
             start - joint.contact().unwrap_or(start)
         });
         room.fold(f64::INFINITY, f64::min)
@@ -453,7 +453,7 @@ impl Finder {
 
     /// The fastest that is likely to be confirmed.
     fn fastest_likely(&self) -> Option<f64> {
-        let k = tolerance_factor(self.wish.closes, self.wish.assurance()).unwrap_or(3.0);
+        let k = tolerance_factor(self.goal.closes, self.goal.assurance()).unwrap_or(3.0);
         self.fastest(|joint, at| Some(joint.growth.likely(at)? + k * joint.growth.scatter(at)))
     }
 
@@ -468,7 +468,7 @@ impl Finder {
         };
         let is_worth = self.gain(next) > WORTH_ONE;
         if rises < RISES_MAX && is_worth && next > self.speed() {
-            self.phase = FindPhase::Rising { rises };
+            self.phase = SearchPhase::Rising { rises };
             self.choose(next, self.approach(next));
             return Ok(());
         }
@@ -492,13 +492,13 @@ impl Finder {
         }
         self.choose(speed, self.approach(speed));
         let dofs = self.joints.iter().map(|joint| joint.dof);
-        self.phase = FindPhase::Confirming(Confirmation::new(dofs));
+        self.phase = SearchPhase::Confirming(Confirmation::new(dofs));
         Ok(())
     }
 
     /// After a close over the limit, or a slip: something slower.
     fn narrow(&mut self, facts: &[CloseFacts], slips: bool) -> Result<(), NoClaim> {
-        if self.barred <= f64::from(SLOWEST) || matches!(self.phase, FindPhase::First) && slips {
+        if self.barred <= f64::from(SLOWEST) || matches!(self.phase, SearchPhase::First) && slips {
             let worst = facts.iter().max_by(|a, b| {
                 let (a, b) = (a.peak_g.unwrap_or(0.0), b.peak_g.unwrap_or(0.0));
                 a.total_cmp(&b)
@@ -511,9 +511,9 @@ impl Finder {
             });
         }
         match self.phase {
-            FindPhase::First => self.probe_again().and_then(|()| self.slower()),
-            FindPhase::Second | FindPhase::Rising { .. } => self.rise(RISES_MAX),
-            FindPhase::Confirming(_) => self.slower(),
+            SearchPhase::First => self.probe_again().and_then(|()| self.slower()),
+            SearchPhase::Second | SearchPhase::Rising { .. } => self.rise(RISES_MAX),
+            SearchPhase::Confirming(_) => self.slower(),
         }
     }
 
@@ -521,7 +521,7 @@ impl Finder {
     fn slower(&mut self) -> Result<(), NoClaim> {
         self.choose_threshold();
         match self.fastest_likely() {
-            Some(speed) if self.phase == FindPhase::Second => {
+            Some(speed) if self.phase == SearchPhase::Second => {
                 let approach = self.choice.approach;
                 self.choose(speed, approach);
                 Ok(())
@@ -552,16 +552,16 @@ impl Finder {
 
     /// Looks at a setting that was confirmed as often as asked: a claim, something slower, or something faster.
     fn confirmed(&mut self) -> Result<(), NoClaim> {
-        let FindPhase::Confirming(confirmation) = &self.phase else {
+        let SearchPhase::Confirming(confirmation) = &self.phase else {
             return Ok(());
         };
-        if confirmation.closes() < self.wish.closes {
+        if confirmation.closes() < self.goal.closes {
             return Ok(());
         }
         let confirmation = confirmation.clone();
-        let bound = confirmation.bound(&self.wish);
+        let bound = confirmation.bound(&self.goal);
         let (dof, holds_g) = confirmation.least_hold();
-        let wanted = f64::from(self.wish.hold_g);
+        let wanted = f64::from(self.goal.hold_g);
         if holds_g < wanted {
             let before = self.threshold_g;
             self.choose_threshold();
@@ -570,7 +570,7 @@ impl Finder {
                 return Err(NoClaim::HoldsTooLittle {
                     dof,
                     holds_g,
-                    wanted_g: self.wish.hold_g,
+                    wanted_g: self.goal.hold_g,
                 });
             }
             let speed = self.fastest_likely().unwrap_or(f64::from(SLOWEST));
@@ -626,11 +626,11 @@ impl Finder {
         for own in self.tried.iter_mut().skip(first) {
             own.confirms = true;
         }
-        let joints = confirmation.claims(&self.joints, &self.wish);
+        let joints = confirmation.claims(&self.joints, &self.goal);
         for joint in joints.iter().filter(|joint| joint.stiffness_g.is_none()) {
             self.untold.push(Untold::Stiffness { dof: joint.dof });
         }
-        if !self.wish.distribution_free {
+        if !self.goal.distribution_free {
             self.untold.push(Untold::Distribution);
         }
         self.result = Some(Ok(Claim {
@@ -639,20 +639,20 @@ impl Finder {
             joints,
             close_s: confirmation.close_s(),
             closes,
-            assurance: self.wish.assurance(),
-            distribution_free: self.wish.distribution_free,
+            assurance: self.goal.assurance(),
+            distribution_free: self.goal.distribution_free,
         }));
     }
 }
 
 /// The speed of the first close: slow, and slower where even that may be over the limit on a stiff object.
-fn gentle(wish: &TuneWish, setting: TrialSetting) -> Speed {
+fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
     use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
     let threshold = f64::from(setting.force.get());
     let worst =
         |speed: f64| 1.5 * overshoot_g(speed, threshold).max(second_hand_overshoot_g(speed));
     let mut slow = setting.speed.get();
-    while slow > 5 && threshold + worst(f64::from(slow)) > f64::from(wish.limit_g) {
+    while slow > 5 && threshold + worst(f64::from(slow)) > f64::from(goal.limit_g) {
         slow -= 1;
     }
     Speed::nearest(slow)

@@ -1,8 +1,8 @@
 //! What a search came to: a claim that can be believed, or why there is none; what was tried, and what could not be told. Pure.
 
 use crate::hand::Dof;
-use crate::trials::find::tolerance::Assurance;
 use crate::trials::plan::TrialSetting;
+use crate::trials::search::tolerance::Assurance;
 use serde::Serialize;
 use std::time::Duration;
 
@@ -221,7 +221,7 @@ pub struct Finding {
 
 /// What a search does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FindStage {
+pub enum SearchStage {
     /// Slow closes that look for the contact.
     Probing,
     /// Upwards from slow.
@@ -238,8 +238,8 @@ pub enum FindStage {
 
 /// Where a search stands, to be shown.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FindProgress {
-    pub stage: FindStage,
+pub struct SearchProgress {
+    pub stage: SearchStage,
     /// Every close so far.
     pub tried: Vec<Tried>,
     /// Closes that are still to come, about.

@@ -1,5 +1,5 @@
 //! The search for settings: what is wanted as a sentence whose figures are fields, how far it is, and what it came to with what
-//! is done with it. Every change is one action with the whole wish.
+//! is done with it. Every change is one action with the whole goal.
 
 use crate::app::action::Action;
 use crate::app::params::{ParamAction, ParamRefusal};
@@ -8,10 +8,10 @@ use crate::hand::{Angle, Dof, PerDof, Speed};
 use crate::params::values::Params;
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
-use crate::trials::find::wish::whole;
-use crate::trials::find::{Claim, FoundApproach, TuneWish};
+use crate::trials::search::goal::whole;
+use crate::trials::search::{Claim, FoundApproach, SearchGoal};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
-use crate::ui::text::tune::find;
+use crate::ui::text::tune::search;
 use crate::ui::text::{Text, device, main, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::{defaults, kept_ui};
@@ -24,7 +24,7 @@ pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.state.hand();
     let runs = hand.series.is_some() || hand.series_asked.is_some();
     ScrollArea::vertical()
-        .id_salt("find")
+        .id_salt("search")
         .auto_shrink(false)
         .show(ui, |ui| {
             ui.add_enabled_ui(!runs, |ui| wish_ui(ui, pane, runs));
@@ -37,40 +37,40 @@ pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn wish_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     let look = pane.look;
-    let mut wish = pane.state.trials.wish.clone();
+    let mut goal = pane.state.trials.goal.clone();
     let disabled = runs.then(|| look.say(main::SERIES_RUNS));
-    kit::say_ui(ui, look.say(find::OBJECT), look.palette.muted);
+    kit::say_ui(ui, look.say(search::OBJECT), look.palette.muted);
     row_ui(ui, pane, tune::JOINTS, |ui, pane| {
-        joints_ui(ui, pane, &mut wish, disabled)
+        joints_ui(ui, pane, &mut goal, disabled)
     });
-    if let Some(limit) = number_ui(ui, pane, find::LIMIT, (30..=2000, wish.limit_g)) {
-        let was_usual = wish.hold_g == TuneWish::usual_hold_g(wish.limit_g);
-        wish.limit_g = limit;
+    if let Some(limit) = number_ui(ui, pane, search::LIMIT, (30..=2000, goal.limit_g)) {
+        let was_usual = goal.hold_g == SearchGoal::usual_hold_g(goal.limit_g);
+        goal.limit_g = limit;
         if was_usual {
-            wish.hold_g = TuneWish::usual_hold_g(limit);
+            goal.hold_g = SearchGoal::usual_hold_g(limit);
         }
     }
-    if let Some(hold) = number_ui(ui, pane, find::HOLD, (0..=1600, wish.hold_g)) {
-        wish.hold_g = hold;
+    if let Some(hold) = number_ui(ui, pane, search::HOLD, (0..=1600, goal.hold_g)) {
+        goal.hold_g = hold;
     }
-    let closes = i16::try_from(wish.closes).unwrap_or(i16::MAX);
-    if let Some(closes) = number_ui(ui, pane, find::CLOSES, (5..=100, closes)) {
-        wish.closes = usize::try_from(closes).unwrap_or(wish.closes);
+    let closes = i16::try_from(goal.closes).unwrap_or(i16::MAX);
+    if let Some(closes) = number_ui(ui, pane, search::CLOSES, (5..=100, closes)) {
+        goal.closes = usize::try_from(closes).unwrap_or(goal.closes);
     }
     row_ui(ui, pane, Text::new("", ""), |ui, _| {
-        let tick = ui.checkbox(&mut wish.distribution_free, look.say(find::FREE));
-        tick.on_hover_text(look.tip(find::FREE));
+        let tick = ui.checkbox(&mut goal.distribution_free, look.say(search::FREE));
+        tick.on_hover_text(look.tip(search::FREE));
     });
-    if let Err(wrong) = wish.check() {
-        kit::say_ui(ui, &find::wish_error(look, wrong), look.palette.bad);
+    if let Err(wrong) = goal.check() {
+        kit::say_ui(ui, &search::wish_error(look, wrong), look.palette.bad);
     }
-    if wish != pane.state.trials.wish && !runs {
+    if goal != pane.state.trials.goal && !runs {
         pane.actions
-            .push(Action::Trial(TrialAction::Wish(Box::new(wish))));
+            .push(Action::Trial(TrialAction::Goal(Box::new(goal))));
     }
 }
 
-fn joints_ui(ui: &mut Ui, pane: &Pane<'_>, wish: &mut TuneWish, disabled: Option<&str>) {
+fn joints_ui(ui: &mut Ui, pane: &Pane<'_>, goal: &mut SearchGoal, disabled: Option<&str>) {
     let look = pane.look;
     let width = (ui.available_width() - theme::STEP) / 2.0;
     ui.vertical(|ui| {
@@ -78,15 +78,15 @@ fn joints_ui(ui: &mut Ui, pane: &Pane<'_>, wish: &mut TuneWish, disabled: Option
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = theme::STEP;
                 for dof in pair.iter().copied() {
-                    let takes_part = wish.close[dof].is_some();
+                    let takes_part = goal.close[dof].is_some();
                     let joint = look.say(words::dof(dof));
                     let name = look.fill(tune::JOINT_NAME, &[&joint]);
                     let button = Button::new(joint, look.say(tune::JOINT_TIP)).named(&name);
                     let button = button.disabled(disabled).switch(takes_part);
                     let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
                     if button.put(ui, look, place, id).clicked() {
-                        wish.start[dof] = (!takes_part).then_some(Angle::MAX);
-                        wish.close[dof] = (!takes_part).then_some(Angle::MIN);
+                        goal.start[dof] = (!takes_part).then_some(Angle::MAX);
+                        goal.close[dof] = (!takes_part).then_some(Angle::MIN);
                     }
                 }
             });
@@ -135,27 +135,30 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
             match &finding.result {
                 Ok(claim) => claim_ui(ui, pane, search, claim),
                 Err(why) => {
-                    kit::say_ui(ui, &find::no_claim(look, *why), palette.warn);
+                    kit::say_ui(ui, &search::no_claim(look, *why), palette.warn);
                 }
             }
             if !finding.untold.is_empty() {
-                let untold = finding.untold.iter().map(|what| find::untold(look, *what));
+                let untold = finding
+                    .untold
+                    .iter()
+                    .map(|what| search::untold(look, *what));
                 let untold: Vec<String> = untold.collect();
                 let untold: Vec<&str> = untold.iter().map(String::as_str).collect();
-                let words = look.fill(find::UNTOLD, &[&look.list(&untold)]);
+                let words = look.fill(search::UNTOLD, &[&look.list(&untold)]);
                 kit::say_ui(ui, &words, palette.muted);
             }
         }
         (None, Some(progress)) if runs => {
-            kit::say_ui(ui, &find::stage(look, progress.stage), palette.text);
+            kit::say_ui(ui, &search::stage(look, progress.stage), palette.text);
             let counts: [&dyn std::fmt::Display; 2] =
                 [&progress.tried.len(), &progress.closes_left];
-            let left = look.fill(find::LEFT, &counts);
+            let left = look.fill(search::LEFT, &counts);
             let time = look.fill(tune::LEFT, &[&format::duration(progress.left)]);
             kit::say_ui(ui, &format!("{left} {time}"), palette.muted);
         }
         (None, _) if !runs => {
-            kit::say_ui(ui, look.say(find::NONE), palette.muted);
+            kit::say_ui(ui, look.say(search::NONE), palette.muted);
         }
         (None, _) => {}
     }
@@ -164,13 +167,13 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
 /// The claim, and what is done with it.
 fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     let (look, palette) = (pane.look, pane.look.palette);
-    kit::say_ui(ui, &find::claim(look, claim), palette.ok);
+    kit::say_ui(ui, &search::claim(look, claim), palette.ok);
     let setting = claim.setting;
     let (speed, force) = (setting.speed.get(), setting.force.get());
     let words = match claim.approach {
-        FoundApproach::OneStage => look.fill(find::SETTING, &[&speed, &force]),
+        FoundApproach::OneStage => look.fill(search::SETTING, &[&speed, &force]),
         FoundApproach::TwoStage { fast_speed, margin } => {
-            look.fill(find::TWO, &[&fast_speed, &margin, &speed, &force])
+            look.fill(search::TWO, &[&fast_speed, &margin, &speed, &force])
         }
     };
     kit::say_ui(ui, &words, palette.text);
@@ -189,9 +192,9 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     let refusal = refusal.map(|why| look.say(device::refusal(why)));
     let refusal = pane.recorded().or(refusal);
     let is_full = !pane.state.poses.library.has_room();
-    let full = is_full.then(|| look.say(find::FULL));
+    let full = is_full.then(|| look.say(search::FULL));
     ui.horizontal_wrapped(|ui| {
-        let button = Button::said(look, find::AS_DEFAULT).weight(Weight::Strong);
+        let button = Button::said(look, search::AS_DEFAULT).weight(Weight::Strong);
         if button.disabled(refusal).ui(ui, look).clicked() {
             let staged = values.iter();
             let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
@@ -199,8 +202,8 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
             pane.actions.push(Action::Param(ParamAction::Save));
         }
         let text = match claim.approach {
-            FoundApproach::OneStage => find::AS_POSE,
-            FoundApproach::TwoStage { .. } => find::AS_SEQUENCE,
+            FoundApproach::OneStage => search::AS_POSE,
+            FoundApproach::TwoStage { .. } => search::AS_SEQUENCE,
         };
         let button = Button::said(look, text).disabled(full);
         let poses = poses(pane, search, claim);
@@ -211,16 +214,16 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
 
 /// The close that was found as poses: where it has two stages, the fast one first.
 fn poses(pane: &Pane<'_>, search: &Search, claim: &Claim) -> Vec<LibraryPose> {
-    let (look, wish) = (pane.look, &search.wish);
+    let (look, goal) = (pane.look, &search.goal);
     let pose = |name: Text, targets: PerDof<Option<Angle>>| LibraryPose {
-        name: look.fill(name, &[&wish.limit_g]),
+        name: look.fill(name, &[&goal.limit_g]),
         leave: targets.map(|target| target.is_none()),
         force: claim.setting.force,
         ..LibraryPose::at(targets.map(|target| target.unwrap_or(Angle::MAX)))
     };
     let close = LibraryPose {
         speed: claim.setting.speed,
-        ..pose(find::POSE, wish.close)
+        ..pose(search::POSE, goal.close)
     };
     let FoundApproach::TwoStage { fast_speed, margin } = claim.approach else {
         return vec![close];
@@ -231,7 +234,7 @@ fn poses(pane: &Pane<'_>, search: &Search, claim: &Claim) -> Vec<LibraryPose> {
     });
     let near = LibraryPose {
         speed: Speed::nearest(fast_speed),
-        ..pose(find::NEAR, near)
+        ..pose(search::NEAR, near)
     };
     vec![near, close]
 }

@@ -1,12 +1,12 @@
 //! One setting, closed again and again: the bound of its peaks, and what is left of the grip. Pure.
 
 use crate::hand::Dof;
-use crate::trials::find::close::CloseFacts;
-use crate::trials::find::finding::JointClaim;
-use crate::trials::find::growth::Contact;
-use crate::trials::find::joint::JointModel;
-use crate::trials::find::tolerance::tolerance_factor;
-use crate::trials::find::wish::TuneWish;
+use crate::trials::search::close::CloseFacts;
+use crate::trials::search::finding::JointClaim;
+use crate::trials::search::goal::SearchGoal;
+use crate::trials::search::growth::Contact;
+use crate::trials::search::joint::JointModel;
+use crate::trials::search::tolerance::tolerance_factor;
 
 /// One joint's closes.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,8 +55,8 @@ impl Confirmation {
     }
 
     /// The highest bound of all joints, g.
-    pub(crate) fn bound(&self, wish: &TuneWish) -> f64 {
-        let bounds = self.joints.iter().map(|joint| joint.bound(wish));
+    pub(crate) fn bound(&self, goal: &SearchGoal) -> f64 {
+        let bounds = self.joints.iter().map(|joint| joint.bound(goal));
         bounds.fold(0.0, f64::max)
     }
 
@@ -73,12 +73,12 @@ impl Confirmation {
     }
 
     /// What is claimed of each joint.
-    pub(crate) fn claims(&self, models: &[JointModel], wish: &TuneWish) -> Vec<JointClaim> {
+    pub(crate) fn claims(&self, models: &[JointModel], goal: &SearchGoal) -> Vec<JointClaim> {
         let joints = self.joints.iter().zip(models);
         let claim = |(joint, model): (&JointCloses, &JointModel)| JointClaim {
             dof: joint.dof,
             contact_angle: model.contact().unwrap_or_default(),
-            peak_bound_g: joint.bound(wish),
+            peak_bound_g: joint.bound(goal),
             peaks_g: joint.peaks_g.clone(),
             hold_g: joint.least(),
             stiffness_g: model.stiffness(),
@@ -93,13 +93,13 @@ impl JointCloses {
     }
 
     /// What peaks to come stay below, by these: g.
-    fn bound(&self, wish: &TuneWish) -> f64 {
+    fn bound(&self, goal: &SearchGoal) -> f64 {
         let peaks = &self.peaks_g;
         let highest = peaks.iter().copied().fold(0.0, f64::max);
-        if wish.distribution_free {
+        if goal.distribution_free {
             return highest;
         }
-        let factor = tolerance_factor(peaks.len(), wish.assurance());
+        let factor = tolerance_factor(peaks.len(), goal.assurance());
         let Some((mean, factor)) = mean(peaks).zip(factor) else {
             return f64::INFINITY;
         };
@@ -128,12 +128,12 @@ mod tests {
             peaks_g: vec![480.0, 470.0, 475.0, 478.0, 472.0],
             holds_g: Vec::new(),
         };
-        let mut wish = TuneWish::new(&[Dof::Index], 500);
+        let mut goal = SearchGoal::new(&[Dof::Index], 500);
         let s = (68.0_f64 / 4.0).sqrt();
-        assert!((closes.bound(&wish) - (475.0 + 4.20 * s)).abs() < 0.1);
+        assert!((closes.bound(&goal) - (475.0 + 4.20 * s)).abs() < 0.1);
         closes.least_sigma_g = 10.0;
-        assert!((closes.bound(&wish) - (475.0 + 42.0)).abs() < 0.1);
-        wish.distribution_free = true;
-        assert_eq!(closes.bound(&wish), 480.0);
+        assert!((closes.bound(&goal) - (475.0 + 42.0)).abs() < 0.1);
+        goal.distribution_free = true;
+        assert_eq!(closes.bound(&goal), 480.0);
     }
 }

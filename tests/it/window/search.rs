@@ -6,7 +6,7 @@ use handscope::hand::Dof;
 use handscope::poses::library::{LibraryPose, PoseLibrary};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::trials::Abort;
-use handscope::trials::find::{Claim, FoundApproach, NoClaim};
+use handscope::trials::search::{Claim, FoundApproach, NoClaim};
 use handscope::ui::View;
 
 const LIMIT: &str = "peak at most, g";
@@ -141,9 +141,9 @@ fn a_wish_that_cannot_be_tried_is_said_and_not_begun() {
     assert!(!bench.state().hand().connection.is_armed());
     enter(&mut bench, "hold at least, g", "200");
     enter(&mut bench, LIMIT, "900");
-    let wish = &bench.state().trials.wish;
+    let goal = &bench.state().trials.goal;
     assert_eq!(
-        (wish.limit_g, wish.hold_g),
+        (goal.limit_g, goal.hold_g),
         (900, 360),
         "the usual goes along"
     );

@@ -1,7 +1,7 @@
-//! Sentences of the search for settings: its wish, how far it is, and what it came to.
+//! Sentences of the search for settings: its goal, how far it is, and what it came to.
 
 use crate::hand::Dof;
-use crate::trials::find::{Claim, FindStage, NoClaim, Untold, WishError};
+use crate::trials::search::{Claim, GoalError, NoClaim, SearchStage, Untold};
 use crate::ui::style::Look;
 use crate::ui::style::phrase::texts;
 use crate::ui::text::{tune, words};
@@ -55,24 +55,24 @@ texts! {
     UNTOLD_DISTRIBUTION: "whether the peaks are normally distributed, on which the bound rests", "峰值是否服从上界所依据的正态分布";
 }
 
-/// What is wrong with a wish.
-pub(crate) fn wish_error(look: Look, error: WishError) -> String {
+/// What is wrong with a goal.
+pub(crate) fn wish_error(look: Look, error: GoalError) -> String {
     match error {
-        WishError::Limit { .. } => look.say(BAD_LIMIT).into(),
-        WishError::Hold { most, .. } => look.fill(BAD_HOLD, &[&most]),
-        WishError::Closes { .. } => look.say(BAD_CLOSES).into(),
-        WishError::TooFew { .. } => look.say(FEW_CLOSES).into(),
-        WishError::Plan(error) => tune::plan_error(look, &error),
+        GoalError::Limit { .. } => look.say(BAD_LIMIT).into(),
+        GoalError::Hold { most, .. } => look.fill(BAD_HOLD, &[&most]),
+        GoalError::Closes { .. } => look.say(BAD_CLOSES).into(),
+        GoalError::TooFew { .. } => look.say(FEW_CLOSES).into(),
+        GoalError::Plan(error) => tune::plan_error(look, &error),
     }
 }
 
 /// What a search does.
-pub(crate) fn stage(look: Look, stage: FindStage) -> String {
+pub(crate) fn stage(look: Look, stage: SearchStage) -> String {
     match stage {
-        FindStage::Probing => look.say(PROBING).into(),
-        FindStage::Rising => look.say(RISING).into(),
-        FindStage::Confirming { done, of } => look.fill(CONFIRMING, &[&done, &of]),
-        FindStage::Over => look.say(OVER).into(),
+        SearchStage::Probing => look.say(PROBING).into(),
+        SearchStage::Rising => look.say(RISING).into(),
+        SearchStage::Confirming { done, of } => look.fill(CONFIRMING, &[&done, &of]),
+        SearchStage::Over => look.say(OVER).into(),
     }
 }
 
