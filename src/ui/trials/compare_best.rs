@@ -1,20 +1,15 @@
 //! The map of overshoot over speed and threshold, and the best setting by what the user wants, which can be made the
 //! default. Writes nothing: a card asks first.
 
-use crate::app::action::Action;
-use crate::app::params::state::Doing;
-use crate::app::params::{ParamAction, ParamRefusal};
 use crate::app::trials::{Comparison, TrialSession};
-use crate::hand::Dof;
-use crate::params::rows::{ParamId, Value};
-use crate::params::values::Params;
+use crate::trials::Criterion;
 use crate::trials::best::{MetricSpread, Score};
-use crate::trials::{Criterion, TrialSetting};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight};
-use crate::ui::text::{device, tune};
+use crate::ui::kit::{self, Label, NumberField, Pane};
+use crate::ui::text::tune;
 use crate::ui::theme::{self, Palette};
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
+use crate::ui::trials::promotion::Promotion;
 use egui::{
     Align2, CornerRadius, Grid, Mesh, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -111,27 +106,9 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
         Some(best) => (setting_words(best.setting), palette.ok),
         None => (none.to_owned(), palette.muted),
     };
-    let mut values = Params::default();
-    for (dof, best) in comparison
-        .joints
-        .iter()
-        .flat_map(|dof| best.map(|best| (*dof, best)))
-    {
-        for (id, value) in defaults(dof, best.setting) {
-            values.put(id, value);
-        }
-    }
-    let hand = pane.state.hand();
-    let refusal = hand
-        .params
-        .save_refusal_with(&values, &hand.connection.status);
-    // A hand that was just tried is soon seen to rest: only who asks is told.
-    let passes = refusal == Some(ParamRefusal::Moving);
-    let refusal = refusal.map(|why| look.say(device::refusal(why)));
-    let refusal = pane
-        .recorded()
-        .or(best.is_none().then_some(none))
-        .or(refusal);
+    let joints = comparison.joints.iter();
+    let settings = joints.filter_map(|dof| Some((*dof, best?.setting)));
+    let promotion = Promotion::of(pane, settings, best.is_none().then_some(none));
     ui.horizontal_wrapped(|ui| {
         if best.is_some() {
             let star = Label::new(theme::BEST, color).font(theme::icon());
@@ -139,48 +116,13 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
         }
         let label = Label::new(&text, color).named(look.say(tune::BEST));
         label.font(theme::title()).ui(ui);
-        let button = Button::said(look, tune::PROMOTE).weight(Weight::Strong);
-        if button.disabled(refusal).ui(ui, look).clicked() {
-            let staged = values.iter();
-            let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
-            pane.actions.extend(staged);
-            pane.actions.push(Action::Param(ParamAction::Save));
-        }
+        promotion.button_ui(ui, pane, tune::PROMOTE);
     });
     if let Some(over) = best.and_then(|best| best.overshoot_g) {
         let words = look.fill(tune::BEST_OVER, &[&format!("{:.0}", over.max)]);
         kit::say_ui(ui, &words, palette.text);
     }
-    kept_ui(ui, pane, &values, refusal.filter(|_| !passes));
-}
-
-/// Whether the best is kept, and why it cannot be.
-pub(crate) fn kept_ui(ui: &mut Ui, pane: &Pane<'_>, values: &Params, refusal: Option<&str>) {
-    let (look, palette) = (pane.look, pane.look.palette);
-    let book = &pane.state.hand().params;
-    let is_held = !values.is_empty() && book.live_params().with(values) == book.live_params();
-    if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
-        kit::say_ui(ui, look.say(doing), palette.accent);
-    } else if let Some((end, _)) = book.save.as_ref().filter(|_| is_held) {
-        let color = if device::is_saved(end) {
-            palette.ok
-        } else {
-            palette.bad
-        };
-        kit::say_ui(ui, &device::save_end(look, end), color);
-    } else if let Some(refusal) = refusal.filter(|_| !values.is_empty()) {
-        kit::say_ui(ui, refusal, palette.muted);
-    }
-}
-
-/// The values after power-up that this setting stands for.
-pub(crate) fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
-    let speed = Value::Number(setting.speed.get().into());
-    let force = Value::Number(setting.force.get().into());
-    [
-        (ParamId::DefaultSpeed(dof), speed),
-        (ParamId::DefaultForce(dof), force),
-    ]
+    promotion.end_ui(ui, pane);
 }
 
 /// Over which sessions map and best are, and why not over all.

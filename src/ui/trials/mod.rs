@@ -10,6 +10,7 @@ pub(crate) mod compare_table;
 #[cfg(test)]
 pub(crate) mod compare_tests;
 pub(crate) mod plot;
+pub(crate) mod promotion;
 pub(crate) mod search_form;
 pub(crate) mod start;
 pub(crate) mod tune;

@@ -2,21 +2,19 @@
 //! is done with it. Every change is one action with the whole goal.
 
 use crate::app::action::Action;
-use crate::app::params::{ParamAction, ParamRefusal};
 use crate::app::trials::{Search, TrialAction};
-use crate::hand::{Angle, Dof, PerDof, Speed};
-use crate::params::values::Params;
+use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
-use crate::trials::search::goal::whole;
+use crate::trials::search::goal::{CLOSES_MAX, CLOSES_MIN, LIMIT_MIN_G, whole};
 use crate::trials::search::{Claim, FoundApproach, SearchGoal};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
+use crate::ui::kit::{self, Button, NumberField, Pane, format};
 use crate::ui::text::tune::search;
-use crate::ui::text::{Text, device, main, tune, words};
+use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
-use crate::ui::trials::compare_best::{defaults, kept_ui};
-use crate::ui::trials::tune_form::CAPTION;
-use egui::{ScrollArea, Ui, vec2};
+use crate::ui::trials::promotion::Promotion;
+use crate::ui::trials::tune_form::{captioned_ui, joints_ui};
+use egui::{ScrollArea, Ui};
 use std::ops::RangeInclusive;
 
 /// Draws it over all of `ui`.
@@ -27,7 +25,7 @@ pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         .id_salt("search")
         .auto_shrink(false)
         .show(ui, |ui| {
-            ui.add_enabled_ui(!runs, |ui| wish_ui(ui, pane, runs));
+            ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
             if let Some(search) = &pane.state.trials.search {
                 ui.add_space(theme::GAP);
                 search_ui(ui, pane, search);
@@ -35,63 +33,48 @@ pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         });
 }
 
-fn wish_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
+fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     let look = pane.look;
     let mut goal = pane.state.trials.goal.clone();
     let disabled = runs.then(|| look.say(main::SERIES_RUNS));
     kit::say_ui(ui, look.say(search::OBJECT), look.palette.muted);
-    row_ui(ui, pane, tune::JOINTS, |ui, pane| {
-        joints_ui(ui, pane, &mut goal, disabled)
-    });
-    if let Some(limit) = number_ui(ui, pane, search::LIMIT, (30..=2000, goal.limit_g)) {
+    let takes_part = goal.close.map(|target| target.is_some());
+    if let Some(dof) = joints_ui(ui, look, &takes_part, disabled) {
+        goal.start[dof] = (!takes_part[dof]).then_some(Angle::MAX);
+        goal.close[dof] = (!takes_part[dof]).then_some(Angle::MIN);
+    }
+    let limits = LIMIT_MIN_G..=Force::RATED.get();
+    if let Some(limit) = number_ui(ui, pane, search::LIMIT, (limits, goal.limit_g)) {
         let was_usual = goal.hold_g == SearchGoal::usual_hold_g(goal.limit_g);
         goal.limit_g = limit;
         if was_usual {
             goal.hold_g = SearchGoal::usual_hold_g(limit);
         }
     }
-    if let Some(hold) = number_ui(ui, pane, search::HOLD, (0..=1600, goal.hold_g)) {
+    if let Some(hold) = number_ui(
+        ui,
+        pane,
+        search::HOLD,
+        (0..=Force::RATED.get(), goal.hold_g),
+    ) {
         goal.hold_g = hold;
     }
-    let closes = i16::try_from(goal.closes).unwrap_or(i16::MAX);
-    if let Some(closes) = number_ui(ui, pane, search::CLOSES, (5..=100, closes)) {
+    let whole = |closes: usize| i16::try_from(closes).unwrap_or(i16::MAX);
+    let closes = whole(CLOSES_MIN)..=whole(CLOSES_MAX);
+    if let Some(closes) = number_ui(ui, pane, search::CLOSES, (closes, whole(goal.closes))) {
         goal.closes = usize::try_from(closes).unwrap_or(goal.closes);
     }
-    row_ui(ui, pane, Text::new("", ""), |ui, _| {
+    captioned_ui(ui, look, "", |ui| {
         let tick = ui.checkbox(&mut goal.distribution_free, look.say(search::FREE));
         tick.on_hover_text(look.tip(search::FREE));
     });
     if let Err(wrong) = goal.check() {
-        kit::say_ui(ui, &search::wish_error(look, wrong), look.palette.bad);
+        kit::say_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
     }
     if goal != pane.state.trials.goal && !runs {
         pane.actions
             .push(Action::Trial(TrialAction::Goal(Box::new(goal))));
     }
-}
-
-fn joints_ui(ui: &mut Ui, pane: &Pane<'_>, goal: &mut SearchGoal, disabled: Option<&str>) {
-    let look = pane.look;
-    let width = (ui.available_width() - theme::STEP) / 2.0;
-    ui.vertical(|ui| {
-        for pair in Dof::ALL.chunks(2) {
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = theme::STEP;
-                for dof in pair.iter().copied() {
-                    let takes_part = goal.close[dof].is_some();
-                    let joint = look.say(words::dof(dof));
-                    let name = look.fill(tune::JOINT_NAME, &[&joint]);
-                    let button = Button::new(joint, look.say(tune::JOINT_TIP)).named(&name);
-                    let button = button.disabled(disabled).switch(takes_part);
-                    let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
-                    if button.put(ui, look, place, id).clicked() {
-                        goal.start[dof] = (!takes_part).then_some(Angle::MAX);
-                        goal.close[dof] = (!takes_part).then_some(Angle::MIN);
-                    }
-                }
-            });
-        }
-    });
 }
 
 /// A number in a row of its own; it, once one that can be taken was typed.
@@ -104,26 +87,10 @@ fn number_ui(
     let look = pane.look;
     let (least, most) = range.into_inner();
     let field = NumberField::new(look.say(name), look.tip(name), least.into()..=most.into());
-    let typed = row_ui(ui, pane, name, |ui, pane| {
+    let typed = captioned_ui(ui, look, look.say(name), |ui| {
         field.whole_ui(ui, pane, Some(value))
     });
     typed.and_then(|typed| i16::try_from(typed).ok())
-}
-
-fn row_ui<R>(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    caption: Text,
-    field: impl FnOnce(&mut Ui, &mut Pane<'_>) -> R,
-) -> R {
-    let (caption, muted) = (pane.look.say(caption), pane.look.palette.muted);
-    let row = ui.horizontal_top(|ui| {
-        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
-            Label::new(caption, muted).small().ui(ui);
-        });
-        field(ui, pane)
-    });
-    row.inner
 }
 
 /// How far it is, or what it came to.
@@ -177,30 +144,12 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
         }
     };
     kit::say_ui(ui, &words, palette.text);
-    let mut values = Params::default();
-    for joint in &claim.joints {
-        for (id, value) in defaults(joint.dof, setting) {
-            values.put(id, value);
-        }
-    }
-    let hand = pane.state.hand();
-    let refusal = hand
-        .params
-        .save_refusal_with(&values, &hand.connection.status);
-    // A hand that was just tried is soon seen to rest: only who asks is told.
-    let passes = refusal == Some(ParamRefusal::Moving);
-    let refusal = refusal.map(|why| look.say(device::refusal(why)));
-    let refusal = pane.recorded().or(refusal);
+    let joints = claim.joints.iter();
+    let promotion = Promotion::of(pane, joints.map(|joint| (joint.dof, setting)), None);
     let is_full = !pane.state.poses.library.has_room();
     let full = is_full.then(|| look.say(search::FULL));
     ui.horizontal_wrapped(|ui| {
-        let button = Button::said(look, search::AS_DEFAULT).weight(Weight::Strong);
-        if button.disabled(refusal).ui(ui, look).clicked() {
-            let staged = values.iter();
-            let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
-            pane.actions.extend(staged);
-            pane.actions.push(Action::Param(ParamAction::Save));
-        }
+        promotion.button_ui(ui, pane, search::AS_DEFAULT);
         let text = match claim.approach {
             FoundApproach::OneStage => search::AS_POSE,
             FoundApproach::TwoStage { .. } => search::AS_SEQUENCE,
@@ -209,7 +158,7 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
         let poses = poses(pane, search, claim);
         button.on_click(ui, pane, Action::Library(LibraryEdit::Add(poses)));
     });
-    kept_ui(ui, pane, &values, refusal.filter(|_| !passes));
+    promotion.end_ui(ui, pane);
 }
 
 /// The close that was found as poses: where it has two stages, the fast one first.

@@ -7,7 +7,7 @@ use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, tak
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, Weight, format};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, TextField, Weight, format};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use egui::{CollapsingHeader, ScrollArea, Ui, vec2};
@@ -18,7 +18,7 @@ use std::time::Duration;
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
 /// Width of the words before a field: all fields begin at one edge.
-pub(crate) const CAPTION: f32 = 112.0;
+const CAPTION: f32 = 112.0;
 /// Speed of a fast part unless the user says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
@@ -47,6 +47,54 @@ struct Pass<'a, 'p> {
     plan: TrialPlan,
     wrong: Option<(PlanField, String)>,
     disabled: Option<&'static str>,
+}
+
+/// A field beside the words before it.
+pub(crate) fn captioned_ui<R>(
+    ui: &mut Ui,
+    look: Look,
+    caption: &str,
+    field: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let row = ui.horizontal_top(|ui| {
+        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
+            Label::new(caption, look.palette.muted).small().ui(ui);
+        });
+        field(ui)
+    });
+    row.inner
+}
+
+/// A switch for each joint that can take part; the one that was pressed.
+pub(crate) fn joints_ui(
+    ui: &mut Ui,
+    look: Look,
+    takes_part: &PerDof<bool>,
+    disabled: Option<&str>,
+) -> Option<Dof> {
+    let mut pressed = None;
+    let mut joint_ui = |ui: &mut Ui, dof: Dof, width: f32| {
+        let joint = look.say(words::dof(dof));
+        let name = look.fill(tune::JOINT_NAME, &[&joint]);
+        let button = Button::new(joint, look.say(tune::JOINT_TIP)).named(&name);
+        let button = button.disabled(disabled).switch(takes_part[dof]);
+        let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+        if button.put(ui, look, place, id).clicked() {
+            pressed = Some(dof);
+        }
+    };
+    captioned_ui(ui, look, look.say(tune::JOINTS), |ui| {
+        let width = (ui.available_width() - theme::STEP) / 2.0;
+        ui.vertical(|ui| {
+            for pair in Dof::ALL.chunks(2) {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = theme::STEP;
+                    pair.iter().for_each(|dof| joint_ui(ui, *dof, width));
+                });
+            }
+        });
+    });
+    pressed
 }
 
 impl TuneForm {
@@ -156,49 +204,17 @@ impl Pass<'_, '_> {
         caption: &str,
         field: impl FnOnce(&mut Self, &mut Ui) -> R,
     ) -> R {
-        let muted = self.pane.look.palette.muted;
-        let row = ui.horizontal_top(|ui| {
-            kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
-                Label::new(caption, muted).small().ui(ui);
-            });
-            field(self, ui)
-        });
-        row.inner
+        captioned_ui(ui, self.pane.look, caption, |ui| field(self, ui))
     }
 
     /// Who closes.
     fn joints_ui(&mut self, ui: &mut Ui) {
-        let caption = self.pane.look.say(tune::JOINTS);
-        self.row_ui(ui, caption, |pass, ui| {
-            let width = (ui.available_width() - theme::STEP) / 2.0;
-            ui.vertical(|ui| {
-                for pair in Dof::ALL.chunks(2) {
-                    ui.horizontal(|ui| {
-                        ui.spacing_mut().item_spacing.x = theme::STEP;
-                        for dof in pair {
-                            pass.joint_ui(ui, *dof, width);
-                        }
-                    });
-                }
-            });
-        });
-        self.trouble_ui(ui, PlanField::Joints);
-    }
-
-    fn joint_ui(&mut self, ui: &mut Ui, dof: Dof, width: f32) {
-        let look = self.pane.look;
-        let takes_part = self.plan.close[dof].is_some();
-        let joint = look.say(words::dof(dof));
-        let name = look.fill(tune::JOINT_NAME, &[&joint]);
-        let button = Button::new(joint, look.say(tune::JOINT_TIP))
-            .named(&name)
-            .disabled(self.disabled)
-            .switch(takes_part);
-        let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
-        if button.put(ui, look, place, id).clicked() {
-            let angle = self.form.targets[dof];
-            set_target(&mut self.plan, dof, (!takes_part).then_some(angle));
+        let takes_part = self.plan.close.map(|target| target.is_some());
+        if let Some(dof) = joints_ui(ui, self.pane.look, &takes_part, self.disabled) {
+            let angle = (!takes_part[dof]).then_some(self.form.targets[dof]);
+            set_target(&mut self.plan, dof, angle);
         }
+        self.trouble_ui(ui, PlanField::Joints);
     }
 
     /// From where to where each of them goes, and where others stand.

@@ -56,7 +56,7 @@ texts! {
 }
 
 /// What is wrong with a goal.
-pub(crate) fn wish_error(look: Look, error: GoalError) -> String {
+pub(crate) fn goal_error(look: Look, error: GoalError) -> String {
     match error {
         GoalError::Limit { .. } => look.say(BAD_LIMIT).into(),
         GoalError::Hold { most, .. } => look.fill(BAD_HOLD, &[&most]),

@@ -1,0 +1,92 @@
+//! Settings that were tried, made the values after power-up: the button, what forbids it, and what became of it. Writes nothing: a
+//! card asks first.
+
+use crate::app::action::Action;
+use crate::app::params::state::Doing;
+use crate::app::params::{ParamAction, ParamRefusal};
+use crate::hand::Dof;
+use crate::params::rows::{ParamId, Value};
+use crate::params::values::Params;
+use crate::trials::TrialSetting;
+use crate::ui::kit::{self, Button, Pane, Weight};
+use crate::ui::text::{Text, device};
+use egui::Ui;
+
+/// Settings of joints that can be made the default.
+pub(crate) struct Promotion<'a> {
+    values: Params,
+    /// Why they cannot now.
+    refusal: Option<&'a str>,
+    /// It will pass by itself: only who asks is told.
+    passes: bool,
+}
+
+impl<'a> Promotion<'a> {
+    /// Of these settings; `none` is why there are none.
+    pub(crate) fn of(
+        pane: &Pane<'a>,
+        settings: impl Iterator<Item = (Dof, TrialSetting)>,
+        none: Option<&'a str>,
+    ) -> Self {
+        let mut values = Params::default();
+        for (id, value) in settings.flat_map(|(dof, setting)| defaults(dof, setting)) {
+            values.put(id, value);
+        }
+        let hand = pane.state.hand();
+        let refusal = hand
+            .params
+            .save_refusal_with(&values, &hand.connection.status);
+        // A hand that was just tried is soon seen to rest.
+        let passes = refusal == Some(ParamRefusal::Moving);
+        let refusal = refusal.map(|why| pane.look.say(device::refusal(why)));
+        Self {
+            values,
+            refusal: pane.recorded().or(none).or(refusal),
+            passes,
+        }
+    }
+
+    /// The button: stages the values, and asks by the card of a save.
+    pub(crate) fn button_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, text: Text) {
+        let button = Button::said(pane.look, text).weight(Weight::Strong);
+        if button.disabled(self.refusal).ui(ui, pane.look).clicked() {
+            let staged = self.values.iter();
+            let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
+            pane.actions.extend(staged);
+            pane.actions.push(Action::Param(ParamAction::Save));
+        }
+    }
+
+    /// Whether they are kept, and why they cannot be.
+    pub(crate) fn end_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
+        let (look, palette) = (pane.look, pane.look.palette);
+        let book = &pane.state.hand().params;
+        let is_held =
+            !self.values.is_empty() && book.live_params().with(&self.values) == book.live_params();
+        if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
+            kit::say_ui(ui, look.say(doing), palette.accent);
+        } else if let Some((end, _)) = book.save.as_ref().filter(|_| is_held) {
+            let color = if device::is_saved(end) {
+                palette.ok
+            } else {
+                palette.bad
+            };
+            kit::say_ui(ui, &device::save_end(look, end), color);
+        } else if let Some(refusal) = self
+            .refusal
+            .filter(|_| !self.passes && !self.values.is_empty())
+        {
+            kit::say_ui(ui, refusal, palette.muted);
+        }
+    }
+}
+
+/// The values after power-up that this setting stands for.
+fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
+    let speed = Value::Number(setting.speed.get().into());
+    let force = Value::Number(setting.force.get().into());
+    [
+        (ParamId::DefaultSpeed(dof), speed),
+        (ParamId::DefaultForce(dof), force),
+    ]
+}
