@@ -1,7 +1,7 @@
 //! The built-in hand behind its wire, beside all other wires. The only place that knows that it is built in.
 
 use crate::link::Clock;
-use crate::sim::body_file::file;
+use crate::sim::body_params::file;
 use crate::sim::serve::{SharedHand, rs485};
 use crate::sim::{BodyParams, Scenario, SimConfig, SimHand};
 use crate::transport::{

@@ -3,7 +3,7 @@
 use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};
 use crate::hand::{Angle, Dof, Force, HandId, Speed};
-use crate::sim::body_file::file;
+use crate::sim::body_params::file;
 use crate::transport::{Endpoint, EndpointError};
 use std::ops::RangeInclusive;
 use std::path::Path;

@@ -4,7 +4,7 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::Out;
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::cli::wires::{ServedWire, WireArgs, failed};
-use crate::sim::body_file::file;
+use crate::sim::body_params::file;
 use crate::sim::{
     BodyParams, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands,
 };

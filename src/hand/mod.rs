@@ -18,6 +18,7 @@ pub mod refusal;
 pub mod register;
 pub mod setpoints;
 pub mod setting;
+pub mod statistics;
 pub mod units;
 
 pub use command::{GestureRoute, HandCommand, RegisterWrite, Writes};

@@ -1,7 +1,7 @@
 //! Six drives around an object, and the force sensors' errors. Knows no registers.
 
 use crate::hand::{Dof, Finger, PerDof};
-use crate::sim::body_file::BodyParams;
+use crate::sim::body_params::BodyParams;
 use crate::sim::drive::{Drive, DriveSettings};
 use crate::sim::object::Object;
 

@@ -2,9 +2,8 @@
 
 use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Fault, Faults, Status};
-use crate::sim::body_file::run_on::{MetThreshold, run_on_g};
-use crate::sim::body_file::{COUNTS_PER_SPEED, JointBody};
-pub use crate::sim::body_file::{DEAD_TIME_MS, STROKE};
+use crate::sim::body_params::run_on::{MetThreshold, run_on_g};
+use crate::sim::body_params::{COUNTS_PER_SPEED, JointBody, LATENCY_MS, STROKE};
 use crate::sim::number;
 use crate::sim::object::Contact;
 use arrayvec::ArrayVec;
@@ -25,8 +24,6 @@ const LIMIT_MA: f64 = 2000.0;
 const OVER_CURRENT_MS: u32 = 50;
 /// How long a drive pushes before it calls itself stalled, ms.
 const STALL_MS: u32 = 800;
-/// The latency that the measured ways past a threshold are of, ms.
-const USUAL_LATENCY_MS: f64 = 64.0;
 /// Temperature that stops a drive, °C.
 const HOT: f64 = 85.0;
 /// Temperature at which the fault ends by itself, °C.
@@ -96,9 +93,9 @@ pub struct Drive {
     jam: Option<f64>,
     dead: bool,
     grip: f64,
-    hotter: f64,
-    makeup: JointBody,
-    chance: fastrand::Rng,
+    heating_factor: f64,
+    body: JointBody,
+    rng: fastrand::Rng,
     /// What this close's contact and latency differ from the usual by, in standard deviations.
     contact_draw: f64,
     /// Whether it opened since the contact was drawn.
@@ -119,9 +116,9 @@ impl Drive {
     }
 
     /// An open drive of this body in a room of `ambient` °C; the seed is that of what scatters.
-    pub fn of(makeup: JointBody, ambient: f64, seed: u64) -> Self {
-        let ambient = ambient + makeup.warmer_by_c;
-        let mut chance = fastrand::Rng::with_seed(seed);
+    pub fn of(body: JointBody, ambient: f64, seed: u64) -> Self {
+        let ambient = ambient + body.warmer_by_c;
+        let mut rng = fastrand::Rng::with_seed(seed);
         Self {
             position: 0.0,
             velocity: 0.0,
@@ -141,12 +138,12 @@ impl Drive {
             jam: None,
             dead: false,
             grip: 1.0,
-            hotter: 1.0,
-            makeup,
-            contact_draw: normal(&mut chance),
-            chance,
+            heating_factor: 1.0,
+            body,
+            contact_draw: normal(&mut rng),
+            rng,
             opened: false,
-            lead: -makeup.backlash / 2.0,
+            lead: -body.backlash / 2.0,
         }
     }
 
@@ -173,10 +170,10 @@ impl Drive {
     /// What is in its way, unless it broke.
     fn whole_contact(&self) -> Option<Contact> {
         let contact = self.contact.filter(|_| !self.broken)?;
-        let later = self.makeup.contact_offset + self.makeup.contact_scatter * self.contact_draw;
+        let later = self.body.contact_offset + self.body.contact_scatter * self.contact_draw;
         Some(Contact {
             angle: contact.angle - later / 2.0,
-            stiffness: contact.stiffness * self.makeup.stiffness_factor,
+            stiffness: contact.stiffness * self.body.stiffness_factor,
             ..contact
         })
     }
@@ -236,7 +233,7 @@ impl Drive {
 
     /// Lets its current heat it so many times as much as usual.
     pub fn heat_more(&mut self, times: f64) {
-        self.hotter = times;
+        self.heating_factor = times;
     }
 
     /// Makes it this warm, °C.
@@ -296,8 +293,8 @@ impl Drive {
     }
 
     fn draw_latency_ms(&mut self) -> f64 {
-        let scatter = self.makeup.latency_scatter_ms * normal(&mut self.chance);
-        (self.makeup.latency_ms + scatter).max(0.0)
+        let scatter = self.body.latency_scatter_ms * normal(&mut self.rng);
+        (self.body.latency_ms + scatter).max(0.0)
     }
 
     /// True while its motor turns.
@@ -379,7 +376,7 @@ impl Drive {
                         self.opened = true;
                     } else if self.opened && self.load_g() <= 0.0 {
                         self.opened = false;
-                        self.contact_draw = normal(&mut self.chance);
+                        self.contact_draw = normal(&mut self.rng);
                     }
                     self.phase = DrivePhase::Moving { to };
                 }
@@ -412,7 +409,7 @@ impl Drive {
 
     fn move_on(&mut self, to: f64, setting: DriveSettings) {
         let way = to - self.position;
-        let top = setting.speed * self.makeup.counts_per_speed;
+        let top = setting.speed * self.body.counts_per_speed;
         // The last counts are taken slowly enough to end on the target.
         let wanted = way.signum() * top.min((2.0 * RAMP * way.abs()).sqrt());
         let change = (wanted - self.velocity).clamp(-RAMP * STEP_S, RAMP * STEP_S);
@@ -450,19 +447,19 @@ impl Drive {
     }
 
     fn free_ma(&self, way: f64) -> f64 {
-        let makeup = &self.makeup;
+        let body = &self.body;
         let constant = if way > 0.0 {
-            makeup.friction_ma
+            body.friction_ma
         } else {
-            makeup.opening_friction_ma
+            body.opening_friction_ma
         };
-        let speed = self.velocity.abs() / makeup.counts_per_speed;
-        constant + makeup.friction_ma_per_speed * speed
+        let speed = self.velocity.abs() / body.counts_per_speed;
+        constant + body.friction_ma_per_speed * speed
     }
 
     /// What is left of a step of the motor for the joint once its backlash is taken up.
     fn take_up(&mut self, step: f64) -> f64 {
-        let half = self.makeup.backlash / 2.0;
+        let half = self.body.backlash / 2.0;
         let lead = (self.lead + step).clamp(-half, half);
         let taken = lead - self.lead;
         self.lead = lead;
@@ -503,8 +500,8 @@ impl Drive {
             threshold_g,
             came_fast: self.fastest >= FAST_APPROACH * self.velocity,
         };
-        let longer = self.draw_latency_ms() / USUAL_LATENCY_MS;
-        let over = run_on_g(met, self.makeup.run_on) * longer;
+        let longer = self.draw_latency_ms() / LATENCY_MS;
+        let over = run_on_g(met, self.body.run_on) * longer;
         let met = position_of(contact.angle) + threshold_g / stiffness;
         let rest_g = RELAXED_PART * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
         self.status = Status::ForceReached;
@@ -534,8 +531,8 @@ impl Drive {
 
     fn heat(&mut self) {
         let amps = self.current_ma / 1000.0;
-        let cooling = (self.temperature - self.ambient) / self.makeup.cooling_s;
-        let heating = self.makeup.heating * self.hotter;
+        let cooling = (self.temperature - self.ambient) / self.body.cooling_s;
+        let heating = self.body.heating * self.heating_factor;
         self.temperature += (heating * amps * amps - cooling) * STEP_S;
         if self.temperature >= HOT && !self.faults.contains(Fault::OverTemperature) {
             self.inject(Fault::OverTemperature);
@@ -567,7 +564,7 @@ impl Drive {
 }
 
 /// A number of the standard normal distribution.
-fn normal(chance: &mut fastrand::Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - chance.f64()).ln()).sqrt();
-    radius * (std::f64::consts::TAU * chance.f64()).cos()
+fn normal(rng: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - rng.f64()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * rng.f64()).cos()
 }

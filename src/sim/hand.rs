@@ -3,7 +3,7 @@
 use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
-use crate::sim::body_file::BodyParams;
+use crate::sim::body_params::BodyParams;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
 use crate::sim::live::{self, element};

@@ -1,7 +1,7 @@
 //! A hand that answers bytes: memory, body, fingertips, scripts, servers. Knows no link and no window.
 
 pub mod body;
-pub mod body_file;
+pub mod body_params;
 pub mod drive;
 mod extremes;
 pub mod gesture;
@@ -19,7 +19,7 @@ mod supply;
 pub mod touch;
 
 pub use body::Body;
-pub use body_file::BodyParams;
+pub use body_params::BodyParams;
 pub use hand::{JournalEntry, ReplyTiming, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::AccessError;
 pub use object::{Contact, Object};

@@ -1,7 +1,7 @@
 //! Fingertip blocks: what eight channels, force and proximity say about a contact (manual 2.6.21). Moves nothing.
 
 use crate::hand::{Finger, PerFinger, TactileBlock};
-use crate::sim::body_file::{BodyParams, FingertipBody};
+use crate::sim::body_params::{BodyParams, FingertipBody};
 use crate::sim::number;
 use crate::sim::scenario::Slip;
 

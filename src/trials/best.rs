@@ -1,6 +1,6 @@
 //! Which setting is best by a stated criterion, over all trials of it. Pure.
 
-use crate::hand::grip::slip::median;
+use crate::hand::statistics::median;
 use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::plan::TrialSetting;
 use crate::trials::summary::TrialSummary;

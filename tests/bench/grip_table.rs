@@ -4,7 +4,7 @@
 use handscope::hand::grip::{Grip, GripEstimator, GripState, GripThresholds};
 use handscope::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET, STATE, TOUCH};
 use handscope::hand::{Dof, Finger, Groups, HandSample, Moment, PerDof, PerFinger, Reply, Span};
-use handscope::sim::body_file::random;
+use handscope::sim::body_params::random;
 use handscope::sim::{Contact, Object, Pull, PullEnd, Scenario, SimConfig, SimHand};
 
 /// Grasps of one body.
@@ -438,6 +438,6 @@ fn count(
 ) {
     let steady = truth.filter(|state| *state != GripState::Slipping && lasted_ms >= STEADY_MS);
     if let Some(truth) = steady {
-        table[usize::from(truth.code())][usize::from(told.code())] += 1;
+        table[truth as usize][told as usize] += 1;
     }
 }

@@ -4,7 +4,7 @@
 use crate::report::{Aim, Failure, Report};
 use crate::virtual_hand::{Case, STIFFNESSES, VirtualHand, case, object};
 use handscope::hand::Dof;
-use handscope::sim::body_file::random::random;
+use handscope::sim::body_params::random::random;
 use handscope::trials::search::SearchGoal;
 
 /// Bodies, each with every stiffness.

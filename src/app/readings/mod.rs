@@ -101,9 +101,9 @@ impl Readings {
         freshness(asked, self.tip_pace[finger], is_live, now)
     }
 
-    /// What is gripped now; unknown of a link that is not live.
-    pub fn grip_now(&self, is_live: bool, now: Moment) -> Grip {
-        if is_live {
+    /// What is gripped now; unknown of readings that are not believed.
+    pub fn grip_now(&self, is_believed: bool, now: Moment) -> Grip {
+        if is_believed {
             self.grip.grip().at(now)
         } else {
             Grip::default()

@@ -10,9 +10,9 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::watch::datagrams::Datagrams;
-use crate::cli::watch::telemetry::{sample_and_grip_json, sample_text, stats_json, stats_text};
+use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
 use crate::cli::watch::wire::FramePrinter;
-use crate::hand::grip::GripEstimator;
+use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
@@ -154,7 +154,11 @@ impl<'a> Watch<'a> {
             return Ok(());
         };
         let read = sample.newest(fresh).unwrap_or_default();
-        let grip = self.grip.take(&sample, fresh, read);
+        let mut grip = self.grip.take(&sample, fresh, read);
+        // Feedback that does not follow what the hand was told tells nothing of what it holds.
+        if self.link.status().feedback_in_doubt {
+            grip = Grip::default();
+        }
         let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
             return Ok(());
         };
@@ -165,11 +169,11 @@ impl<'a> Watch<'a> {
         self.taken += 1;
         let at = angle.received;
         if let Some(datagrams) = &mut self.datagrams {
-            datagrams.send(&sample_and_grip_json(&sample, &grip, at));
+            datagrams.send(&sample_json(&sample, &grip, at));
             return Ok(());
         }
         if self.args.json {
-            return self.out.object(&sample_and_grip_json(&sample, &grip, at));
+            return self.out.object(&sample_json(&sample, &grip, at));
         }
         let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
         if self.last_text.is_some_and(is_soon) {

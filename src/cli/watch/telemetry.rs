@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// One sample as one JSON object. What was not read is null.
-pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
+/// One sample with the grip that it shows as one JSON object. What was not read is null.
+pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value {
     let status = sample.status.map(|status| status.value);
     let faults = sample.faults.map(|faults| faults.value);
     let position = sample.position.map(|position| position.value);
@@ -25,6 +25,7 @@ pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
         "faults": faults.map(|six| six.map(fault_names)),
         "error_raw": faults.map(|six| six.map(Faults::raw)),
         "tactile": tactile.collect::<Vec<_>>(),
+        "grip": grip_json(&grip.at(at), at),
     });
     let measured = Quantity::MEASURED.map(|quantity| {
         let six = quantity.raw(sample).map(|six| six.value);
@@ -32,15 +33,6 @@ pub(crate) fn sample_json(sample: &HandSample, at: Moment) -> Value {
     });
     if let Value::Object(fields) = &mut object {
         fields.extend(measured);
-    }
-    object
-}
-
-/// One sample with the grip that it shows at `at`.
-pub(crate) fn sample_and_grip_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value {
-    let mut object = sample_json(sample, at);
-    if let Value::Object(fields) = &mut object {
-        fields.insert("grip".into(), grip_json(&grip.at(at), at));
     }
     object
 }
@@ -249,7 +241,11 @@ mod tests {
 
     #[test]
     fn what_was_not_read_is_null() {
-        let json = sample_json(&HandSample::default(), Moment::from_micros(1_500_000));
+        let json = sample_json(
+            &HandSample::default(),
+            &Grip::default(),
+            Moment::from_micros(1_500_000),
+        );
         assert_eq!(json["t_s"], 1.5);
         for key in [
             "angle",
@@ -283,13 +279,13 @@ mod tests {
             fresh_for: Duration::from_millis(500),
         };
         let at = |micros| Moment::from_micros(micros);
-        let json = sample_and_grip_json(&HandSample::default(), &grip, at(1_250_000));
+        let json = sample_json(&HandSample::default(), &grip, at(1_250_000));
         let grip_then = &json["grip"];
         assert_eq!(grip_then["state"], "unknown");
         assert!(grip_then["age_s"].is_null());
         let thumb = json!({"finger": "thumb", "state": "holding", "since_s": 1.0, "age_s": 0.25});
         assert_eq!(grip_then["fingers"][4], thumb);
-        let json = sample_and_grip_json(&HandSample::default(), &grip, at(1_750_000));
+        let json = sample_json(&HandSample::default(), &grip, at(1_750_000));
         assert_eq!(json["grip"]["fingers"][0]["state"], "unknown");
     }
 
@@ -310,7 +306,7 @@ mod tests {
             asked: at,
             received: at,
         });
-        let json = sample_json(&sample, at);
+        let json = sample_json(&sample, &Grip::default(), at);
         assert_eq!(json["angle"], json!([1000, 0, 0, 0, 0, 7]));
         assert_eq!(
             json["faults"][0],

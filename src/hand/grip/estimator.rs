@@ -12,10 +12,10 @@ use crate::hand::moment::Moment;
 /// Follows the grip of one hand. It is given each reading with its moment; the same readings give the same states.
 ///
 /// ```
-/// use handscope::hand::grip::{GripEstimator, GripState, GripThresholds};
+/// use handscope::hand::grip::{GripEstimator, GripState};
 /// use handscope::hand::{Groups, HandSample, Moment};
 ///
-/// let mut estimator = GripEstimator::new(GripThresholds::default());
+/// let mut estimator = GripEstimator::default();
 /// let grip = estimator.take(&HandSample::default(), Groups::default(), Moment::ZERO);
 /// assert_eq!(grip.grasp.state, GripState::Unknown);
 /// ```
@@ -39,19 +39,6 @@ impl GripEstimator {
             thresholds,
             fingers: PerFinger::from_fn(|_| FingerEstimator::new(&thresholds)),
             grasp: GripEstimate::default(),
-        }
-    }
-
-    /// The thresholds in force.
-    pub const fn thresholds(&self) -> &GripThresholds {
-        &self.thresholds
-    }
-
-    /// Tells by other thresholds from the next reading on. What was seen so far is kept.
-    pub fn set_thresholds(&mut self, thresholds: GripThresholds) {
-        self.thresholds = thresholds;
-        for (_, finger) in self.fingers.iter_mut() {
-            finger.set_thresholds(&thresholds);
         }
     }
 
@@ -251,8 +238,8 @@ mod tests {
             least_fingers: 2,
             ..GripThresholds::default()
         };
-        hand.estimator.set_thresholds(pinch);
-        assert_eq!(hand.after(10), GripState::Holding);
+        hand.estimator = GripEstimator::new(pinch);
+        assert_eq!(hand.after(300), GripState::Holding);
         assert_eq!(hand.estimator.grip().grasp.state, GripState::Empty);
     }
 }

@@ -52,10 +52,6 @@ impl FingerEstimator {
         }
     }
 
-    pub(super) const fn set_thresholds(&mut self, thresholds: &GripThresholds) {
-        self.slip.set_thresholds(thresholds);
-    }
-
     /// Without evidence nothing is known, and what was held may be gone. The zero of the force sensor stays.
     pub(super) fn forget(&mut self, at: Moment, thresholds: &GripThresholds) {
         self.motion = PerDof::from_fn(|_| JointMotion::default());

@@ -1,6 +1,7 @@
 //! Slips of a held object: jumps of friction or of the tangential force's direction, reading by reading.
 
 use crate::hand::grip::thresholds::GripThresholds;
+use crate::hand::statistics::median;
 use std::collections::VecDeque;
 
 /// Normal force below which there is nothing to slip, N.
@@ -59,12 +60,6 @@ impl SlipDetector {
         }
     }
 
-    /// Judges by these thresholds from now on.
-    pub const fn set_thresholds(&mut self, thresholds: &GripThresholds) {
-        self.ratio_jump = thresholds.slip_ratio;
-        self.turn_deg = thresholds.slip_turn_deg;
-    }
-
     /// When it was last seen to slip, s.
     pub const fn last(&self) -> Option<f64> {
         self.last
@@ -120,12 +115,4 @@ fn turn(before: &[&HeldMoment], now: &HeldMoment) -> Option<f64> {
         .filter_map(|moment| Some(round(moment.direction? - first)))
         .collect();
     Some(round(direction - first - median(&away)?).abs())
-}
-
-/// The middle value; of an even number the mean of the two. `None` of nothing.
-pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let (low, high) = (sorted.len().checked_sub(1)? / 2, sorted.len() / 2);
-    Some((sorted.get(low)? + sorted.get(high)?) / 2.0)
 }

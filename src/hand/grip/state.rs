@@ -2,13 +2,11 @@
 
 use crate::hand::dof::PerFinger;
 use crate::hand::moment::Moment;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::time::Duration;
 
 /// What a finger, or the whole grasp, does to an object.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GripState {
     /// What it would rest on is missing, old, or contradicts itself.
@@ -31,7 +29,7 @@ pub enum GripState {
 }
 
 impl GripState {
-    /// All, in the order of their codes.
+    /// All.
     pub const ALL: [Self; 8] = [
         Self::Unknown,
         Self::Open,
@@ -43,7 +41,7 @@ impl GripState {
         Self::TooHard,
     ];
 
-    /// Stable lower-case name for files and JSON.
+    /// Stable lower-case name, as JSON has it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -55,21 +53,6 @@ impl GripState {
             Self::Lost => "lost",
             Self::TooHard => "too_hard",
         }
-    }
-
-    /// Its number in recordings, 0..=7. It never changes.
-    pub const fn code(self) -> u8 {
-        self as u8
-    }
-
-    /// The state of a number in a recording.
-    pub fn by_code(code: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|state| state.code() == code)
-    }
-
-    /// True if an object is in the grip now, however well.
-    pub const fn has_object(self) -> bool {
-        matches!(self, Self::Holding | Self::Slipping | Self::TooHard)
     }
 }
 
@@ -135,14 +118,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_read_back_and_are_the_places_in_the_list() {
-        for (at, state) in (0u8..).zip(GripState::ALL) {
-            assert_eq!(state.code(), at);
-            assert_eq!(GripState::by_code(at), Some(state));
-            let name = serde_json::to_value(state).unwrap();
-            assert_eq!(name, state.name());
+    fn each_is_called_as_json_has_it() {
+        for state in GripState::ALL {
+            assert_eq!(serde_json::to_value(state).unwrap(), state.name());
         }
-        assert_eq!(GripState::by_code(8), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
 
-use crate::hand::grip::slip::median;
+use crate::hand::statistics::median;
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 
 /// Level and noise of a curve at rest.

@@ -13,7 +13,7 @@
 //! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most;
 //! * temperatures are whole degrees, read some times a second.
 
-use crate::hand::grip::slip::median;
+use crate::hand::statistics::median;
 use crate::hand::{Angle, Dof, Status};
 use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
 use crate::trials::measure::detect::{RestLevel, begins, passes, rest};

@@ -1,7 +1,7 @@
 //! What one recorded close says about a joint and the object. Pure.
 
 use crate::hand::Dof;
-use crate::hand::grip::slip::median;
+use crate::hand::statistics::median;
 use crate::trials::measure::curve::JointCurves;
 use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::recording::{TrialEvent, seconds};

@@ -1,6 +1,7 @@
 //! One setting, closed again and again: the bound of its peaks, and what is left of the grip. Pure.
 
 use crate::hand::Dof;
+use crate::hand::statistics::{count, mean, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::JointClaim;
 use crate::trials::search::goal::SearchGoal;
@@ -103,17 +104,11 @@ impl JointCloses {
         let Some((mean, factor)) = mean(peaks).zip(factor) else {
             return f64::INFINITY;
         };
-        let n: f64 = peaks.iter().map(|_| 1.0).sum();
-        let spread: f64 = peaks.iter().map(|peak| (peak - mean).powi(2)).sum();
         // Ten closes may happen to be alike; no bound is below what was seen.
-        let sigma = (spread / (n - 1.0)).sqrt().max(self.least_sigma_g);
+        let sigma = (spread(peaks) / (count(peaks) - 1.0)).sqrt();
+        let sigma = sigma.max(self.least_sigma_g);
         (mean + factor * sigma).max(highest)
     }
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    let n: f64 = values.iter().map(|_| 1.0).sum();
-    (n > 0.0).then(|| values.iter().sum::<f64>() / n)
 }
 
 #[cfg(test)]

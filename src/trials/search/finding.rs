@@ -209,6 +209,19 @@ pub enum Untold {
     Distribution,
 }
 
+impl Untold {
+    /// Whether it is the same of the same joint; a figure may differ.
+    pub(crate) fn is_of_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Slips { dof }, Self::Slips { dof: same })
+            | (Self::Stiffness { dof }, Self::Stiffness { dof: same })
+            | (Self::Gaps { dof, .. }, Self::Gaps { dof: same, .. }) => dof == same,
+            (Self::Distribution, Self::Distribution) => true,
+            _ => false,
+        }
+    }
+}
+
 /// All that a search came to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {

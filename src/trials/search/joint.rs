@@ -1,7 +1,7 @@
 //! What is known of one joint and the object before it, from the closes so far. Pure.
 
 use crate::hand::Dof;
-use crate::hand::grip::slip::median;
+use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::NoClaim;
 use crate::trials::search::growth::{Contact, PeakGrowth};
@@ -118,9 +118,7 @@ impl JointModel {
 
     /// The mean contact, units of ANGLE_ACT; brought back from the force that told it to where it began.
     pub(crate) fn contact(&self) -> Option<f64> {
-        let count = count(&self.contacts);
-        let mean = self.contacts.iter().sum::<f64>() / count;
-        (count > 0.0).then_some(mean + self.late())
+        Some(mean(&self.contacts)? + self.late())
     }
 
     fn late(&self) -> f64 {
@@ -134,8 +132,7 @@ impl JointModel {
     /// How far before the mean contact the slow stage begins, units of ANGLE_ACT. While little is known it is wider.
     pub(crate) fn margin(&self) -> f64 {
         let n = count(&self.contacts).max(1.0);
-        let mean = self.contacts.iter().sum::<f64>() / n;
-        let spread: f64 = self.contacts.iter().map(|at| (at - mean).powi(2)).sum();
+        let spread = spread(&self.contacts);
         let known = CONTACT_TRUST * CONTACT_SCATTER.powi(2);
         let sigma = ((known + spread) / (CONTACT_TRUST + n - 1.0)).sqrt();
         MARGIN_SIGMAS * sigma * (1.0 + 2.0 / n).sqrt() + MARGIN_MORE
@@ -147,8 +144,4 @@ impl JointModel {
         let left = least.unwrap_or(USUALLY_LEFT).clamp(0.3, 1.0);
         hold_g / left + HOLD_MORE_G
     }
-}
-
-fn count(values: &[f64]) -> f64 {
-    values.iter().map(|_| 1.0).sum()
 }

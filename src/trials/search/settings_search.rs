@@ -2,7 +2,8 @@
 //! to the fastest whose upper bound stays under the limit; then the same again and again until it is a claim. Pure: it moves
 //! nothing and reads no clock.
 
-use crate::hand::{Angle, Force, PerDof, Speed};
+use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::seconds;
 use crate::trials::search::close::CloseFacts;
@@ -128,11 +129,6 @@ impl SettingsSearch {
     /// The plan that its trials begin with: joints, ways, limits. Speed and threshold are the first's.
     pub fn plan(&self) -> TrialPlan {
         self.goal.plan(self.choice.setting)
-    }
-
-    /// What was wished for.
-    pub const fn goal(&self) -> &SearchGoal {
-        &self.goal
     }
 
     /// What it came to, once it is over.
@@ -289,10 +285,7 @@ impl SettingsSearch {
             self.note_untold(joint);
         }
         if facts.len() < self.joints.len() {
-            let dof = self
-                .joints
-                .first()
-                .map_or(crate::hand::Dof::Index, |own| own.dof);
+            let dof = self.joints.first().map_or(Dof::Index, |own| own.dof);
             return Err(NoClaim::NotMeasured { dof });
         }
         Ok(slips)
@@ -301,11 +294,7 @@ impl SettingsSearch {
     fn note_untold(&mut self, joint: &CloseFacts) {
         let dof = joint.dof;
         let gap = joint.longest_gap_s.filter(|gap| *gap > GAP_S);
-        let is_known = |untold: &Untold| {
-            self.untold
-                .iter()
-                .any(|own| std::mem::discriminant(own) == std::mem::discriminant(untold))
-        };
+        let is_known = |untold: &Untold| self.untold.iter().any(|own| own.is_of_same(untold));
         let slips = joint.slips.is_none().then_some(Untold::Slips { dof });
         let gaps = gap.map(|gap_s| Untold::Gaps { dof, gap_s });
         let new: Vec<Untold> = slips
@@ -503,7 +492,7 @@ impl SettingsSearch {
                 let (a, b) = (a.peak_g.unwrap_or(0.0), b.peak_g.unwrap_or(0.0));
                 a.total_cmp(&b)
             });
-            let dof = worst.map_or(crate::hand::Dof::Index, |own| own.dof);
+            let dof = worst.map_or(Dof::Index, |own| own.dof);
             return Err(if slips {
                 NoClaim::Slips { dof }
             } else {
@@ -528,16 +517,13 @@ impl SettingsSearch {
             }
             Some(speed) => self.confirm(speed),
             None => {
-                let dof = self
-                    .joints
-                    .first()
-                    .map_or(crate::hand::Dof::Index, |own| own.dof);
+                let dof = self.joints.first().map_or(Dof::Index, |own| own.dof);
                 Err(self.too_strong(dof))
             }
         }
     }
 
-    fn too_strong(&self, dof: crate::hand::Dof) -> NoClaim {
+    fn too_strong(&self, dof: Dof) -> NoClaim {
         let joint = self.joints.iter().find(|joint| joint.dof == dof);
         let at = self.at(f64::from(SLOWEST));
         let over = joint
@@ -647,7 +633,6 @@ impl SettingsSearch {
 
 /// The speed of the first close: slow, and slower where even that may be over the limit on a stiff object.
 fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
-    use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
     let threshold = f64::from(setting.force.get());
     let worst =
         |speed: f64| 1.5 * overshoot_g(speed, threshold).max(second_hand_overshoot_g(speed));

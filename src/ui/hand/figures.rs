@@ -137,10 +137,12 @@ fn figure_ui(
     }
 }
 
+/// What is gripped now; unknown while feedback does not follow what the hand was told.
 fn grip(pane: &Pane<'_>) -> Grip {
-    let hand = pane.state.hand();
-    let is_live = hand.connection.is_live();
-    hand.readings.grip_now(is_live, pane.state.now)
+    let connection = &pane.state.hand().connection;
+    let is_believed = connection.is_live() && !connection.status.feedback_in_doubt;
+    let readings = &pane.state.hand().readings;
+    readings.grip_now(is_believed, pane.state.now)
 }
 
 /// What the grasp does to an object, in one line under the picture.

@@ -2,9 +2,10 @@
 
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{Dof, Finger, Moment, PerDof, Span, TactileBlock};
-use handscope::sim::body_file::random::random;
-use handscope::sim::body_file::{BodyParams, JointBody};
-use handscope::sim::drive::{Drive, DriveGoal, DriveSettings, STROKE};
+use handscope::sim::body_params::STROKE;
+use handscope::sim::body_params::random::random;
+use handscope::sim::body_params::{BodyParams, JointBody};
+use handscope::sim::drive::{Drive, DriveGoal, DriveSettings};
 use handscope::sim::{Contact, Object, Scenario, SimConfig, SimHand};
 
 const SLOW: DriveSettings = DriveSettings {

@@ -3,8 +3,11 @@
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{Fault, Status};
 use handscope::sim::Contact;
-use handscope::sim::drive::{DEAD_TIME_MS, Drive, DriveGoal, DriveSettings, STROKE};
+use handscope::sim::body_params::STROKE;
+use handscope::sim::drive::{Drive, DriveGoal, DriveSettings};
 
+/// From a command to the motion, ms.
+const DEAD_TIME_MS: u64 = 64;
 const FAST: DriveSettings = DriveSettings {
     speed: 1000.0,
     threshold_g: 3000.0,

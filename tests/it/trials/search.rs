@@ -6,7 +6,7 @@ use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner};
 use handscope::record::{LinkState, Record};
-use handscope::sim::body_file::random::random;
+use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::tasks::series::{
     RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, series,

@@ -7,9 +7,9 @@ use handscope::hand::{
     Setpoints, Speed, Target,
 };
 use handscope::record::LinkState;
-use handscope::sim::body_file::JointBody;
-use handscope::sim::body_file::random::random;
-use handscope::sim::body_file::run_on::{MetThreshold, run_on_g};
+use handscope::sim::body_params::JointBody;
+use handscope::sim::body_params::random::random;
+use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};

@@ -4,7 +4,7 @@
 //! counts; zeros up to 241 g), the other the damaged RH56DFX of arXiv 2603.08988.
 
 use crate::hand::{Finger, PerDof};
-use crate::sim::body_file::{BodyParams, JointBody};
+use crate::sim::body_params::{BodyParams, JointBody};
 
 /// The body of this seed. Each hand has its own way of running past a threshold; its joints differ a little.
 pub fn random(seed: u64) -> BodyParams {
@@ -42,7 +42,7 @@ pub fn random(seed: u64) -> BodyParams {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::body_file::file::{parse, print};
+    use crate::sim::body_params::file::{parse, print};
 
     #[test]
     fn a_seed_gives_one_body_and_all_are_in_range() {

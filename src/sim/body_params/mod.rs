@@ -14,8 +14,8 @@ pub const STROKE: f64 = 2000.0;
 /// Position counts a second for each unit of SPEED_SET.
 // Manual: 2.6.13 says 600 ms for the full stroke at 1000; 3.04 was measured on a sister hand.
 pub const COUNTS_PER_SPEED: f64 = STROKE / 0.6 / 1000.0;
-/// From a command to the motion, ms (measured: 64 +- 8).
-pub const DEAD_TIME_MS: u64 = 64;
+/// From a command to the motion, ms (measured: 64 +- 8); the measured ways past a threshold are of it, too.
+pub const LATENCY_MS: f64 = 64.0;
 
 /// One number of a body as it stands in the file.
 #[derive(Debug, Clone, Copy)]
@@ -73,7 +73,7 @@ numbers! {
         "times the stiffness of the object" stiffness_factor = 1.0, 0.05..20.0;
         "counts, how much later than the object's place the contact begins" contact_offset = 0.0, -200.0..200.0;
         "counts, standard deviation of where the contact begins, drawn anew each close" contact_scatter = 0.0, 0.0..100.0;
-        "ms from a command to the motion; the way past a force threshold grows in proportion" latency_ms = 64.0, 0.0..500.0;
+        "ms from a command to the motion; the way past a force threshold grows in proportion" latency_ms = LATENCY_MS, 0.0..500.0;
         "ms, standard deviation of the latency" latency_scatter_ms = 0.0, 0.0..100.0;
         "way past a force threshold: 0 as the first published hand, 1 as the second, or between" run_on = 0.0, 0.0..1.0;
         "g either way, noise of the force sensor" force_noise_g = 3.0, 0.0..200.0;

@@ -2,7 +2,7 @@
 //! default body.
 
 use crate::hand::{Dof, Finger};
-use crate::sim::body_file::{
+use crate::sim::body_params::{
     BodyKey, BodyParams, CHANNELS, DRIFT_MAX, FingertipBody, JointBody, SupplyBody,
 };
 use crate::store::toml_file::load;
@@ -182,7 +182,7 @@ fn put<T>(text: &mut String, keys: &[BodyKey<T>], of: &T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::body_file::random::random;
+    use crate::sim::body_params::random::random;
 
     #[test]
     fn what_is_printed_reads_back_and_the_default_is_the_default() {
