@@ -101,27 +101,27 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
     )]
     Follow(FollowArgs),
-    /// Record everything a hand reports into a session file
+    /// Record everything a hand reports into a recording file
     #[command(
         after_help = "Examples:\n  handscope record --hand rs485:/dev/ttyUSB0\n  handscope record --hand tcp:192.168.11.210 --for 60 --out grasp.mcap\n\nIt only reads. Ctrl-C ends the recording and closes the file; the last line on standard output is one JSON object of statistics. No file is overwritten. After a crash the file still opens: 'handscope info' says what is missing.\n\nThe file is MCAP with ROS 2 messages ('handscope help sessions')."
     )]
     Record(RecordArgs),
-    /// Tell what a session file holds, and what of it is missing
+    /// Tell what a recording file holds, and what of it is missing
     #[command(
         after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
     )]
     Info(InfoArgs),
-    /// Turn a session file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter session file
+    /// Turn a recording file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter recording file
     #[command(
         after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n  handscope export mon.mcap tue.mcap --lerobot --episode notes --out eggs\n  handscope export grasp.mcap --csv --from -10 --out - | gzip > end.csv.gz\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
     )]
     Export(ExportArgs),
-    /// Write a whole copy of a session file that is damaged or was not closed
+    /// Write a whole copy of a recording file that is damaged or was not closed
     #[command(
         after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
     )]
     Recover(RecoverArgs),
-    /// Make a session file of the values that 'export --csv' wrote
+    /// Make a recording file of the values that 'export --csv' wrote
     #[command(
         after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n  handscope import monday.csv tuesday.csv\n\nColumns are known by their names, in any order; others are skipped and named. What no column says stays unknown: the day, the hand, what it kept, the bytes on the wire."
     )]

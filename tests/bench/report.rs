@@ -38,6 +38,8 @@ impl Report {
         unit: &str,
         aim: Aim,
     ) -> Result<(), Failure> {
+        // The sum of nothing is -0.
+        let figure = figure + 0.0;
         let (met, aim) = match aim {
             Aim::AtLeast(least) => (figure >= least, format!(">= {}", short(least))),
             Aim::AtMost(most) => (figure <= most, format!("<= {}", short(most))),

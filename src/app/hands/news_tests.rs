@@ -231,6 +231,11 @@ fn a_lost_link_forgets_targets_and_a_found_one_is_not_armed() {
     assert_eq!(bench.target(Dof::Index), Some(700));
     assert!(!bench.hand.connection.is_armed());
     assert!(bench.told().contains(&NoticeKind::Reconnected));
+    bench.epoch(2);
+    assert!(
+        !bench.told().contains(&NoticeKind::Reconnected),
+        "it says that the hand is not armed"
+    );
 }
 
 #[test]

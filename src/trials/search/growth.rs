@@ -1,5 +1,5 @@
 //! How a peak grows with the speed: what was measured on this object, continued along the shapes that two hands of the family
-//! showed. The shapes choose the next trial; no claim rests on them. Pure.
+//! showed. The shapes choose the next trial; a claim takes no more of them than the least scatter of its peaks. Pure.
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
 

@@ -332,7 +332,7 @@ fn recording(look: Look, notice: &RecorderNotice) -> String {
     }
 }
 
-/// Why a recorded session was not opened.
+/// Why a recording was not opened.
 fn not_opened(look: Look, why: &OpenError) -> String {
     let words = match why {
         OpenError::Unreadable { error } => return errors::system_error(look, error),

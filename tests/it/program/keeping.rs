@@ -9,6 +9,7 @@ use handscope::app::notices::NoticeKind;
 use handscope::app::params::action::ParamAction;
 use handscope::app::program::App;
 use handscope::app::settings::{Settings, Theme};
+use handscope::app::state::State;
 use handscope::app::trials::TrialAction;
 use handscope::hand::{Angle, Dof, Force, Speed};
 use handscope::history::Trace;
@@ -308,4 +309,30 @@ async fn a_frame_after_the_end_begins_no_recording() {
         bench.hand().recording.is_none(),
         "it would be a file of nothing"
     );
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_recording_that_finds_no_disk_says_so_until_it_does() {
+    let mut bench = Bench::live().await;
+    bench.block_documents();
+    let place = bench.folder.path().join("documents");
+    let stalls = |state: &State| {
+        let mut notices = state.notices.iter();
+        notices.any(|notice| matches!(notice.what, NoticeKind::RecordingStalled { .. }))
+    };
+    // The disk is written to by a thread, which lives in real time.
+    let mut wait = 0;
+    while !stalls(bench.state()) {
+        std::thread::sleep(Duration::from_millis(10));
+        bench.run(50).await;
+        wait += 1;
+        assert!(wait < 3000, "not told");
+    }
+    std::fs::remove_file(place).unwrap();
+    while stalls(bench.state()) {
+        std::thread::sleep(Duration::from_millis(10));
+        bench.run(50).await;
+        wait += 1;
+        assert!(wait < 6000, "still told");
+    }
 }

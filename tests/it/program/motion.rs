@@ -7,6 +7,7 @@ use crate::setup::link::{missing, to_hand};
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
+use handscope::app::hands::Mover;
 use handscope::app::notices::{NoticeKind, RequestKind};
 use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandSample, Moment, Speed, Timed};
@@ -237,6 +238,35 @@ async fn messages_of_the_former_hand_carry_its_name_under_the_next() {
     bench.act(Action::Connect("rs485:y".parse().unwrap()));
     bench.run(500).await;
     assert_eq!(lost(&bench).map(|hand| hand.name), Some(name));
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_another_controller_moves_is_not_said_to_be_moved_from_here() {
+    let mut bench = Bench::armed().await;
+    bench.act(Action::Speed(None, Speed::nearest(50)));
+    bench.act(Action::Target(Dof::Index, Angle::MIN));
+    bench.run(300).await;
+    let mover = |bench: &Bench| Mover::of(bench.hand(), bench.state().now);
+    assert_eq!(mover(&bench), Some(Mover::Setpoints));
+    let others = [100_i16, 100, 100, 900, 1000, 1000];
+    let others: Vec<u8> = others
+        .iter()
+        .flat_map(|angle| angle.to_le_bytes())
+        .collect();
+    bench
+        .hand
+        .with(|hand, now| hand.write(ANGLE_SET, &others, now).unwrap());
+    bench
+        .until("not armed", |state| !state.hand().connection.is_armed())
+        .await;
+    for _ in 0..20 {
+        bench.run(50).await;
+        let moves = mover(&bench);
+        assert!(
+            matches!(moves, None | Some(Mover::Unknown | Mover::Stop)),
+            "{moves:?}"
+        );
+    }
 }
 
 #[tokio::test(start_paused = true)]

@@ -54,6 +54,18 @@ async fn a_series_needs_an_arming_and_free_joints() {
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
+#[tokio::test(start_paused = true)]
+async fn what_starts_in_an_arming_arms_nothing_where_there_is_none() {
+    for kind in [SeriesKind::Search, SeriesKind::Grid] {
+        let mut bench = Bench::live().await;
+        bench.act(Action::Trial(TrialAction::Start(kind)));
+        bench.run(1000).await;
+        assert!(!bench.hand().connection.is_armed(), "{kind:?}");
+        assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
+        assert_eq!(bench.addresses(), [0_u16; 0], "{kind:?}");
+    }
+}
+
 fn arm_and_start(bench: &mut Bench) {
     bench.act(Action::Trial(TrialAction::ArmAndStart(SeriesKind::Grid)));
 }

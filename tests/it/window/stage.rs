@@ -242,3 +242,22 @@ fn what_is_gripped_is_told_at_the_fingers_and_in_one_line() {
     bench.until(3000, |bench| bench.reading("Grip") == "Grip: Unknown");
     assert!(!bench.shows(index), "nothing is told of old readings");
 }
+
+#[test]
+fn no_grip_is_told_of_feedback_that_does_not_follow() {
+    let config = SimConfig {
+        scenario: Scenario::Frozen,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(config, LARGE);
+    bench.wait(1000);
+    assert_eq!(bench.reading("Grip"), "Grip: Open");
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click_button("Close");
+    bench.until(20_000, |bench| {
+        bench.state().hand().connection.status.feedback_in_doubt
+    });
+    bench.run(100);
+    assert_eq!(bench.reading("Grip"), "Grip: Unknown");
+}
