@@ -119,7 +119,11 @@ impl Action {
             | Self::Input(InputAction::Limit(_))
             | Self::ClearErrors => Effect::Adjusts,
             Self::Param(
-                ParamAction::Apply | ParamAction::Undo | ParamAction::Save | ParamAction::Agree,
+                ParamAction::Apply
+                | ParamAction::Undo
+                | ParamAction::Save
+                | ParamAction::SaveWith(_)
+                | ParamAction::Agree,
             )
             | Self::Procedure(
                 ProcedureAction::Begin | ProcedureAction::GoBack | ProcedureAction::Save,

@@ -18,7 +18,9 @@ use std::time::Duration;
 /// News come faster than a display shows them: one frame serves all that come within this time.
 const FRAME_WITHIN: Duration = Duration::from_millis(16);
 /// The same while no hand moves: only curves go on then, a pixel or two.
-const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(100);
+pub const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(100);
+/// The same where the processor draws each pixel.
+pub const SOFTWARE_FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(180);
 
 /// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
 pub type Snap =
@@ -87,8 +89,8 @@ impl DesktopApp {
         }
     }
 
-    /// How soon news of the hands are to be drawn.
-    pub fn frame_within(&self) -> Duration {
+    /// How soon news of the hands are to be drawn; `at_rest` is for hands of which none moves.
+    pub fn frame_within(&self, at_rest: Duration) -> Duration {
         let state = self.app.state();
         let moves = |hand: &Hand| {
             hand.connection.status.rest == Rest::Moving || Mover::of(hand, state.now).is_some()
@@ -96,7 +98,7 @@ impl DesktopApp {
         if state.hands.iter().any(moves) {
             FRAME_WITHIN
         } else {
-            FRAME_AT_REST_WITHIN
+            at_rest
         }
     }
 

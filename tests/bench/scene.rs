@@ -17,8 +17,8 @@ use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
 use handscope::link::Clock;
-use handscope::shell::DesktopApp;
 use handscope::shell::raster::Raster;
+use handscope::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use std::path::{Path, PathBuf};
@@ -182,7 +182,12 @@ impl Scene {
 
     /// How soon news are to be drawn.
     pub(crate) fn frame_within(&self) -> Duration {
-        self.desktop_app.frame_within()
+        let at_rest = if self.raster.is_some() {
+            SOFTWARE_FRAME_AT_REST_WITHIN
+        } else {
+            FRAME_AT_REST_WITHIN
+        };
+        self.desktop_app.frame_within(at_rest)
     }
 
     /// From now on the pixels are drawn too, of a window of 1920x1080.

@@ -1,6 +1,7 @@
 //! What the user may request in the Device view.
 
 use crate::params::rows::ParamId;
+use crate::params::values::Params;
 use std::path::PathBuf;
 
 /// One thing that the user asks for.
@@ -14,6 +15,8 @@ pub enum ParamAction {
     Undo,
     /// Write the hand's parameters to its flash, after a backup.
     Save,
+    /// Stage these values and ask for the same. Declined, they are not staged any more.
+    SaveWith(Params),
     /// Confirm: go on in spite of the dangers shown.
     Agree,
     /// Decline: nothing is written.

@@ -53,6 +53,8 @@ pub struct WriteQuestion {
     pub what: WriteRequest,
     /// Why confirmation is needed.
     pub dangers: Vec<Danger>,
+    /// What was staged before, and is again where it is declined.
+    pub staged_before: Params,
 }
 
 /// What the user asked to write.
@@ -85,7 +87,7 @@ pub struct ParamsState {
     live: BTreeMap<ParamId, (Value, Moment)>,
     /// What was read first, before this program changed anything.
     first: Params,
-    staged: Params,
+    pub(crate) staged: Params,
     pub(crate) outcomes: BTreeMap<ParamId, RowOutcome>,
     /// When all rows were read last.
     pub read_at: Option<Moment>,

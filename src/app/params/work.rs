@@ -63,10 +63,17 @@ impl ParamsState {
                 self.apply_rows(undo, Vec::new(), hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(),
+            ParamAction::Save => self.ask_save(self.staged.clone()),
+            ParamAction::SaveWith(values) => {
+                if self.save_refusal_with(&values, link).is_none() {
+                    let before = self.staged.clone();
+                    self.stage_all(&values);
+                    self.ask_save(before);
+                }
+            }
             ParamAction::Agree if self.write_refusal(link).is_some() => {}
             ParamAction::Agree => {
-                let Some(WriteQuestion { what, dangers }) = self.question.take() else {
+                let Some(WriteQuestion { what, dangers, .. }) = self.question.take() else {
                     return;
                 };
                 match what {
@@ -80,7 +87,11 @@ impl ParamsState {
                     }
                 }
             }
-            ParamAction::Decline => self.question = None,
+            ParamAction::Decline => {
+                if let Some(declined) = self.question.take() {
+                    self.staged = declined.staged_before;
+                }
+            }
             ParamAction::CopyLive => self.copy_live(sample, link, ctx.now),
             ParamAction::UnstageAll => self.unstage_all(),
             ParamAction::Open(typed) => self.open_file(typed, ctx.env),
@@ -166,10 +177,11 @@ impl ParamsState {
     }
 
     /// Shows what a SAVE would change.
-    fn ask_save(&mut self) {
+    fn ask_save(&mut self, staged_before: Params) {
         self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
             dangers: self.save_dangers(),
+            staged_before,
         });
     }
 
@@ -330,8 +342,11 @@ impl ParamsState {
     fn refused(&mut self, what: WriteRequest, error: TaskError) {
         match error {
             TaskError::NotMeant(risks) => {
-                let dangers = risks.dangers;
-                self.question = Some(WriteQuestion { what, dangers });
+                self.question = Some(WriteQuestion {
+                    what,
+                    dangers: risks.dangers,
+                    staged_before: self.staged.clone(),
+                });
             }
             TaskError::NotRead { why, .. } | TaskError::NotAsked(why) => self.trouble = Some(why),
             TaskError::NotReached | TaskError::NoBackup { .. } => {}

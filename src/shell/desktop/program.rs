@@ -10,12 +10,12 @@ use crate::app::program::App;
 use crate::app::recordings::RecordingAction;
 use crate::hand::Moment;
 use crate::link::{Clock, guard};
-use crate::shell::DesktopApp;
 use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::ending::{ENDS_WITHIN, Ending};
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
+use crate::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -83,7 +83,9 @@ impl Beginning {
 pub(crate) struct Program {
     desktop_app: DesktopApp,
     clock: Clock,
-    /// How soon news are drawn, in milliseconds.
+    /// How soon news are drawn while no hand moves.
+    at_rest: Duration,
+    /// How soon they are now, in milliseconds.
     frame_within_ms: Arc<AtomicU64>,
     titled: Option<String>,
     /// The window was made to fit its screen.
@@ -128,6 +130,10 @@ impl Program {
             documents: documents(),
         };
         let mut app = App::new(env, start.loaded.settings);
+        let at_rest = match start.drawing {
+            Drawing::OpenGl => FRAME_AT_REST_WITHIN,
+            Drawing::Software | Drawing::InPlaceOfOpenGl(_) => SOFTWARE_FRAME_AT_REST_WITHIN,
+        };
         let without = match start.drawing {
             Drawing::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
             Drawing::OpenGl | Drawing::Software => None,
@@ -150,6 +156,7 @@ impl Program {
         Self {
             desktop_app: DesktopApp::new(app).with_snap(start.snap),
             clock,
+            at_rest,
             frame_within_ms,
             titled: None,
             fits: false,
@@ -164,7 +171,7 @@ impl Program {
         let now = self.clock.now();
         self.ending.lives(now);
         self.desktop_app.logic(now);
-        let within = self.desktop_app.frame_within();
+        let within = self.desktop_app.frame_within(self.at_rest);
         let within_ms = u64::try_from(within.as_millis()).unwrap_or(0);
         self.frame_within_ms.store(within_ms, Ordering::Relaxed);
         self.title(ctx);
@@ -310,7 +317,7 @@ impl Program {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         } else {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            ctx.request_repaint_after(self.desktop_app.frame_within());
+            ctx.request_repaint_after(self.desktop_app.frame_within(self.at_rest));
         }
     }
 }

@@ -46,7 +46,19 @@ impl ConnectionForm {
     /// Draws the address, how the link goes, and hands to connect to.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let ports = &pane.state.ports;
+        let hands = &pane.state.hands;
         let endpoint = pane.state.hand().connection.endpoint.as_ref();
+        let is_open = |it: &Endpoint| {
+            let mut all = hands.iter();
+            all.any(|hand| hand.connection.endpoint.as_ref() == Some(it))
+        };
+        // The address of another hand that is open is none to offer.
+        if endpoint.is_none()
+            && let Some(filled) = self.filled_from.take_if(|it| is_open(it))
+            && self.typed == shortest(&filled, ports)
+        {
+            self.typed.clear();
+        }
         if let Some(endpoint) = endpoint.filter(|it| Some(*it) != self.filled_from.as_ref()) {
             self.filled_from = Some(endpoint.clone());
             self.typed = shortest(endpoint, ports);

@@ -10,10 +10,13 @@ use crate::ui::text::main;
 use crate::ui::theme;
 use egui::{Rect, Ui};
 
+/// Width of the second of two readings.
+const DEGREES: f32 = theme::FIELD + theme::STEP;
+
 impl JointRow {
     /// The angle as the hand says it and in degrees, or in percent.
     pub(crate) fn angle_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
+        let (left, right) = rect.split_left_right_at_x(rect.right() - DEGREES);
         self.angle_in_ui(ui, left, pane, AngleUnit::Raw);
         let other = match pane.state.settings.angle_unit {
             AngleUnit::Raw => AngleUnit::Degrees,
@@ -24,7 +27,7 @@ impl JointRow {
 
     /// Where room is short: the angle in the chosen unit, and the force.
     pub(crate) fn short_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
-        let (left, right) = rect.split_left_right_at_x(rect.right() - theme::FIELD);
+        let (left, right) = rect.split_left_right_at_x(rect.right() - DEGREES);
         self.angle_in_ui(ui, left, pane, pane.state.settings.angle_unit);
         self.force_reading_ui(ui, right, pane);
     }

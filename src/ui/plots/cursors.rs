@@ -142,10 +142,18 @@ impl Cursors {
                 let name = look.say(words::dof(line.dof));
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
-                    let digits = panel.row.decimals.max(1);
                     let text = value.map_or_else(
                         || format::UNKNOWN.into(),
-                        |value| format!("{value:.digits$}"),
+                        |value| {
+                            // Four digits fill the column of a narrow plot.
+                            let is_long = value.abs() >= 1000.0;
+                            let digits = if is_long {
+                                0
+                            } else {
+                                panel.row.decimals.max(1)
+                            };
+                            format!("{value:.digits$}")
+                        },
                     );
                     let named = format!("{name} {title}: {}", look.say(column));
                     cell(ui, &text, Some(&named));

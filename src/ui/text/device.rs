@@ -86,7 +86,7 @@ texts! {
     FORCE: "force", "力";
     AGREE_APPLY: "Apply anyway", "仍然应用", "Goes on with what is listed here.", "按所列内容继续。";
     AGREE_SAVE: "Save anyway", "仍然保存", "Goes on with what is listed here.", "按所列内容继续。";
-    DECLINE: "Back", "返回", "Writes nothing. What is staged stays staged.", "不写入任何内容，暂存值保留。";
+    DECLINE: "Back", "返回", "Writes nothing. What was staged before stays staged.", "不写入任何内容，之前的暂存值保留。";
 
     FLASH: "Flash", "闪存";
     FLASH_BODY: "Flash itself cannot be read. \"Last saved\" is what this program saved.", "闪存本身无法读取。“上次保存”是本程序所保存的内容。";

@@ -46,14 +46,12 @@ impl<'a> Promotion<'a> {
         }
     }
 
-    /// The button: stages the values, and asks by the card of a save.
+    /// The button: asks by the card of a save.
     pub(crate) fn button_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, text: Text) {
         let button = Button::said(pane.look, text).weight(Weight::Strong);
         if button.disabled(self.refusal).ui(ui, pane.look).clicked() {
-            let staged = self.values.iter();
-            let staged = staged.map(|(id, value)| Action::Stage(id, Some(value)));
-            pane.actions.extend(staged);
-            pane.actions.push(Action::Param(ParamAction::Save));
+            let save = ParamAction::SaveWith(self.values.clone());
+            pane.actions.push(Action::Param(save));
         }
     }
 

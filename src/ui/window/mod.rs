@@ -187,7 +187,7 @@ impl Window {
             .is_some_and(|at| now - at < ASTRAY.as_secs_f64())
     }
 
-    /// What Esc does now: it closes what is open while the hand rests for certain.
+    /// What Esc does now: it closes what is open, and stops unless each hand rests for certain.
     fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
         let is_open = self.key_list.is_open()
             || self.palette.is_open()
@@ -195,16 +195,17 @@ impl Window {
             || self.cards.informs()
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
-        if !is_open || !state.hands.iter().all(|hand| rests(hand, state.now)) {
-            return Escape::Stops;
-        }
         // Popups, fields and cards do so themselves.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
             self.palette.hide();
             self.body.own.status.drop_note();
         }
-        Escape::Closes
+        if is_open && state.hands.iter().all(|hand| rests(hand, state.now)) {
+            Escape::Closes
+        } else {
+            Escape::Stops
+        }
     }
 
     /// What a key or a command asks for.

@@ -27,6 +27,7 @@ use handscope::inputs::follow::FollowLimits;
 use handscope::inputs::pad::PadMap;
 use handscope::link::PollPriority;
 use handscope::params::rows::{ParamId, Value};
+use handscope::params::values::Params;
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{EntryId, PoseId, SequenceId};
 use handscope::poses::{Play, Preset};
@@ -70,6 +71,7 @@ fn params() -> Vec<ParamAction> {
         ParamAction::Apply,
         ParamAction::Undo,
         ParamAction::Save,
+        ParamAction::SaveWith(Params::default()),
         ParamAction::Agree,
         ParamAction::Decline,
         ParamAction::CopyLive,

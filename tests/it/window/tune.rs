@@ -447,6 +447,12 @@ fn the_best_is_made_the_default_by_a_click_and_the_yes_of_its_card() {
     bench.run(100);
     assert!(bench.shows("Save these changes to flash?"));
     assert_eq!(bench.writes().len(), writes, "it was only asked");
+    bench.click("Back");
+    bench.run(100);
+    let staged = bench.state().hand().params.all_staged();
+    assert!(staged.is_empty(), "declined, nothing waits in Device");
+    bench.click(button);
+    bench.run(100);
     bench.click("Apply and save");
     bench.until(10_000, |bench| {
         let params = &bench.state().hand().params;
