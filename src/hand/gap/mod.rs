@@ -7,4 +7,4 @@ mod path;
 
 pub use blocks::{Block, BlockError, HeldSize, SizeBlocks};
 pub use kind::{GripKind, NotOffered};
-pub use path::{Gap, GapOutOfRange, PinchLeg, held_gap, pad_distance};
+pub use path::{Gap, GapOutOfRange, PinchLeg, gap_of_held, held_gap, pad_distance};

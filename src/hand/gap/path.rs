@@ -1,6 +1,8 @@
 //! The one path on which the pads of thumb and index face each other, by the distance between their middles.
 
 use crate::hand::dof::{Dof, Finger, PerDof};
+use crate::hand::feedback::reading::AngleReading;
+use crate::hand::grip::{Grip, GripState};
 use crate::hand::kinematics::{SegmentFrames, Side};
 use crate::hand::units::{Angle, Speed};
 use serde::{Deserialize, Serialize};
@@ -167,6 +169,21 @@ pub fn held_gap(counts: &PerDof<f32>) -> Option<f32> {
     pinching.into_iter().all(is_near).then_some(gap)
 }
 
+/// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.
+pub fn gap_of_held(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
+    let holds = |state| {
+        matches!(
+            state,
+            GripState::Holding | GripState::Slipping | GripState::TooHard
+        )
+    };
+    let is_pinch = grip.fingers.iter().all(|(finger, estimate)| {
+        holds(estimate.state) == matches!(finger, Finger::Thumb | Finger::Index)
+    });
+    let counts = angles.map(|angle| angle.documented().map(f32::from));
+    held_gap(&counts.all()?).filter(|_| is_pinch)
+}
+
 /// Index and thumb bend so far along the path, in counts.
 fn on_path(share: f32) -> [f32; 2] {
     let [met, open_thumb, open] = CORNERS;
@@ -316,6 +333,25 @@ mod tests {
         let mut aside = counts(Gap::nearest(30.0));
         aside[Dof::ThumbRotate] = 200.0;
         assert_eq!(held_gap(&aside), None, "the thumb is beside the index");
+    }
+
+    #[test]
+    fn only_what_thumb_and_index_alone_hold_has_a_size() {
+        let angles = Gap::nearest(30.0)
+            .angles()
+            .map(|angle| AngleReading::new(angle.get()));
+        let held = |fingers: &[Finger]| {
+            let mut grip = Grip::default();
+            for finger in fingers {
+                grip.fingers[*finger].state = GripState::Holding;
+            }
+            gap_of_held(&grip, &angles)
+        };
+        let told = held(&[Finger::Index, Finger::Thumb]).unwrap();
+        assert!((told - 30.0).abs() < 0.2, "{told}");
+        assert_eq!(held(&[Finger::Index]), None);
+        assert_eq!(held(&[Finger::Index, Finger::Thumb, Finger::Middle]), None);
+        assert_eq!(held(&[]), None);
     }
 
     #[test]
