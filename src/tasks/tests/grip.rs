@@ -124,7 +124,7 @@ impl Bench {
         let bench = Self::start();
         bench.moves(true);
         bench.at(PerDof::splat(1000), false, 3).await;
-        assert_eq!(bench.sent(), [[(809, 100), (1000, 100)]], "open first");
+        assert_eq!(bench.sent(), [[(810, 100), (1000, 100)]], "open first");
         bench.at(angles(120.0), false, 3).await;
         assert_eq!(bench.sent(), [[(660, 100), (1000, 100)]], "the index alone");
         bench
