@@ -88,6 +88,11 @@ impl SizeBlocks {
         &self.0
     }
 
+    /// True if none was measured.
+    pub const fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Takes a block; one of nearly its size is replaced, or of two the one that is nearer in size.
     ///
     /// # Errors

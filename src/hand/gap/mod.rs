@@ -7,4 +7,6 @@ mod path;
 
 pub use blocks::{Block, BlockError, HeldSize, SizeBlocks};
 pub use kind::{GripKind, NotOffered};
-pub use path::{Gap, GapOutOfRange, PinchLeg, gap_of_held, held_gap, pad_distance};
+pub use path::{
+    Gap, GapOutOfRange, PinchLeg, gap_of_held, held_gap, is_open_for_pinch, pad_distance,
+};

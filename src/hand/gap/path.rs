@@ -89,10 +89,15 @@ impl Gap {
         let mut legs = Vec::with_capacity(2);
         let mut from = self;
         for next in between.into_iter().chain([to]) {
-            legs.push(PinchLeg::between(from, next));
+            legs.push(from.straight_to(next));
             from = next;
         }
         legs
+    }
+
+    /// Straight to another gap, off the path where that has its corner between: for small steps.
+    pub fn straight_to(self, to: Self) -> PinchLeg {
+        PinchLeg::between(self, to)
     }
 
     /// How far along the path, in corners: 0 where the pads meet.
@@ -158,6 +163,15 @@ pub fn pad_distance(counts: &PerDof<f32>) -> f32 {
     frames
         .tip(Finger::Index)
         .distance(frames.tip(Finger::Thumb))
+}
+
+/// Whether thumb and index can go from here to any gap, and meet nothing on the way, whichever is faster.
+pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
+    let spare = f32::from(Angle::ARRIVED_WITHIN);
+    let [[index, bend], ..] = CORNERS;
+    counts[Dof::Index] >= index - spare
+        && counts[Dof::ThumbBend] >= bend - spare
+        && counts[Dof::ThumbRotate] <= f32::from(ROTATED.get()) + 2.0 * spare
 }
 
 /// The gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
