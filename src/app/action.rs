@@ -15,6 +15,7 @@ use crate::app::recordings::RecordingAction;
 use crate::app::scan::ScanTarget;
 use crate::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use crate::app::trials::action::TrialAction;
+use crate::hand::gap::Gap;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Finger, Force, Gesture, GestureRoute, Moment, Speed};
 use crate::history::Mark;
@@ -52,6 +53,12 @@ pub enum Action {
     Lock(Dof, bool),
     /// All joints that are not locked towards open or bent, at the speeds that are set. Needs arming.
     Preset(Preset),
+    /// Close or open thumb and index to this gap; where they could meet on the way, open them for it and no more. Needs arming.
+    Pinch(Gap),
+    /// What thumb and index hold now is a block of this size, mm: keep it, to correct the sizes that are told of this hand.
+    MeasureBlock(f32),
+    /// Forget the blocks that were measured with this hand.
+    ForgetBlocks,
     /// Take a stored pose. Needs arming.
     Gesture(Gesture),
     /// Keep the pose that the hand has now, by this name or the next free one.
@@ -172,6 +179,7 @@ impl Action {
             Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
             Self::Preset(preset) => PersonAct::Preset(*preset),
             Self::Recall(id) => PersonAct::Pose(poses.pose(*id)?.name.as_str().into()),
+            Self::Pinch(gap) => PersonAct::Pose(format!("pinch {:.0} mm", gap.mm()).into()),
             Self::Play(play) => PersonAct::Play(*play),
             Self::Stop
             | Self::Arm
@@ -191,6 +199,8 @@ impl Action {
             | Self::ImportPoses(_)
             | Self::ExportPoses
             | Self::NameGesture(..)
+            | Self::MeasureBlock(_)
+            | Self::ForgetBlocks
             | Self::GestureRoute(_)
             | Self::ChangePlace(..)
             | Self::FactoryReset

@@ -107,6 +107,7 @@ impl Action {
             | Self::HoldKey(HoldKey::Pressed)
             | Self::Target(..)
             | Self::Preset(_)
+            | Self::Pinch(_)
             | Self::Gesture(_)
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
@@ -186,6 +187,8 @@ impl Action {
             | Self::ImportPoses(_)
             | Self::ExportPoses
             | Self::NameGesture(..)
+            | Self::MeasureBlock(_)
+            | Self::ForgetBlocks
             | Self::GestureRoute(_)
             | Self::SeenFault(..)
             | Self::SeenFaults

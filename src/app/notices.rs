@@ -2,6 +2,7 @@
 
 use crate::app::readings::faults::FaultKind;
 use crate::app::slot::HandLabel;
+use crate::hand::gap::BlockError;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
 use crate::record::export::ExportError;
@@ -109,6 +110,8 @@ pub enum NoticeKind {
     GesturesOff,
     /// A pose cannot be kept while an angle is unknown or old.
     PoseUnknown,
+    /// A block was not taken to correct the sizes that are told.
+    BlockNotTaken(BlockError),
     /// A file of poses was added.
     PosesImported { poses: usize, sequences: usize },
     /// A file that was chosen was not taken, not even in part.

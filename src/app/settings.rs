@@ -3,6 +3,7 @@
 use crate::app::env::day_folder;
 use crate::app::layout::Layout;
 use crate::app::readings::tare::KeptTare;
+use crate::hand::gap::SizeBlocks;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
 use crate::inputs::follow::FollowLimits;
@@ -291,6 +292,9 @@ pub struct KnownHand {
     /// The day on which the user connected to it last, such as `2026-11-24`; empty if that is not known.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub last_day: String,
+    /// The blocks of known size that were measured with it.
+    #[serde(skip_serializing_if = "SizeBlocks::is_empty")]
+    pub size_blocks: SizeBlocks,
     /// Keys of a newer version, kept as they are.
     #[serde(flatten)]
     pub others: toml::Table,
@@ -454,6 +458,17 @@ impl Settings {
     /// Gives a hand a name of one line; empty takes it away.
     pub(crate) fn name_hand(&mut self, endpoint: &Endpoint, name: &str) {
         self.know_hand(endpoint, |known| known.name = clean(name));
+    }
+
+    /// The blocks that were measured with this hand.
+    pub fn size_blocks(&self, endpoint: Option<&Endpoint>) -> SizeBlocks {
+        let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
+        known.map_or_else(SizeBlocks::default, |known| known.size_blocks.clone())
+    }
+
+    /// Keeps the blocks that were measured with a hand.
+    pub(crate) fn keep_size_blocks(&mut self, endpoint: &Endpoint, blocks: SizeBlocks) {
+        self.know_hand(endpoint, |known| known.size_blocks = blocks);
     }
 
     fn know_hand(&mut self, endpoint: &Endpoint, change: impl FnOnce(&mut KnownHand)) {

@@ -2,6 +2,7 @@
 
 mod args;
 mod doctor;
+mod grip;
 mod help;
 mod hold;
 mod inputs;
@@ -101,6 +102,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
+        Command::Grip(args) => wait_for(grip::run(&mut out, &args)),
         Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         Command::Info(args) => recordings::info::run(&mut out, &args),

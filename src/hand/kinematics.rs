@@ -1,4 +1,4 @@
-//! Where the segments of the hand are for six driven angles: pure geometry for pictures. Nothing here feeds control.
+//! Where the segments of the hand are for six driven angles: pure geometry, for pictures and for grips by size ([`crate::hand::gap`]).
 //!
 //! The numbers are those of a public model of the FTP right hand (unitreerobotics/unitree_ros,
 //! `robots/g1_description/inspire_hand/FTP_right_hand.urdf`, BSD-3-Clause, Unitree Robotics): facts only, no shapes.

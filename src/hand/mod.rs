@@ -8,6 +8,7 @@ pub mod column;
 pub mod command;
 pub mod dof;
 pub mod feedback;
+pub mod gap;
 pub mod grip;
 pub mod heat;
 pub mod impact;

@@ -6,6 +6,7 @@ pub mod apply;
 pub mod calibrate;
 pub mod exhibit;
 pub mod follow;
+pub mod grip;
 pub mod hand;
 pub mod place;
 pub mod play;

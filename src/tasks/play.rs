@@ -243,8 +243,8 @@ impl<H: TaskHand> Playing<'_, H> {
     }
 }
 
-/// Why a sequence in this arming must end now, if it must.
-fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<PlayEnd> {
+/// Why what moves the hand in this arming must end now, if it must.
+pub(crate) fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<PlayEnd> {
     if !status.state.is_live() {
         Some(PlayEnd::LinkLost)
     } else if status.state == LinkState::Fault {

@@ -8,6 +8,7 @@ mod hands;
 mod inputs;
 mod jobs;
 mod leading;
+mod pinch;
 mod pose_actions;
 pub(crate) mod quirk_notes;
 mod saved;
@@ -221,6 +222,9 @@ impl App {
                 .hand_mut()
                 .change_joint(dof, JointChange::Lock(locked)),
             Action::Preset(preset) => pose_actions::preset(state.hand_mut(), preset),
+            Action::Pinch(gap) => pinch::pinch(state, gap, env),
+            Action::MeasureBlock(size_mm) => pinch::measure_block(state, size_mm),
+            Action::ForgetBlocks => pinch::forget_blocks(state),
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);
             }),

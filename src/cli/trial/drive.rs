@@ -9,7 +9,7 @@ use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{ArmEpoch, HandSample};
-use crate::link::{Clock, Lease, LinkHandle, Owner, Records};
+use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
@@ -35,7 +35,7 @@ pub(crate) async fn drive(
         folder: args.out.as_deref(),
         criterion: args.criterion(),
     };
-    let mut hand = ArmedHand::ready(&args.hand, plan).await?;
+    let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(plan)).await?;
     let mut results = hand.results(out, wanted, plan).await?;
     let series = TrialSeries::start(plan.clone(), hand.epoch, hand.clock.now())?;
     let (_series, report) = hand.run(series, &mut results).await;
@@ -43,7 +43,7 @@ pub(crate) async fn drive(
     Ok(Outcome::of(trials, report, args.criterion()))
 }
 
-/// A hand that the user armed for trials on the command line.
+/// A hand that the user armed on the command line.
 pub(crate) struct ArmedHand {
     pub(crate) link: LinkHandle,
     pub(crate) epoch: ArmEpoch,
@@ -54,15 +54,15 @@ pub(crate) struct ArmedHand {
 }
 
 impl ArmedHand {
-    /// Opens a link, waits for the hand, and arms it within the limits of the plan.
-    pub(crate) async fn ready(endpoint: &Endpoint, plan: &TrialPlan) -> anyhow::Result<Self> {
+    /// Opens a link, waits for the hand, and arms it within these limits.
+    pub(crate) async fn ready(endpoint: &Endpoint, limits: ArmRequest) -> anyhow::Result<Self> {
         let mut interrupt = Interrupt::listen()?;
         let clock = Clock::start();
         let (link, mut records) = session::open_with_records(endpoint, series::RATES, clock);
         let ready = tokio::select! {
             biased;
             () = interrupt.wished() => None,
-            ready = make_ready(&link, &mut records, endpoint, plan) => Some(ready?),
+            ready = make_ready(&link, &mut records, endpoint, limits) => Some(ready?),
         };
         let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
             // Arming may have been under way.
@@ -120,17 +120,17 @@ impl ArmedHand {
         if report.stop == Some(Stop::NotConfirmed) {
             say(session::NOT_CONFIRMED);
         }
-        disarm(&self.link).await;
+        self.disarm().await;
         (series, report)
     }
-}
 
-/// Disarms, and waits until the link has done so.
-async fn disarm(link: &LinkHandle) {
-    link.disarm();
-    let until = Instant::now() + READY_WITHIN;
-    while link.status().armed.is_some() && Instant::now() < until {
-        sleep(TICK).await;
+    /// Disarms, and waits until the link has done so.
+    pub(crate) async fn disarm(&self) {
+        self.link.disarm();
+        let until = Instant::now() + READY_WITHIN;
+        while self.link.status().armed.is_some() && Instant::now() < until {
+            sleep(TICK).await;
+        }
     }
 }
 
@@ -139,7 +139,7 @@ async fn make_ready(
     link: &LinkHandle,
     records: &mut Records,
     endpoint: &Endpoint,
-    plan: &TrialPlan,
+    limits: ArmRequest,
 ) -> anyhow::Result<(Lease, HandSample)> {
     session::answered(link, endpoint).await?;
     let mut seen = HandSample::default();
@@ -154,7 +154,7 @@ async fn make_ready(
         }
     }
     let lease = link.grant(Owner::Task);
-    link.arm(lease, series::arm_limits(plan))?;
+    link.arm(lease, limits)?;
     while link.status().armed.is_none() {
         take_news(records, &mut seen).await?;
         if Instant::now() >= until {

@@ -10,6 +10,7 @@ use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsWanted;
 use crate::cli::tune::output::SearchReport;
+use crate::tasks::series;
 use crate::trials::TrialSeries;
 use crate::trials::search::SettingsSearch;
 use anyhow::bail;
@@ -50,11 +51,11 @@ async fn run_search(
         folder: args.out.as_deref(),
         criterion: None,
     };
-    let mut hand = ArmedHand::ready(&args.hand, &plan).await?;
+    let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(&plan)).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
-    let series = TrialSeries::search(search, hand.epoch, hand.clock.now());
-    let (series, ended) = hand.run(series, &mut results).await;
-    let search = series.settings_search();
+    let search = TrialSeries::search(search, hand.epoch, hand.clock.now());
+    let (searched, ended) = hand.run(search, &mut results).await;
+    let search = searched.settings_search();
     let report = SearchReport {
         series: ended,
         finding: search.and_then(SettingsSearch::finding),

@@ -164,6 +164,12 @@ impl FakeHand {
     /// It says this of itself now, on all joints.
     pub(crate) fn says(&self, said: Said) -> HandSample {
         let sample = said.sample(self.clock.now());
+        self.tells(sample);
+        sample
+    }
+
+    /// This was read of it.
+    pub(crate) fn tells(&self, sample: HandSample) {
         let fresh = Groups::from_iter([
             Group::Angle,
             Group::Force,
@@ -177,7 +183,6 @@ impl FakeHand {
         };
         // Nobody may be listening.
         let _heard = self.facts().records.send(record);
-        sample
     }
 
     async fn ask(&self, asked: Asked) -> Fate {
@@ -457,7 +462,7 @@ pub(crate) const WELL: Said = Said {
 };
 
 impl Said {
-    fn sample(self, at: Moment) -> HandSample {
+    pub(crate) fn sample(self, at: Moment) -> HandSample {
         fn timed<T>(value: T, at: Moment) -> Option<Timed<T>> {
             Some(Timed {
                 value,

@@ -3,6 +3,7 @@
 mod booth;
 mod exhibit;
 mod fake;
+mod grip;
 mod place;
 mod play;
 mod rest;

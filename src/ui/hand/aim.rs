@@ -1,6 +1,7 @@
 //! Where the user sends a joint, with its track or on the drawn hand: one rule for both.
 
 use crate::app::action::Action;
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof};
 use crate::ui::kit::Pane;
 use crate::ui::text::main;
@@ -43,4 +44,17 @@ pub(crate) fn is_linked(ui: &Ui) -> bool {
     let now = ui.ctx().cumulative_pass_nr();
     let last = ui.data(|data| data.get_temp::<u64>(Id::unique("fingers linked")));
     last.is_some_and(|at| at + 1 >= now)
+}
+
+/// The user asks in this frame what a gap would look like.
+pub(crate) fn wish(ui: &Ui, gap: Gap) {
+    let now = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|data| data.insert_temp(Id::unique("gap wished"), (now, gap)));
+}
+
+/// The gap that the user asks about, while the control for it is drawn.
+pub(crate) fn wished(ui: &Ui) -> Option<Gap> {
+    let now = ui.ctx().cumulative_pass_nr();
+    let wish = ui.data(|data| data.get_temp::<(u64, Gap)>(Id::unique("gap wished")));
+    wish.filter(|(at, _)| at + 1 >= now).map(|(_, gap)| gap)
 }

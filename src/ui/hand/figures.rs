@@ -8,7 +8,7 @@ use crate::hand::{Dof, Finger, Quantity};
 use crate::ui::hand::view::{HandPoints, HandView};
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{Label, Pane, format, text_width};
-use crate::ui::text::{main, panels, words};
+use crate::ui::text::{main, panels, poses, words};
 use crate::ui::theme;
 use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
@@ -137,19 +137,35 @@ fn figure_ui(
     }
 }
 
-/// What is gripped now; unknown while feedback does not follow what the hand was told.
 fn grip(pane: &Pane<'_>) -> Grip {
-    let connection = &pane.state.hand().connection;
-    let is_believed = connection.is_live() && !connection.status.feedback_in_doubt;
-    let readings = &pane.state.hand().readings;
-    readings.grip_now(is_believed, pane.state.now)
+    pane.state.hand().grip_now(pane.state.now)
+}
+
+/// The size of what thumb and index hold, in words; `None` while they hold nothing alone.
+pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
+    let hand = pane.state.hand();
+    let gap_mm = hand.held_gap(pane.state.now)?;
+    let blocks = pane
+        .state
+        .settings
+        .size_blocks(hand.connection.endpoint.as_ref());
+    let size = blocks.size(gap_mm);
+    let text = if size.is_measured {
+        poses::HELD_MEASURED
+    } else {
+        poses::HELD_MODEL
+    };
+    Some(pane.look.fill(text, &[&format!("{:.0}", size.mm)]))
 }
 
 /// What the grasp does to an object, in one line under the picture.
 pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     let state = grip(pane).grasp.state;
     let look = pane.look;
-    let words = look.pair(look.say(panels::GRIP), look.say(panels::grip(state)));
+    let mut words = look.pair(look.say(panels::GRIP), look.say(panels::grip(state)));
+    if let Some(size) = held_size(pane).filter(|_| state == GripState::Holding) {
+        words = look.list(&[&words, &size]);
+    }
     let line = place.with_min_y(place.bottom() - theme::PAD);
     let label = Label::new(&words, grip_color(pane, state)).small();
     label

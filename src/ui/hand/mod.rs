@@ -7,7 +7,7 @@
 pub(crate) mod aim;
 mod bars;
 mod camera;
-mod figures;
+pub(crate) mod figures;
 mod finger_drag;
 pub(crate) mod fingertip;
 mod light;

@@ -42,6 +42,7 @@ impl HandPanel {
             lit: pointed::pointed(ui, PointedPlace::Row),
             ..picture(pane.state.hand(), tips, pane.state.now)
         };
+        let picture = wished(ui, pane, picture);
         let movable =
             |dof: Dof| picture.is_known(dof.finger()) && aim::refusal(pane, dof).is_none();
         let stage = HandStage {
@@ -70,6 +71,20 @@ impl HandPanel {
             |dof| said(pane, dof),
         ));
         used.joint.map(Dof::finger).filter(|_| clicked)
+    }
+}
+
+/// With the gap that the user asks about as the ghost, while nothing is sent.
+fn wished(ui: &Ui, pane: &Pane<'_>, picture: HandPicture) -> HandPicture {
+    let is_armed = pane.state.hand().connection.is_armed();
+    match aim::wished(ui).filter(|_| !is_armed) {
+        Some(gap) => HandPicture {
+            target: gap
+                .angles()
+                .map(|angle| Some(f32::from(angle.get()) / 1000.0)),
+            ..picture
+        },
+        None => picture,
     }
 }
 

@@ -1,6 +1,7 @@
 //! The view of poses: the user's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
 pub(crate) mod editor;
 pub(crate) mod gestures;
+mod grip_size;
 pub(crate) mod sequence_step;
 pub(crate) mod sequence_view;
 pub(crate) mod shipped;

@@ -9,6 +9,7 @@ use crate::poses::Play;
 use crate::poses::library::{EntryId, LibraryPose};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
+use crate::ui::poses::grip_size;
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -101,6 +102,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
             gestures_ui(ui, pane);
+            grip_size::drawer_ui(ui, pane);
             for_all_ui(ui, pane);
         });
         shelf_ui(ui, pane);

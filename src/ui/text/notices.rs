@@ -3,6 +3,7 @@
 use crate::app::notices::{Notice, NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
+use crate::hand::gap::BlockError;
 use crate::hand::{Dof, Words};
 use crate::record::Disarmed;
 use crate::record::file::{OpenError, RecorderNotice};
@@ -222,6 +223,8 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             told(panels::NOTICE_LOCKED, look.say(words::dof(*dof)))
         }
         NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
+        NoticeKind::BlockNotTaken(BlockError::Size { .. }) => said(poses::BLOCK_SIZE),
+        NoticeKind::BlockNotTaken(BlockError::Unlikely { .. }) => said(poses::BLOCK_UNLIKELY),
         NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
         NoticeKind::SeriesNotBegun => said(tune::NOT_BEGUN),
         NoticeKind::ExhibitWantsOneHand => said(window::EXHIBIT_ONE_HAND),

@@ -14,6 +14,7 @@ mod doors;
 mod exports;
 #[cfg(target_os = "linux")]
 mod follow;
+mod grip;
 mod inputs;
 #[cfg(unix)]
 mod interop;

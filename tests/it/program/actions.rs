@@ -19,6 +19,7 @@ use handscope::app::scan::ScanTarget;
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SeriesKind, SessionId, TrialAction};
 use handscope::exhibit::run::ExhibitWish;
+use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::{Persistence, by_address};
 use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, Moment, Speed};
@@ -206,6 +207,9 @@ fn all(things: Things) -> Vec<Action> {
         Action::Speed(None, Speed::MAX),
         Action::Lock(Dof::Ring, true),
         Action::Preset(Preset::Close),
+        Action::Pinch(Gap::MAX),
+        Action::MeasureBlock(30.0),
+        Action::ForgetBlocks,
         Action::Gesture(Gesture::MIN),
         Action::Capture("captured".into()),
         Action::Recapture(things.pose),

@@ -7,6 +7,7 @@ mod keeping;
 mod lost_replies;
 mod motion;
 mod parameters;
+mod pinch;
 mod playing;
 mod starter;
 mod targets;

@@ -73,7 +73,7 @@ fn apart([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> f32 {
 }
 
 /// The room between thumb and a finger at these angles, in millimetres; negative where they are in each other.
-fn room(dof: Dof, angles: &PerDof<f32>) -> f32 {
+pub(super) fn room(dof: Dof, angles: &PerDof<f32>) -> f32 {
     let frames = SegmentFrames::of_shares(Side::Right, &angles.map(|angle| angle / 1000.0));
     let placed = |(segment, (from, to, radius)): (Segment, Bar)| {
         let frame = frames.frame(segment);
@@ -91,7 +91,7 @@ fn room(dof: Dof, angles: &PerDof<f32>) -> f32 {
 }
 
 /// The least room on the way from some angles to others, whichever joint is faster: all of the box between them.
-fn least_room(from: &PerDof<i16>, to: &PerDof<i16>) -> f32 {
+pub(super) fn least_room(from: &PerDof<i16>, to: &PerDof<i16>) -> f32 {
     const STEPS: u8 = 4;
     let between = |dof: Dof| {
         let (from, to) = (f32::from(from[dof]), f32::from(to[dof]));
@@ -114,7 +114,7 @@ fn least_room(from: &PerDof<i16>, to: &PerDof<i16>) -> f32 {
     least
 }
 
-fn along(from: &PerDof<i16>, legs: &[Targets]) -> f32 {
+pub(super) fn along(from: &PerDof<i16>, legs: &[Targets]) -> f32 {
     let mut at = *from;
     let mut least = f32::INFINITY;
     for leg in legs {

@@ -255,6 +255,39 @@ fn nothing_is_cut_or_covered_while_armed() {
     walk(states::armed, "armed");
 }
 
+/// Grips by size in both languages: the button of their drawer, and the control for the gap in it.
+const GRIP_SIZE: [(Language, &str, &str); 2] = [
+    (Language::En, "Grip by size", "Gap, mm"),
+    (Language::Zh, "按尺寸抓握", "间距 mm"),
+];
+
+#[test]
+fn nothing_is_cut_in_the_drawer_of_grips_by_size() {
+    for make in [states::live, states::armed] {
+        for (size, (language, button, gap)) in SIZES
+            .into_iter()
+            .flat_map(|size| GRIP_SIZE.map(|words| (size, words)))
+        {
+            let mut harness = open_at(make(), 1.0, size);
+            harness.state_mut().state.settings.language = language;
+            harness.run_steps(3);
+            harness.get_by_role_and_label(Role::Button, button).click();
+            harness.run_steps(6);
+            let sliders = harness.query_all_by_role(Role::Slider);
+            let mut named =
+                sliders.filter(|node| node.accesskit_node().label().as_deref() == Some(gap));
+            let place = named
+                .next()
+                .unwrap_or_else(|| panic!("{size} {language:?}"));
+            let screen = Rect::from_min_size(Pos2::ZERO, size);
+            assert!(screen.contains_rect(place.rect()), "{size} {language:?}");
+            drop(named);
+            let cut = unreadable(&harness);
+            assert!(cut.is_empty(), "{size} {language:?}: {cut:?}");
+        }
+    }
+}
+
 #[test]
 fn nothing_is_cut_or_covered_with_several_hands() {
     walk(states::several, "several hands");

@@ -5,6 +5,7 @@ mod compare;
 mod device;
 mod exhibit;
 mod faults;
+mod grip_size;
 mod hands;
 mod inputs;
 mod joints;

@@ -1,0 +1,73 @@
+//! Grips by size with the hand that is shown, and the blocks that make its sizes true.
+
+use crate::app::env::Env;
+use crate::app::notices::NoticeKind;
+use crate::app::state::State;
+use crate::hand::gap::{Block, Gap, SizeBlocks};
+use crate::poses::library::EntryId;
+use crate::poses::player::{Cue, PlayMode, PlayPlan};
+use crate::poses::starter::starter;
+use std::time::Duration;
+
+/// The shipped pose under whose name the hand opens for a pinch.
+const PINCH: &str = "Pinch";
+/// How long each part of the opening may take, at the slowest that is of use.
+const OPENS_WITHIN: Duration = Duration::from_secs(30);
+
+/// Goes to a gap. Where thumb and index could meet on the way, the hand only opens: the next step is the user's.
+pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
+    let now = state.now;
+    let hand = state.hand_mut();
+    if hand.locks_pinch() {
+        return;
+    }
+    if hand.is_open_for_pinch() {
+        hand.pinch_to(gap);
+        return;
+    }
+    let Some(pose) = starter().pose_named(PINCH) else {
+        return;
+    };
+    let opened = Cue {
+        targets: Gap::MAX.angles().map(Some),
+        limit: OPENS_WITHIN,
+        ..Cue::of(pose)
+    };
+    let plan = PlayPlan {
+        entry: EntryId::Pose(pose.id),
+        cues: vec![opened],
+        looped: false,
+        reaction: None,
+    };
+    hand.play(plan, PlayMode::Through, env, now);
+}
+
+/// Keeps what is held now as a block of this size.
+pub(super) fn measure_block(state: &mut State, size_mm: f32) {
+    let State {
+        hands,
+        settings,
+        notices,
+        now,
+        ..
+    } = state;
+    let hand = hands.shown();
+    let (Some(gap_mm), Some(endpoint)) = (hand.held_gap(*now), &hand.connection.endpoint) else {
+        return;
+    };
+    let mut blocks = settings.size_blocks(Some(endpoint));
+    match blocks.measure(Block { size_mm, gap_mm }) {
+        Ok(()) => settings.keep_size_blocks(endpoint, blocks),
+        Err(error) => notices.push(*now, NoticeKind::BlockNotTaken(error)),
+    }
+}
+
+/// Sizes of the hand that is shown are by the model again.
+pub(super) fn forget_blocks(state: &mut State) {
+    let endpoint = state.hand().connection.endpoint.clone();
+    if let Some(endpoint) = endpoint {
+        state
+            .settings
+            .keep_size_blocks(&endpoint, SizeBlocks::default());
+    }
+}

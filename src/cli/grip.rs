@@ -1,0 +1,189 @@
+//! `grip`: a grip by size on any hand. It moves the hand, so it requires `--arm`.
+
+use crate::cli::out::{Out, say};
+use crate::cli::parse::{force, hand, speed};
+use crate::cli::session;
+use crate::cli::trial::drive::ArmedHand;
+use crate::cli::trial::output::stop_words;
+use crate::hand::PerDof;
+use crate::hand::gap::{Gap, GripKind};
+use crate::hand::{Force, Speed};
+use crate::link::ArmRequest;
+use crate::poses::player::PlayEnd;
+use crate::tasks::grip::{self, GripEnd, GripReport, GripStart};
+use crate::tasks::series::Stop;
+use crate::transport::Endpoint;
+use anyhow::bail;
+use clap::Args;
+use serde_json::{Value, json};
+
+#[derive(Debug, Args)]
+pub(crate) struct GripArgs {
+    #[arg(long, value_name = "URL", value_parser = hand)]
+    pub(crate) hand: Endpoint,
+    /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach
+    #[arg(long)]
+    pub(crate) arm: bool,
+    /// Kind of grip: pinch, between the pads of thumb and index; the others have no gap in this hand
+    #[arg(long, value_name = "KIND", default_value = "pinch", value_parser = kind)]
+    pub(crate) kind: GripKind,
+    /// Millimetres between the pads to close to, 3 to 120; what stands between them stops the hand earlier
+    #[arg(long, value_name = "MM", value_parser = gap)]
+    pub(crate) gap: Gap,
+    /// Speed of the faster joint, 1 to 1000
+    #[arg(long, value_name = "SPEED", default_value = "200", value_parser = moving_speed)]
+    pub(crate) speed: Speed,
+    /// Force threshold in g, 0 to 2000
+    #[arg(long, value_name = "GRAMS", default_value = "500", value_parser = rated_force)]
+    pub(crate) force: Force,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn kind(text: &str) -> Result<GripKind, String> {
+    let named = GripKind::ALL.into_iter().find(|kind| kind.name() == text);
+    let kind = named.ok_or_else(|| {
+        let known = GripKind::ALL.map(GripKind::name).join(", ");
+        format!("it is none of {known}")
+    })?;
+    kind.offered().map_err(|why| why.to_string())?;
+    Ok(kind)
+}
+
+fn gap(text: &str) -> Result<Gap, String> {
+    let mm = text
+        .parse()
+        .map_err(|_not_one| format!("'{text}' is not a number of millimetres"))?;
+    Gap::new(mm).map_err(|error| error.to_string())
+}
+
+fn moving_speed(text: &str) -> Result<Speed, String> {
+    let speed = speed(text)?;
+    if speed == Speed::MIN {
+        Err("at a speed of 0 nothing moves".into())
+    } else {
+        Ok(speed)
+    }
+}
+
+fn rated_force(text: &str) -> Result<Force, String> {
+    let force = force(text)?;
+    if force > Force::RATED {
+        let rated = Force::RATED.get();
+        Err(format!("a finger is rated for {rated} g (20 N)"))
+    } else {
+        Ok(force)
+    }
+}
+
+/// Grips. Fails if it was ended early, or if something stopped the hand that it does not hold.
+pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
+    if !args.arm {
+        bail!(
+            "nothing was moved: this opens the hand at {} and closes thumb and index to {} mm; when nothing but the object is in the way, add --arm",
+            args.hand,
+            args.gap.mm()
+        );
+    }
+    let report = drive(args).await?;
+    let done = outcome(args, &report);
+    out.result(args.json, &object(args, &report), done.as_ref().ok())?;
+    out.flush()?;
+    match done {
+        Ok(_told) => Ok(()),
+        Err(why) => bail!("{why}{}", stop_words(report.stop)),
+    }
+}
+
+async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
+    let limits = ArmRequest {
+        speed: PerDof::splat(args.speed),
+        force: PerDof::splat(args.force),
+    };
+    let mut hand = ArmedHand::ready(&args.hand, limits).await?;
+    let start = GripStart {
+        gap: args.gap,
+        speed: args.speed,
+        force: args.force,
+        epoch: hand.epoch,
+        lease: hand.lease,
+        seen: hand.seen,
+        clock: hand.clock,
+    };
+    let report = grip::grip(&hand.link, start, hand.interrupt.wished()).await;
+    if report.stop == Some(Stop::NotConfirmed) {
+        say(session::NOT_CONFIRMED);
+    }
+    hand.disarm().await;
+    Ok(report)
+}
+
+/// The size of what is held, in words.
+fn held(report: &GripReport) -> String {
+    match report.gap_mm {
+        Some(mm) => format!("about {mm:.0} mm between the pads, by the model"),
+        None => "how far the pads are apart is not known".into(),
+    }
+}
+
+/// What came of it in one sentence; `Err` for what fails.
+fn outcome(args: &GripArgs, report: &GripReport) -> Result<String, String> {
+    let (asked, held) = (args.gap.mm(), held(report));
+    match report.end {
+        GripEnd::Held => Ok(format!("holds something: {held}")),
+        GripEnd::Reached => Ok(format!("at {asked} mm and holds nothing: {held}")),
+        GripEnd::Stopped => Err(format!(
+            "something stopped the hand before {asked} mm, and thumb and index do not hold it: {held}"
+        )),
+        GripEnd::NotOpened => Err(
+            "something is in the way of thumb or fingers, so the hand did not open for the grip"
+                .into(),
+        ),
+        GripEnd::Late => Err("the hand did not get there in time".into()),
+        GripEnd::Person => Err("ended by a person".into()),
+        GripEnd::Broken(why) => Err(broken(why).into()),
+    }
+}
+
+const fn broken(why: PlayEnd) -> &'static str {
+    match why {
+        PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
+        PlayEnd::LinkLost => session::STOP_LOST,
+        PlayEnd::TakenOver => "another moves the hand now",
+        PlayEnd::Finished | PlayEnd::Person | PlayEnd::Disarmed => {
+            "the hand was disarmed meanwhile"
+        }
+    }
+}
+
+const fn end_name(end: GripEnd) -> &'static str {
+    match end {
+        GripEnd::Held => "held",
+        GripEnd::Reached => "reached",
+        GripEnd::Stopped => "stopped",
+        GripEnd::NotOpened => "not_opened",
+        GripEnd::Late => "late",
+        GripEnd::Person => "person",
+        GripEnd::Broken(PlayEnd::Fault) => "fault",
+        GripEnd::Broken(PlayEnd::LinkLost) => "link_lost",
+        GripEnd::Broken(PlayEnd::TakenOver) => "taken_over",
+        GripEnd::Broken(PlayEnd::Finished | PlayEnd::Person | PlayEnd::Disarmed) => "disarmed",
+    }
+}
+
+/// The result: `{"grip": {…}}`. What is not known is null.
+fn object(args: &GripArgs, report: &GripReport) -> Value {
+    let confirmed = report
+        .stop
+        .map(|stop| matches!(stop, Stop::Confirmed { .. }));
+    json!({ "grip": {
+        "hand": args.hand.to_string(),
+        "kind": args.kind,
+        "asked_mm": args.gap.mm(),
+        "end": end_name(report.end),
+        "gap_mm": report.gap_mm,
+        "state": report.grip.grasp.state,
+        "stop_confirmed": confirmed,
+    }})
+}

@@ -1,0 +1,12 @@
+//! Grips by size: which this hand can do, the angles for a gap in mm, and the size of what is held. Reckoned by the model of
+//! [`crate::hand::kinematics`], so each figure is "by the model" until blocks of known size were measured.
+
+mod blocks;
+mod kind;
+mod path;
+
+pub use blocks::{Block, BlockError, HeldSize, SizeBlocks};
+pub use kind::{GripKind, NotOffered};
+pub use path::{
+    Gap, GapOutOfRange, PinchLeg, gap_of_held, held_gap, is_open_for_pinch, pad_distance,
+};

@@ -1,0 +1,437 @@
+//! The one path on which the pads of thumb and index face each other, by the distance between their middles.
+
+use crate::hand::dof::{Dof, Finger, PerDof};
+use crate::hand::feedback::reading::AngleReading;
+use crate::hand::grip::{Grip, GripState};
+use crate::hand::kinematics::{SegmentFrames, Side};
+use crate::hand::units::{Angle, Speed};
+use serde::{Deserialize, Serialize};
+
+/// Index and thumb bend, in counts, at the corners of the path: where the pads meet, where the thumb is open, and where both
+/// are. The thumb stays turned before the palm and the other fingers open. Between the first two both close so that neither
+/// pad is seen from its side; the next count on would let thumb and index cross.
+const CORNERS: [[f32; 2]; 3] = [[412.0, 508.0], [660.0, 1000.0], [1000.0, 1000.0]];
+/// The thumb's rotation on the path: all the way before the palm.
+const ROTATED: Angle = Angle::MIN;
+/// Halvings of the path until a place on it is known to less than a count.
+const HALVINGS: u32 = 24;
+/// A joint that is farther from the path than this, in counts, does not pinch: the pads are not what touches.
+const ON_PATH_WITHIN: f32 = 80.0;
+
+/// A distance between the pads of thumb and index that the path has, in mm.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f32", into = "f32")]
+pub struct Gap(f32);
+
+/// A gap that the path does not have.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("a pinch opens from {} to {} mm, not {got} mm", Gap::MIN.mm(), Gap::MAX.mm())]
+pub struct GapOutOfRange {
+    /// What was asked for, in mm.
+    pub got: f32,
+}
+
+impl Gap {
+    /// The pads touch: their middles come no nearer.
+    pub const MIN: Self = Self(3.0);
+    /// Beyond it the index turns its tip, not its pad, to the thumb.
+    pub const MAX: Self = Self(120.0);
+
+    /// Checks the range.
+    ///
+    /// # Errors
+    /// [`GapOutOfRange`].
+    pub fn new(mm: f32) -> Result<Self, GapOutOfRange> {
+        if (Self::MIN.0..=Self::MAX.0).contains(&mm) {
+            Ok(Self(mm))
+        } else {
+            Err(GapOutOfRange { got: mm })
+        }
+    }
+
+    /// The nearest that the path has; the widest for what is no number.
+    pub fn nearest(mm: f32) -> Self {
+        if mm.is_nan() {
+            Self::MAX
+        } else {
+            Self(mm.clamp(Self::MIN.0, Self::MAX.0))
+        }
+    }
+
+    /// In mm.
+    pub const fn mm(self) -> f32 {
+        self.0
+    }
+
+    /// Where all six joints are with this gap. Rounding to counts changes it by less than 0.2 mm.
+    ///
+    /// ```
+    /// use handscope::hand::gap::{Gap, pad_distance};
+    ///
+    /// let angles = Gap::new(30.0)?.angles();
+    /// let counts = angles.map(|angle| f32::from(angle.get()));
+    /// assert!((pad_distance(&counts) - 30.0).abs() < 0.2);
+    /// # Ok::<(), handscope::hand::gap::GapOutOfRange>(())
+    /// ```
+    pub fn angles(self) -> PerDof<Angle> {
+        let [index, bend] = on_path(self.share());
+        let mut angles = PerDof::splat(Angle::MAX);
+        angles[Dof::Index] = rounded(index);
+        angles[Dof::ThumbBend] = rounded(bend);
+        angles[Dof::ThumbRotate] = ROTATED;
+        angles
+    }
+
+    /// The parts of the path from this gap to another, one after the other.
+    pub fn legs_to(self, to: Self) -> Vec<PinchLeg> {
+        let corner = self.share().max(to.share()) > 1.0 && self.share().min(to.share()) < 1.0;
+        let between = corner.then(|| Self(distance_at(1.0)));
+        let mut legs = Vec::with_capacity(2);
+        let mut from = self;
+        for next in between.into_iter().chain([to]) {
+            legs.push(from.straight_to(next));
+            from = next;
+        }
+        legs
+    }
+
+    /// Straight to another gap, off the path where that has its corner between: for small steps.
+    pub fn straight_to(self, to: Self) -> PinchLeg {
+        PinchLeg::between(self, to)
+    }
+
+    /// How far along the path, in corners: 0 where the pads meet.
+    fn share(self) -> f32 {
+        let (mut near, mut far) = (0.0, 2.0);
+        for _ in 0..HALVINGS {
+            let middle = f32::midpoint(near, far);
+            if distance_at(middle) < self.0 {
+                near = middle;
+            } else {
+                far = middle;
+            }
+        }
+        f32::midpoint(near, far)
+    }
+}
+
+impl TryFrom<f32> for Gap {
+    type Error = GapOutOfRange;
+    fn try_from(mm: f32) -> Result<Self, GapOutOfRange> {
+        Self::new(mm)
+    }
+}
+
+impl From<Gap> for f32 {
+    fn from(gap: Gap) -> Self {
+        gap.0
+    }
+}
+
+/// A straight part of the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PinchLeg {
+    /// Where all joints are at its end.
+    pub to: PerDof<Angle>,
+    /// Share of the way of the joint that goes farthest, 0 to 1; 1 for joints that only stay in their places.
+    shares: PerDof<f32>,
+}
+
+impl PinchLeg {
+    fn between(from: Gap, to: Gap) -> Self {
+        let (start, to) = (from.angles(), to.angles());
+        let ways = PerDof::from_fn(|dof| f32::from(start[dof].get().abs_diff(to[dof].get())));
+        let longest = ways.as_array().iter().copied().fold(0.0, f32::max);
+        let share = |way: f32| if way > 0.0 { way / longest } else { 1.0 };
+        Self {
+            to,
+            shares: ways.map(share),
+        }
+    }
+
+    /// Speeds at which all joints arrive together, the fastest at this one.
+    pub fn speeds(&self, fastest: Speed) -> PerDof<Speed> {
+        let least = fastest.min(Speed::nearest(1));
+        self.shares
+            .map(|share| nearest_speed(f32::from(fastest.get()) * share).max(least))
+    }
+}
+
+/// Millimetres between the middles of the pads of thumb and index, wherever the joints are, in counts.
+pub fn pad_distance(counts: &PerDof<f32>) -> f32 {
+    let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
+    frames
+        .tip(Finger::Index)
+        .distance(frames.tip(Finger::Thumb))
+}
+
+/// Whether thumb and index can go from here to any gap, and meet nothing on the way, whichever is faster.
+pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
+    let spare = f32::from(Angle::ARRIVED_WITHIN);
+    let [[index, bend], ..] = CORNERS;
+    counts[Dof::Index] >= index - spare
+        && counts[Dof::ThumbBend] >= bend - spare
+        && counts[Dof::ThumbRotate] <= f32::from(ROTATED.get()) + 2.0 * spare
+}
+
+/// The gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
+pub fn held_gap(counts: &PerDof<f32>) -> Option<f32> {
+    let gap = pad_distance(counts);
+    let meant = Gap::new(gap).ok()?.angles();
+    let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
+    let is_near = |dof: Dof| (counts[dof] - f32::from(meant[dof].get())).abs() <= ON_PATH_WITHIN;
+    pinching.into_iter().all(is_near).then_some(gap)
+}
+
+/// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.
+pub fn gap_of_held(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
+    let holds = |state| {
+        matches!(
+            state,
+            GripState::Holding | GripState::Slipping | GripState::TooHard
+        )
+    };
+    let is_pinch = grip.fingers.iter().all(|(finger, estimate)| {
+        holds(estimate.state) == matches!(finger, Finger::Thumb | Finger::Index)
+    });
+    let counts = angles.map(|angle| angle.documented().map(f32::from));
+    held_gap(&counts.all()?).filter(|_| is_pinch)
+}
+
+/// Index and thumb bend so far along the path, in counts.
+fn on_path(share: f32) -> [f32; 2] {
+    let [met, open_thumb, open] = CORNERS;
+    let (from, to, part) = if share < 1.0 {
+        (met, open_thumb, share)
+    } else {
+        (open_thumb, open, share - 1.0)
+    };
+    let between = |(from, to): (f32, f32)| from + (to - from) * part;
+    let ([index, bend], [to_index, to_bend]) = (from, to);
+    [between((index, to_index)), between((bend, to_bend))]
+}
+
+fn distance_at(share: f32) -> f32 {
+    let [index, bend] = on_path(share);
+    let mut counts = PerDof::splat(1000.0);
+    (counts[Dof::Index], counts[Dof::ThumbBend]) = (index, bend);
+    counts[Dof::ThumbRotate] = f32::from(ROTATED.get());
+    pad_distance(&counts)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "counts of the path, which lie within 0 to 1000"
+)]
+fn rounded(count: f32) -> Angle {
+    Angle::nearest(count.round() as i16)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a share of a speed, which lies within 0 to 1000"
+)]
+fn nearest_speed(speed: f32) -> Speed {
+    Speed::nearest(speed.round() as i16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::kinematics::{RANGE, Segment};
+    use glam::{Mat3, Vec3};
+
+    /// 100 poses of the model, reckoned apart from this code.
+    const POSES: &str = include_str!("../../../tests/geometry/forward-kinematics.csv");
+    /// The axis about which the thumb is turned, mm.
+    const THUMB_AXIS: Vec3 = Vec3::new(-26.9, 21.01, 0.0);
+
+    /// The pads of index and thumb as functions of one angle each: from the file alone, by a cubic through its four nearest poses.
+    struct FilePads {
+        index: Vec<(f32, Vec3)>,
+        /// The thumb not turned.
+        thumb: Vec<(f32, Vec3)>,
+    }
+
+    impl FilePads {
+        fn read() -> Self {
+            let mut pads = Self {
+                index: Vec::new(),
+                thumb: Vec::new(),
+            };
+            let mut lines = POSES.lines();
+            let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+            for line in lines {
+                let cells: Vec<f32> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+                let cell = |name: &str| cells[names.iter().position(|own| *own == name).unwrap()];
+                let place = |of: &str| {
+                    Vec3::from(["x", "y", "z"].map(|axis| cell(&format!("{of}_{axis}_mm"))))
+                };
+                pads.index
+                    .push((cell("index_1_rad"), place("index_force_sensor_3")));
+                let turned = place("thumb_force_sensor_4") - THUMB_AXIS;
+                let back = Mat3::from_rotation_z(cell("thumb_1_rad")) * turned;
+                pads.thumb.push((cell("thumb_2_rad"), back + THUMB_AXIS));
+            }
+            for known in [&mut pads.index, &mut pads.thumb] {
+                known.sort_by(|a, b| a.0.total_cmp(&b.0));
+                known.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-3);
+            }
+            pads
+        }
+
+        fn distance(&self, counts: &PerDof<f32>) -> f32 {
+            let radians = |dof: Dof| (1.0 - counts[dof] / 1000.0) * RANGE[dof];
+            let index = through(&self.index, radians(Dof::Index));
+            let straight = through(&self.thumb, radians(Dof::ThumbBend)) - THUMB_AXIS;
+            let turn = Mat3::from_rotation_z(-radians(Dof::ThumbRotate));
+            index.distance(turn * straight + THUMB_AXIS)
+        }
+    }
+
+    /// The cubic through the four known points around an angle.
+    fn through(known: &[(f32, Vec3)], at: f32) -> Vec3 {
+        let above = known.partition_point(|(angle, _)| *angle < at);
+        let first = above.saturating_sub(2).min(known.len() - 4);
+        let near = &known[first..first + 4];
+        let weight = |nth: usize| {
+            let others = (0..4).filter(|other| *other != nth);
+            let factors = others.map(|other| (at - near[other].0) / (near[nth].0 - near[other].0));
+            factors.product::<f32>()
+        };
+        (0..4).map(|nth| near[nth].1 * weight(nth)).sum()
+    }
+
+    fn counts(gap: Gap) -> PerDof<f32> {
+        gap.angles().map(|angle| f32::from(angle.get()))
+    }
+
+    fn all_gaps() -> impl Iterator<Item = Gap> {
+        (30..=1200).map(|tenths: u16| Gap::new(f32::from(tenths) / 10.0).unwrap())
+    }
+
+    #[test]
+    fn every_gap_is_that_of_the_independent_kinematics() {
+        let file = FilePads::read();
+        for gap in all_gaps() {
+            let off = (file.distance(&counts(gap)) - gap.mm()).abs();
+            assert!(off < 0.5, "{gap:?}: off by {off}");
+        }
+    }
+
+    #[test]
+    fn pads_are_as_far_apart_as_in_the_file_at_each_of_its_poses() {
+        for line in POSES.lines().skip(1) {
+            let cells: Vec<f32> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let radians = PerDof::new(<[f32; 6]>::try_from(&cells[..6]).unwrap());
+            let counts = PerDof::from_fn(|dof| (1.0 - radians[dof] / RANGE[dof]) * 1000.0);
+            let [index, thumb] = [36, 39].map(|at| Vec3::from_slice(&cells[at..at + 3]));
+            assert!((pad_distance(&counts) - index.distance(thumb)).abs() < 0.1);
+        }
+    }
+
+    #[test]
+    fn what_is_gripped_is_read_back_from_the_angles_and_an_open_or_clenched_hand_has_no_gap() {
+        for gap in all_gaps() {
+            let read = held_gap(&counts(gap));
+            // The last counts may round beyond an end.
+            let Some(read) = read else {
+                assert!(gap.mm() < 3.2 || gap.mm() > 119.8, "{gap:?}");
+                continue;
+            };
+            assert!((read - gap.mm()).abs() < 0.2, "{gap:?}: {read}");
+        }
+        for elsewhere in [1000.0, 500.0, 0.0] {
+            assert_eq!(held_gap(&PerDof::splat(elsewhere)), None);
+        }
+        let mut aside = counts(Gap::nearest(30.0));
+        aside[Dof::ThumbRotate] = 200.0;
+        assert_eq!(held_gap(&aside), None, "the thumb is beside the index");
+    }
+
+    #[test]
+    fn only_what_thumb_and_index_alone_hold_has_a_size() {
+        let angles = Gap::nearest(30.0)
+            .angles()
+            .map(|angle| AngleReading::new(angle.get()));
+        let held = |fingers: &[Finger]| {
+            let mut grip = Grip::default();
+            for finger in fingers {
+                grip.fingers[*finger].state = GripState::Holding;
+            }
+            gap_of_held(&grip, &angles)
+        };
+        let told = held(&[Finger::Index, Finger::Thumb]).unwrap();
+        assert!((told - 30.0).abs() < 0.2, "{told}");
+        assert_eq!(held(&[Finger::Index]), None);
+        assert_eq!(held(&[Finger::Index, Finger::Thumb, Finger::Middle]), None);
+        assert_eq!(held(&[]), None);
+    }
+
+    #[test]
+    fn closing_only_closes_and_ends_where_the_pads_meet() {
+        let mut before = counts(Gap::MAX);
+        for gap in all_gaps().collect::<Vec<_>>().into_iter().rev() {
+            let now = counts(gap);
+            for dof in Dof::ALL {
+                assert!(now[dof] <= before[dof], "{gap:?} {dof:?}");
+            }
+            before = now;
+        }
+        let closed = counts(Gap::MIN);
+        assert_eq!((closed[Dof::Index], closed[Dof::ThumbBend]), (412.0, 508.0));
+    }
+
+    /// Degrees between the line from pad to pad and where each pad looks: the index along its x, the thumb towards the palm.
+    fn looks(counts: &PerDof<f32>) -> [f32; 2] {
+        let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
+        let line = frames.tip(Finger::Thumb) - frames.tip(Finger::Index);
+        let index = frames.frame(Segment::Index2).matrix3 * Vec3::NEG_X;
+        let along = Vec3::new(28.99, 17.30, 0.0).normalize();
+        let out = Vec3::new(-along.y, along.x, 0.0);
+        let thumb = frames.frame(Segment::Thumb4).matrix3 * out;
+        [index.angle_between(line), thumb.angle_between(-line)].map(f32::to_degrees)
+    }
+
+    #[test]
+    fn pads_face_each_other_on_the_whole_path() {
+        for gap in all_gaps() {
+            // Nearer than this the pads touch at their sides, where the 3 mm between their middles lie.
+            let most = if gap.mm() < 8.0 { 100.0 } else { 46.0 };
+            for away in looks(&counts(gap)) {
+                assert!(away < most, "{gap:?}: {away:.0} degrees");
+            }
+        }
+    }
+
+    #[test]
+    fn on_each_part_of_the_path_both_joints_arrive_together() {
+        let legs = Gap::MAX.legs_to(Gap::MIN);
+        assert_eq!(legs.len(), 2);
+        let speeds = legs.iter().map(|leg| leg.speeds(Speed::GENTLE));
+        let speeds: Vec<_> = speeds.map(|all| all.map(Speed::get)).collect();
+        assert_eq!(speeds[0][Dof::Index], 200);
+        assert_eq!(speeds[1][Dof::ThumbBend], 200);
+        assert_eq!(
+            speeds[1][Dof::Index],
+            101,
+            "248 counts while the thumb goes 492"
+        );
+        assert_eq!(legs[1].to, Gap::MIN.angles());
+        assert_eq!(Gap::nearest(60.0).legs_to(Gap::nearest(20.0)).len(), 1);
+        assert_eq!(Gap::nearest(20.0).legs_to(Gap::MAX).len(), 2, "and back");
+        let slow = legs[1].speeds(Speed::nearest(1)).map(Speed::get);
+        assert_eq!(slow[Dof::Index], 1, "none stands still");
+    }
+
+    #[test]
+    fn what_the_path_does_not_have_is_refused_in_one_sentence() {
+        for wrong in [2.9, 120.1, -30.0, f32::NAN, f32::INFINITY] {
+            let words = Gap::new(wrong).unwrap_err().to_string();
+            assert!(
+                words.starts_with("a pinch opens from 3 to 120 mm"),
+                "{words}"
+            );
+        }
+    }
+}

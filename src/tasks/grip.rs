@@ -1,0 +1,254 @@
+//! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to
+//! the gap or to what stands between them.
+
+use crate::hand::gap::{Gap, gap_of_held, held_gap};
+use crate::hand::grip::{Grip, GripEstimator};
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Force, Groups, HandSample, Moment, PerDof, Setpoints, Speed,
+    Target,
+};
+use crate::link::{Clock, Lease};
+use crate::poses::player::PlayEnd;
+use crate::poses::way::{Targets, way};
+use crate::record::{Record, Rest};
+use crate::tasks::hand::TaskHand;
+use crate::tasks::play::reason;
+use crate::tasks::series::{self, Stop};
+use std::collections::VecDeque;
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// How often time is looked at where nothing is read.
+const TICK: Duration = Duration::from_millis(5);
+/// Angles older than this are not gone by.
+const FRESH_FOR: Duration = Duration::from_millis(250);
+/// A part of the way is not judged before this: the hand acts late.
+const BEGINS_WITHIN: Duration = Duration::from_millis(500);
+/// Counts a second for each unit of speed, as measured without load.
+const COUNTS_PER_SPEED_S: f32 = 3.04;
+/// A part of the way may take so much longer than its speed says.
+const SPARE: Duration = Duration::from_secs(4);
+
+/// What a grip begins with.
+#[derive(Debug, Clone)]
+pub struct GripStart {
+    /// The gap to close, or open, to.
+    pub gap: Gap,
+    /// Speed of the fastest joint.
+    pub speed: Speed,
+    /// Force threshold of all joints.
+    pub force: Force,
+    /// The arming that the user gave for it.
+    pub epoch: ArmEpoch,
+    /// The right to move the hand.
+    pub lease: Lease,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// How a grip ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GripEnd {
+    /// Thumb and index hold something.
+    Held,
+    /// At the gap, and nothing is held.
+    Reached,
+    /// Something stopped a joint before the gap, but it is not held by thumb and index.
+    Stopped,
+    /// Something stopped a joint before the hand was open for the grip.
+    NotOpened,
+    /// It took too long. The hand was stopped.
+    Late,
+    /// The user ended it. The hand was stopped.
+    Person,
+    /// The arming ended, a drive reported a fault, the link was lost, or another moves the hand.
+    Broken(PlayEnd),
+}
+
+/// What came of a grip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GripReport {
+    /// How it ended.
+    pub end: GripEnd,
+    /// Between the pads then, in mm by the model; `None` where they do not face each other, or angles are old.
+    pub gap_mm: Option<f32>,
+    /// What the hand gripped then.
+    pub grip: Grip,
+    /// What feedback says of the stop that followed, if one did.
+    pub stop: Option<Stop>,
+}
+
+/// Grips. `ended` resolves when the user ends it. At the end the hand is not armed any more, and keeps what it was told: it goes
+/// on pressing what it holds, up to the force threshold.
+pub async fn grip<H: TaskHand>(
+    hand: &H,
+    start: GripStart,
+    ended: impl Future<Output = ()>,
+) -> GripReport {
+    let mut records = hand.records();
+    let mut run = GripRun {
+        hand,
+        sample: start.seen,
+        estimator: GripEstimator::default(),
+        legs: None,
+        sent: start.clock.now(),
+        start,
+    };
+    let mut ended = pin!(ended);
+    let end = loop {
+        tokio::select! {
+            biased;
+            () = &mut ended => break GripEnd::Person,
+            record = timeout(TICK, records.next()) => {
+                if let Ok(Some(Record::Reading { sample, fresh })) = record {
+                    run.take(*sample, fresh);
+                }
+            }
+        }
+        if let Some(end) = run.go_on() {
+            break end;
+        }
+    };
+    let stop = match end {
+        GripEnd::Person | GripEnd::Late => Some(series::hold(hand, &mut records).await),
+        GripEnd::Held | GripEnd::Reached | GripEnd::Stopped | GripEnd::NotOpened => {
+            hand.disarm();
+            None
+        }
+        // Whatever broke it has stopped the hand, or cannot.
+        GripEnd::Broken(_) => None,
+    };
+    GripReport {
+        end,
+        gap_mm: run
+            .angles()
+            .and_then(|angles| held_gap(&angles.map(f32::from))),
+        grip: run.estimator.grip(),
+        stop,
+    }
+}
+
+/// A part of the way.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    targets: Targets,
+    speeds: PerDof<Speed>,
+    /// On the path on which the pads face each other.
+    is_on_path: bool,
+}
+
+struct GripRun<'a, H> {
+    hand: &'a H,
+    start: GripStart,
+    sample: HandSample,
+    estimator: GripEstimator,
+    /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
+    legs: Option<VecDeque<Leg>>,
+    /// When the part under way was sent.
+    sent: Moment,
+}
+
+impl<H: TaskHand> GripRun<'_, H> {
+    fn take(&mut self, sample: HandSample, fresh: Groups) {
+        self.sample = sample;
+        self.estimator
+            .take(&self.sample, fresh, self.start.clock.now());
+    }
+
+    /// Angles that are fresh enough to go by.
+    fn angles(&self) -> Option<PerDof<i16>> {
+        let now = self.start.clock.now();
+        let angle = self.sample.angle;
+        let angle = angle.filter(|angle| angle.age(now) <= FRESH_FOR)?;
+        angle.value.map(AngleReading::documented).all()
+    }
+
+    /// Does what is to be done now; how it ended, if it did.
+    fn go_on(&mut self) -> Option<GripEnd> {
+        if let Some(why) = reason(&self.hand.status(), self.start.epoch) {
+            return Some(GripEnd::Broken(why));
+        }
+        let now = self.start.clock.now();
+        let Some(angles) = self.angles() else {
+            let is_late = now.since(self.sent) > SPARE;
+            return is_late.then_some(GripEnd::Late);
+        };
+        let Some(leg) = self.legs.as_ref().and_then(|legs| legs.front()).copied() else {
+            self.legs = Some(legs(&angles, &self.start).into());
+            return self.send();
+        };
+        let arrived = leg.targets.iter().all(|(dof, to)| {
+            to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_WITHIN)
+        });
+        let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
+        if arrived && !is_last {
+            self.legs.as_mut().and_then(VecDeque::pop_front);
+            return self.send();
+        }
+        let since = now.since(self.sent);
+        if since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting {
+            return Some(self.at_rest(leg, arrived));
+        }
+        (since > limit(&leg)).then_some(GripEnd::Late)
+    }
+
+    /// How it ended, where the hand rests now.
+    fn at_rest(&self, leg: Leg, arrived: bool) -> GripEnd {
+        let angle = self.sample.angle.map(|angle| angle.value);
+        let grip = self.estimator.grip();
+        let gap = angle.and_then(|angle| gap_of_held(&grip, &angle));
+        match gap {
+            Some(_) => GripEnd::Held,
+            None if arrived => GripEnd::Reached,
+            None if leg.is_on_path => GripEnd::Stopped,
+            None => GripEnd::NotOpened,
+        }
+    }
+
+    /// Sends the first part of what is left.
+    fn send(&mut self) -> Option<GripEnd> {
+        let leg = self.legs.as_ref().and_then(|legs| legs.front())?;
+        let mut setpoints = Setpoints::none(self.start.epoch);
+        for (dof, to) in leg.targets.iter() {
+            if let Some(to) = *to {
+                setpoints.angle[dof] = Some(Target::Go(to));
+                setpoints.speed[dof] = Some(leg.speeds[dof]);
+                setpoints.force[dof] = Some(self.start.force);
+            }
+        }
+        self.sent = self.start.clock.now();
+        let set = self.hand.set(self.start.lease, &setpoints);
+        set.is_err().then_some(GripEnd::Broken(PlayEnd::TakenOver))
+    }
+}
+
+/// The way from these angles: open first, unless the hand is on the path already, then along the path.
+fn legs(from: &PerDof<i16>, start: &GripStart) -> Vec<Leg> {
+    let on_path = held_gap(&from.map(f32::from));
+    let mut legs = Vec::with_capacity(5);
+    if on_path.is_none() {
+        let opened = way(&from.map(Some), &Gap::MAX.angles().map(Some));
+        legs.extend(opened.into_iter().map(|targets| Leg {
+            targets,
+            speeds: PerDof::splat(start.speed),
+            is_on_path: false,
+        }));
+    }
+    let begins = on_path.map_or(Gap::MAX, Gap::nearest);
+    legs.extend(begins.legs_to(start.gap).into_iter().map(|leg| Leg {
+        targets: leg.to.map(Some),
+        speeds: leg.speeds(start.speed),
+        is_on_path: true,
+    }));
+    legs
+}
+
+/// How long a part of the way may take: the whole stroke at its speed, and some time to spare.
+fn limit(leg: &Leg) -> Duration {
+    let fastest = leg.speeds.as_array().iter().map(|speed| speed.get()).max();
+    let per_s = COUNTS_PER_SPEED_S * f32::from(fastest.unwrap_or(1).max(1));
+    Duration::from_secs_f32(f32::from(Angle::MAX.get()) / per_s) + SPARE
+}

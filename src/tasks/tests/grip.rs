@@ -1,0 +1,247 @@
+//! What a grip by size sends and how it ends, on a hand that only notes what it is told.
+
+use crate::hand::feedback::tactile::TactileBlock;
+use crate::hand::gap::Gap;
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, HandSample, PerDof, Speed,
+    Status, Target, Timed,
+};
+use crate::link::Owner;
+use crate::poses::player::PlayEnd;
+use crate::record::{LinkState, Rest};
+use crate::tasks::TaskHand;
+use crate::tasks::grip::{GripEnd, GripReport, GripStart, grip};
+use crate::tasks::tests::fake::{Asked, FakeHand, WELL};
+use std::time::Duration;
+use tokio::sync::oneshot;
+use tokio::task::JoinHandle;
+use tokio::time::sleep;
+
+/// A grip to 30 mm that goes on.
+struct Bench {
+    hand: FakeHand,
+    end: Option<oneshot::Sender<()>>,
+    task: JoinHandle<GripReport>,
+}
+
+impl Bench {
+    fn start() -> Self {
+        let hand = FakeHand::new();
+        hand.arm_as(1);
+        let start = GripStart {
+            gap: Gap::nearest(30.0),
+            speed: Speed::nearest(100),
+            force: Force::nearest(400),
+            epoch: ArmEpoch(1),
+            lease: hand.grant(Owner::Task),
+            seen: HandSample::default(),
+            clock: hand.clock,
+        };
+        let (end, ended) = oneshot::channel::<()>();
+        let link = hand.clone();
+        let task = tokio::spawn(async move {
+            let ended = async {
+                ended.await.unwrap();
+            };
+            grip(&link, start, ended).await
+        });
+        Self {
+            hand,
+            end: Some(end),
+            task,
+        }
+    }
+
+    /// The hand is there for so many readings, 10 ms apart; `held` says whether thumb and index press on something.
+    async fn at(&self, angles: PerDof<i16>, held: bool, readings: usize) {
+        for _ in 0..readings {
+            let now = self.hand.clock.now();
+            let mut sample = WELL.sample(now);
+            let timed = |angles| Timed {
+                value: angles,
+                asked: now,
+                received: now,
+            };
+            sample.angle = Some(timed(angles.map(AngleReading::new)));
+            if held {
+                let block = TactileBlock::decode(&[0; 58]).unwrap();
+                let pressed = TactileBlock {
+                    normal_n: 4.0,
+                    ..block
+                };
+                let mut status = PerDof::splat(Status::PositionReached);
+                let mut force = PerDof::splat(ForceReading::new(3));
+                for dof in [Dof::Index, Dof::ThumbBend] {
+                    status[dof] = Status::ForceReached;
+                    force[dof] = ForceReading::new(450);
+                }
+                sample.status = Some(Timed {
+                    value: status,
+                    asked: now,
+                    received: now,
+                });
+                sample.force = Some(Timed {
+                    value: force,
+                    asked: now,
+                    received: now,
+                });
+                for finger in [Finger::Index, Finger::Thumb] {
+                    sample.tactile[finger] = Some(Timed {
+                        value: pressed,
+                        asked: now,
+                        received: now,
+                    });
+                }
+            }
+            self.hand.tells(sample);
+            sleep(Duration::from_millis(10)).await;
+        }
+    }
+
+    fn moves(&self, yes: bool) {
+        self.hand.facts().status.rest = if yes { Rest::Moving } else { Rest::Resting };
+    }
+
+    /// Index and thumb bend as they were sent since the last call, each with its speed.
+    fn sent(&self) -> Vec<[(i16, i16); 2]> {
+        let asked = self.hand.asked().into_iter();
+        let moves = asked.filter_map(|asked| match asked {
+            Asked::Move(setpoints) => Some(setpoints),
+            _ => None,
+        });
+        let of = |all: crate::hand::Setpoints| {
+            [Dof::Index, Dof::ThumbBend].map(|dof| {
+                assert_eq!(all.force[dof], Some(Force::nearest(400)));
+                let to = all.angle[dof].map_or(-1, Target::raw);
+                (to, all.speed[dof].map_or(-1, Speed::get))
+            })
+        };
+        moves.map(of).collect()
+    }
+
+    /// On the way, with the first part of the path sent.
+    async fn opened() -> Self {
+        let bench = Self::start();
+        bench.moves(true);
+        bench.at(PerDof::splat(1000), false, 3).await;
+        assert_eq!(bench.sent(), [[(810, 100), (1000, 100)]], "open first");
+        bench.at(angles(120.0), false, 3).await;
+        assert_eq!(bench.sent(), [[(660, 100), (1000, 100)]], "the index alone");
+        bench
+    }
+}
+
+fn angles(gap_mm: f32) -> PerDof<i16> {
+    Gap::nearest(gap_mm).angles().map(Angle::get)
+}
+
+#[tokio::test(start_paused = true)]
+async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
+    let bench = Bench::opened().await;
+    bench.at(angles(90.5), false, 3).await;
+    let end = angles(30.0);
+    let sent = bench.sent();
+    let [[(index, slower), (bend, faster)]] = sent[..] else {
+        panic!("{sent:?}")
+    };
+    assert_eq!((index, bend), (end[Dof::Index], end[Dof::ThumbBend]));
+    assert_eq!((slower, faster), (50, 100), "both arrive together");
+    bench.at(end, false, 100).await;
+    assert!(!bench.task.is_finished(), "it moves still");
+    bench.moves(false);
+    bench.at(end, false, 3).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!((report.end, report.stop), (GripEnd::Reached, None));
+    assert!((report.gap_mm.unwrap() - 30.0).abs() < 0.2);
+    assert_eq!(bench.hand.asked(), [Asked::Disarm]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_thumb_and_index_hold_ends_it_with_its_size() {
+    let bench = Bench::opened().await;
+    bench.at(angles(90.5), false, 3).await;
+    bench.at(angles(45.0), true, 60).await;
+    bench.moves(false);
+    bench.at(angles(45.0), true, 3).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!(report.end, GripEnd::Held);
+    assert!((report.gap_mm.unwrap() - 45.0).abs() < 0.2);
+    let asked = bench.hand.asked();
+    assert_eq!(asked.last(), Some(&Asked::Disarm));
+    assert!(!asked.contains(&Asked::Stop), "it goes on holding");
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_is_in_the_way_and_not_held_is_told_apart() {
+    let bench = Bench::opened().await;
+    bench.moves(false);
+    bench.at(angles(100.0), false, 60).await;
+    assert_eq!(bench.task.await.unwrap().end, GripEnd::Stopped);
+
+    let bench = Bench::start();
+    bench.at(PerDof::splat(400), false, 60).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!((report.end, report.gap_mm), (GripEnd::NotOpened, None));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_on_the_path_does_not_open_first() {
+    let bench = Bench::start();
+    bench.moves(true);
+    bench.at(angles(60.0), false, 3).await;
+    let sent = bench.sent();
+    assert_eq!(sent.len(), 1);
+    assert_eq!(sent[0][0].0, angles(30.0)[Dof::Index]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn whatever_ends_it_nothing_is_sent_afterwards() {
+    type Break = fn(&mut Bench);
+    let ways: [(Break, GripEnd); 5] = [
+        (
+            |bench| bench.end.take().unwrap().send(()).unwrap(),
+            GripEnd::Person,
+        ),
+        (
+            |bench| bench.hand.disarm(),
+            GripEnd::Broken(PlayEnd::Disarmed),
+        ),
+        (
+            |bench| bench.hand.facts().status.state = LinkState::Fault,
+            GripEnd::Broken(PlayEnd::Fault),
+        ),
+        (
+            |bench| bench.hand.facts().status.state = LinkState::Offline,
+            GripEnd::Broken(PlayEnd::LinkLost),
+        ),
+        (
+            |bench| {
+                bench.hand.grant(Owner::Person);
+            },
+            GripEnd::Broken(PlayEnd::TakenOver),
+        ),
+    ];
+    for (break_off, want) in ways {
+        let mut bench = Bench::opened().await;
+        break_off(&mut bench);
+        bench.at(angles(90.5), false, 20).await;
+        let asked = bench.hand.asked();
+        assert!(
+            !asked.iter().any(|asked| matches!(asked, Asked::Move(_))),
+            "{want:?}: {asked:?}"
+        );
+        let report = bench.task.await.unwrap();
+        assert_eq!(report.end, want);
+        assert_eq!(report.stop.is_some(), want == GripEnd::Person);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_never_arrives_is_stopped_when_its_time_is_over() {
+    let bench = Bench::opened().await;
+    bench.at(angles(110.0), false, 800).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!(report.end, GripEnd::Late);
+    assert!(report.stop.is_some());
+    assert!(bench.hand.asked().contains(&Asked::Stop));
+}

@@ -1,0 +1,153 @@
+//! Grips by size: a drawer with the kinds, the gap, the size of what is held, and the blocks that make it true.
+
+use crate::app::action::Action;
+use crate::hand::gap::{Block, Gap, GripKind, held_gap};
+use crate::hand::{Angle, AngleReading};
+use crate::ui::hand::{aim, figures};
+use crate::ui::kit::{Button, Label, NumberField, Pane};
+use crate::ui::text::{Text, main, poses};
+use crate::ui::theme;
+use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
+
+/// Width of the drawer.
+const DRAWER: f32 = 420.0;
+
+/// What a kind is called, and why it has no gap, if it has none.
+const fn words(kind: GripKind) -> (Text, Option<Text>) {
+    match kind {
+        GripKind::Pinch => (poses::KIND_PINCH, None),
+        GripKind::ThreeFingers => (poses::KIND_THREE, Some(poses::NO_GAP_THREE)),
+        GripKind::AllFingers => (poses::KIND_ALL, Some(poses::NO_GAP_ALL)),
+        GripKind::Around => (poses::KIND_AROUND, Some(poses::NO_GAP_AROUND)),
+    }
+}
+
+/// The button in the strip of poses, with its drawer.
+pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
+    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    drawer.width(DRAWER).show(|ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+        kinds_ui(ui, pane);
+        gap_ui(ui, pane);
+        held_ui(ui, pane);
+    });
+}
+
+/// The kinds of which one has a gap; the others say why they have none.
+fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let look = pane.look;
+    ui.horizontal(|ui| {
+        for kind in GripKind::ALL {
+            let (name, no_gap) = words(kind);
+            let button = Button::said(look, name).choice(kind.offered().is_ok());
+            button
+                .disabled(no_gap.map(|why| look.say(why)))
+                .ui(ui, look);
+        }
+    });
+}
+
+/// Why no gap can be sent now, though the hand is armed.
+fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
+    let (look, hand) = (pane.look, pane.state.hand());
+    let locked = hand.locks_pinch().then(|| look.say(main::LOCKED));
+    let closed = (!hand.is_open_for_pinch()).then(|| look.say(poses::GAP_CLOSED));
+    pane.unready().or(locked).or(closed)
+}
+
+/// Where the hand was sent, or is; the widest if it does not pinch.
+fn gap_now(pane: &Pane<'_>) -> Gap {
+    let hand = pane.state.hand();
+    let targets = hand.controls.joints.map(|joint| joint.target).all();
+    let sent = targets.map(|angles| angles.map(|angle: Angle| f32::from(angle.get())));
+    let angle = hand.readings.sample.angle;
+    let actual = angle.and_then(|angle| angle.value.map(AngleReading::documented).all());
+    let actual = actual.map(|angles| angles.map(f32::from));
+    let gap = [sent, actual].into_iter().flatten();
+    let gap = gap.filter_map(|counts| held_gap(&counts)).next();
+    gap.map_or(Gap::MAX, Gap::nearest)
+}
+
+/// The gap: sent while the hand is armed, else shown on the drawn hand.
+fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let is_armed = pane.state.hand().connection.is_armed();
+    let refused = refusal(pane);
+    let id = Id::unique("gap in the drawer");
+    let wish = ui
+        .data(|data| data.get_temp::<f32>(id))
+        .filter(|_| !is_armed);
+    let mut mm = wish.unwrap_or_else(|| gap_now(pane).mm().round());
+    ui.spacing_mut().slider_width = DRAWER / 2.0;
+    let range = Gap::MIN.mm()..=Gap::MAX.mm();
+    let text = look.say(poses::GAP);
+    let slider = Slider::new(&mut mm, range).fixed_decimals(0).text(text);
+    let is_movable = !is_armed || refused.is_none();
+    let slider = ui.add_enabled(is_movable, slider.show_value(true));
+    let slider = slider.on_hover_text(look.tip(poses::GAP));
+    let slider = slider.on_disabled_hover_text(refused.unwrap_or_default());
+    if slider.changed() && is_armed {
+        pane.actions.push(Action::Pinch(Gap::nearest(mm)));
+    } else if slider.changed() {
+        ui.data_mut(|data| data.insert_temp(id, mm));
+    }
+    if is_armed {
+        ui.data_mut(|data| data.remove_temp::<f32>(id));
+    } else if wish.is_some() {
+        aim::wish(ui, Gap::nearest(mm));
+    }
+    let is_open = pane.state.hand().is_open_for_pinch();
+    if !is_armed {
+        Label::note(look, poses::GAP_WISH).wrap().ui(ui);
+    } else if !is_open {
+        let locked = pane.state.hand().locks_pinch();
+        let locked = locked.then(|| look.say(main::LOCKED));
+        let button = Button::said(look, poses::GAP_OPEN).disabled(pane.unready().or(locked));
+        button.on_click(ui, pane, Action::Pinch(Gap::MAX));
+    }
+}
+
+/// The size of what is held, and the blocks that were measured.
+fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let held = figures::held_size(pane);
+    let none = look.say(poses::HELD_NONE);
+    let words = look.pair(look.say(poses::HELD_SIZE), held.as_deref().unwrap_or(none));
+    let label = Label::new(&words, look.palette.text).wrap().ui(ui);
+    label.on_hover_text(look.tip(poses::HELD_SIZE));
+    ui.horizontal(|ui| {
+        Label::muted(look, poses::BLOCK).ui(ui);
+        let (from, to) = (*Block::SIZES_MM.start(), *Block::SIZES_MM.end());
+        let range = f64::from(from)..=f64::from(to);
+        let field = NumberField::new(look.say(poses::BLOCK), look.tip(poses::BLOCK), range);
+        let not_held = held.is_none().then(|| look.say(poses::BLOCK_NOT_HELD));
+        let typed = field
+            .decimals(1)
+            .needs_enter()
+            .disabled(not_held)
+            .ui(ui, pane, None);
+        if let Some(size_mm) = typed {
+            #[expect(clippy::cast_possible_truncation, reason = "a size of at most 120 mm")]
+            pane.actions.push(Action::MeasureBlock(size_mm as f32));
+        }
+    });
+    let endpoint = pane.state.hand().connection.endpoint.as_ref();
+    let blocks = pane.state.settings.size_blocks(endpoint);
+    let sizes = blocks.blocks().iter();
+    let sizes: Vec<String> = sizes.map(|own| format!("{} mm", own.size_mm)).collect();
+    let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
+    let known = if blocks.is_empty() {
+        look.say(poses::BLOCKS_NONE).to_owned()
+    } else {
+        look.list(&sizes)
+    };
+    ui.horizontal(|ui| {
+        let known = look.fill(poses::BLOCKS, &[&known]);
+        Label::new(&known, look.palette.muted).ui(ui);
+        if !blocks.is_empty() {
+            Button::said(look, poses::BLOCKS_FORGET).on_click(ui, pane, Action::ForgetBlocks);
+        }
+    });
+}
