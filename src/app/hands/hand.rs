@@ -24,7 +24,7 @@ use crate::hand::{
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LeaseRefusal, LinkStatus, RequestError};
-use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
+use crate::poses::player::{PlayMode, PlayPlan, PlayView};
 use crate::record::{ArmRefusal, LinkState, Record};
 use crate::tasks::play::{self, PlayCommand, PlayStart};
 use crate::transport::Endpoint;
@@ -442,6 +442,7 @@ impl Hand {
             lease: open.lend_lease(),
             locked: self.controls.locked(),
             seen: self.readings.sample,
+            grip: self.readings.grip.clone(),
             clock: env.clock,
         };
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
@@ -451,11 +452,7 @@ impl Hand {
         });
         self.sequence = Some(SequenceRun {
             entry,
-            view: PlayView {
-                at: 0,
-                phase: PlayPhase::Moving { since: now },
-                late: 0,
-            },
+            view: PlayView::first(now),
             commands: Some(commands),
             task: Some(task),
         });

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::time::Duration;
 
 /// What a finger, or the whole grasp, does to an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GripState {
     /// What it would rest on is missing, old, or contradicts itself.

@@ -139,10 +139,9 @@ fn figure_ui(
 
 /// What is gripped now; unknown while feedback does not follow what the hand was told.
 fn grip(pane: &Pane<'_>) -> Grip {
-    let connection = &pane.state.hand().connection;
-    let is_believed = connection.is_live() && !connection.status.feedback_in_doubt;
-    let readings = &pane.state.hand().readings;
-    readings.grip_now(is_believed, pane.state.now)
+    let hand = pane.state.hand();
+    let is_believed = hand.connection.is_live() && hand.connection.status.is_believed();
+    hand.readings.grip.known(is_believed, pane.state.now)
 }
 
 /// What the grasp does to an object, in one line under the picture.
