@@ -341,15 +341,14 @@ fn a_step_is_told_to_wait_for_the_grip_and_says_what_it_waits_for() {
     assert_eq!(until(&bench), Some((1500, 1)));
     enter(&mut bench, "Step 2 retries", "21");
     assert_eq!(until(&bench), Some((1500, 1)), "out of range");
-    bench.key(Key::Escape);
+    enter(&mut bench, "Step 2 retries", "1");
     bench.click("Start");
     for said in [
-        "Waits until holding at step 2",
         "Closed on nothing, opens to try again: step 2",
+        "Waits until holding at step 2",
         "Ended: the hand was to hold something and did not in time. Grip: Empty.",
     ] {
-        let shown = |bench: &Bench| bench.value(Role::Label, "Picture of the pose");
-        bench.until(9000, |bench| shown(bench) == said);
+        bench.until(9000, |bench| !bench.texts_with(said).is_empty());
     }
     bench.click("Step 2 Until holding");
     bench.run(60);
