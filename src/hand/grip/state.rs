@@ -41,6 +41,11 @@ impl GripState {
         Self::TooHard,
     ];
 
+    /// Stable number, as tables of numbers have it: 0 unknown to 7 too hard, in the order of [`Self::ALL`].
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
     /// Stable lower-case name, as JSON has it.
     pub const fn name(self) -> &'static str {
         match self {
@@ -102,6 +107,19 @@ pub struct Grip {
 }
 
 impl Grip {
+    /// Nothing is known, since then.
+    pub fn unknown(since: Moment) -> Self {
+        let estimate = GripEstimate {
+            since,
+            ..GripEstimate::default()
+        };
+        Self {
+            fingers: PerFinger::splat(estimate),
+            grasp: estimate,
+            fresh_for: Duration::ZERO,
+        }
+    }
+
     /// The grip as it is known at `now`: what rests on old readings is unknown.
     #[must_use]
     pub fn at(&self, now: Moment) -> Self {
@@ -121,6 +139,7 @@ mod tests {
     fn each_is_called_as_json_has_it() {
         for state in GripState::ALL {
             assert_eq!(serde_json::to_value(state).unwrap(), state.name());
+            assert_eq!(GripState::ALL[usize::from(state.number())], state);
         }
     }
 
