@@ -54,6 +54,14 @@ impl GripFollower {
     }
 }
 
+/// A state as a table has it: nothing where it is unknown.
+pub(crate) const fn cell(state: GripState) -> Option<&'static str> {
+    match state {
+        GripState::Unknown => None,
+        known => Some(known.name()),
+    }
+}
+
 /// The state of the grasp, then of each finger.
 pub(crate) fn states(grip: &Grip) -> [GripState; 6] {
     let [little, ring, middle, index, thumb] = *grip.fingers.map(|own| own.state).as_array();
@@ -65,9 +73,16 @@ mod tests {
     use super::*;
     use crate::hand::dof::{PerDof, PerFinger};
     use crate::hand::feedback::tactile::TactileBlock;
+    use crate::hand::kinematics::Side;
     use crate::hand::{AngleReading, ForceReading, Group, HandSample, Status, Timed};
     use crate::record::LinkState;
+    use crate::record::file::Opening;
+    use crate::record::file::format::cdr;
+    use crate::record::file::format::encode::EntryEncoder;
+    use crate::record::file::format::message::GripMessage;
+    use crate::record::file::format::topic::Topic;
     use std::sync::Arc;
+    use std::time::Duration;
 
     /// All fingers closed, at rest and pressing.
     fn reading(at: Moment) -> Entry {
@@ -94,6 +109,41 @@ mod tests {
             sample: Arc::new(sample),
             fresh: Group::ALL.into_iter().collect(),
         })
+    }
+
+    #[test]
+    fn a_grip_is_told_when_it_changes_and_once_a_second() {
+        let opening = Opening::begin(
+            "sim:".into(),
+            (Moment::ZERO, Duration::from_secs(100)),
+            Side::Right,
+        );
+        let mut encoder = EntryEncoder::new(&opening);
+        let mut told: Vec<GripMessage> = Vec::new();
+        for ms in (10..=2500).step_by(10) {
+            let messages = encoder.encode(&reading(Moment::from_micros(ms * 1000)));
+            let grips = messages.iter().filter(|own| own.topic == Topic::Grip);
+            told.extend(grips.map(|own| cdr::decode::<GripMessage>(&own.bytes).unwrap()));
+        }
+        let states: Vec<&str> = told.iter().map(|own| own.state.as_str()).collect();
+        let held = states.iter().position(|state| *state == "holding").unwrap();
+        assert!(held <= 2, "{states:?}");
+        assert_eq!(states[held..], ["holding"; 3], "and no more");
+        let last = &told[told.len() - 1];
+        assert_eq!(last.finger_states, ["holding"; 5]);
+        assert_eq!(last.since, told[held].since);
+        assert_eq!(last.asked, last.at, "it was asked for at once");
+        let second = last.at.nanos() - told[told.len() - 2].at.nanos();
+        assert_eq!(second, 1_000_000_000);
+        // The next file knows of it at once.
+        let mut next = encoder.next(&opening);
+        let messages = next.encode(&reading(Moment::from_micros(2_510_000)));
+        let first = messages
+            .iter()
+            .find(|own| own.topic == Topic::Grip)
+            .unwrap();
+        let first: GripMessage = cdr::decode(&first.bytes).unwrap();
+        assert_eq!((first.state.as_str(), first.since), ("holding", last.since));
     }
 
     #[test]

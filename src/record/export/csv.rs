@@ -6,7 +6,7 @@ use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touc
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::Source;
 use crate::record::file::FileMark;
-use crate::record::grip::states;
+use crate::record::grip;
 use crate::record::{Entry, EventKind, Record};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -107,7 +107,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
 
     /// The grip after what the line holds so far.
     fn grip(&mut self, grip: &Grip) {
-        let states = states(grip).map(|state| state.name());
+        let states = grip::states(grip).map(|state| grip::cell(state).unwrap_or_default());
         for (cell, state) in self
             .line
             .cells

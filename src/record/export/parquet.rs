@@ -11,7 +11,7 @@ use crate::record::export::csv::UNDOCUMENTED;
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::Source;
 use crate::record::file::format::opening::nanos_of;
-use crate::record::grip::states;
+use crate::record::grip;
 use crate::record::{Entry, Record};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -85,8 +85,11 @@ impl ParquetTable {
 
     fn grip(&mut self, grip: &Grip) {
         let columns = self.columns.iter_mut().rev().skip(1);
-        for (column, state) in columns.zip(states(grip).into_iter().rev()) {
-            column.push_text(state.name());
+        for (column, state) in columns.zip(grip::states(grip).into_iter().rev()) {
+            match grip::cell(state) {
+                Some(state) => column.push_text(state),
+                None => column.push(ParquetCell::Null),
+            }
         }
     }
 
