@@ -3,6 +3,7 @@
 use crate::app::readings::faults::FaultKind;
 use crate::app::slot::HandLabel;
 use crate::hand::gap::BlockError;
+use crate::hand::grip::GripState;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
 use crate::record::export::ExportError;
@@ -130,6 +131,8 @@ pub enum NoticeKind {
         /// Where it lies now; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
     },
+    /// A sequence ended, for nothing was held in time.
+    NotHolding { grip: GripState },
     /// A series of trials is over.
     SeriesEnded {
         /// Trials that were measured.

@@ -151,7 +151,7 @@ const fn broken(why: PlayEnd) -> &'static str {
         PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
         PlayEnd::LinkLost => session::STOP_LOST,
         PlayEnd::TakenOver => "another moves the hand now",
-        PlayEnd::Finished | PlayEnd::Person | PlayEnd::Disarmed => {
+        PlayEnd::Finished | PlayEnd::Person | PlayEnd::NotHolding(_) | PlayEnd::Disarmed => {
             "the hand was disarmed meanwhile"
         }
     }
@@ -168,7 +168,9 @@ const fn end_name(end: GripEnd) -> &'static str {
         GripEnd::Broken(PlayEnd::Fault) => "fault",
         GripEnd::Broken(PlayEnd::LinkLost) => "link_lost",
         GripEnd::Broken(PlayEnd::TakenOver) => "taken_over",
-        GripEnd::Broken(PlayEnd::Finished | PlayEnd::Person | PlayEnd::Disarmed) => "disarmed",
+        GripEnd::Broken(
+            PlayEnd::Finished | PlayEnd::Person | PlayEnd::NotHolding(_) | PlayEnd::Disarmed,
+        ) => "disarmed",
     }
 }
 

@@ -40,6 +40,24 @@ fn error(text: &str) -> FileError {
 }
 
 #[test]
+fn a_tile_that_waits_for_the_grip_waits_within_the_limits_too() {
+    let waits = r#"format = "handscope-poses"
+version = 1
+pose = [{ name = "Close", speed = 900, force = 900, angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 } }]
+[[sequence]]
+name = "Grab"
+step = [{ pose = "Close", speed = 900, dwell_ms = 0, limit_ms = 3000, until = { grip = "holding", within_ms = 2000, retries = 2 } }]
+"#;
+    let own = crate::poses::file::read(waits).unwrap();
+    let text = FILE.replacen("Fist", "Grab", 1);
+    let plan = read(&text, Path::new(""), &own).unwrap();
+    let cue = &plan.tiles[0].plan.cues[0];
+    let until = cue.until.unwrap();
+    assert_eq!((until.within.get(), until.retries.get()), (2000, 2));
+    assert_eq!((cue.speed.get(), cue.force.get()), (250, 700));
+}
+
+#[test]
 fn every_field_is_taken_and_most_may_be_left_out() {
     let folder = Path::new("booth");
     let plan = read(FILE, folder, &PoseLibrary::default()).unwrap();

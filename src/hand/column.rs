@@ -18,6 +18,13 @@ pub fn channel_column(channel: u8, finger: Finger) -> String {
     format!("channel_{}_{}", channel + 1, finger.name())
 }
 
+/// The columns of the grip: of the grasp, then of each finger.
+pub fn grip_columns() -> [String; 6] {
+    let [little, ring, middle, index, thumb] =
+        Finger::ALL.map(|finger| format!("grip_{}", finger.name()));
+    ["grip".to_owned(), little, ring, middle, index, thumb]
+}
+
 fn named(row: &QuantityRow, part: &str) -> String {
     let unit = if row.unit.is_empty() { "" } else { "_" };
     format!("{}_{part}{unit}{}", row.name, row.unit)

@@ -54,6 +54,13 @@ pub struct LinkStatus {
     pub unguarded: Option<String>,
 }
 
+impl LinkStatus {
+    /// True if what the hand tells counts: it answers, and what it tells follows what it was told.
+    pub fn is_believed(&self) -> bool {
+        self.state.is_live() && !self.feedback_in_doubt
+    }
+}
+
 /// What happens while there is no wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Dialling {

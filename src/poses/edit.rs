@@ -298,6 +298,7 @@ impl SequenceStep {
             speed,
             dwell: Millis::DWELL,
             limit: Millis::LIMIT,
+            until: None,
             others: toml::Table::new(),
         }
     }

@@ -3,7 +3,8 @@
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
     ENTRIES_MAX, EntryKey, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, Reaction,
-    ReactionId, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, clean,
+    ReactionId, Retries, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, UntilHolding,
+    clean,
 };
 use crate::poses::reaction::TouchForce;
 use crate::store::toml_file::VERSION;
@@ -78,8 +79,26 @@ struct StepRow {
     speed: Speed,
     dwell_ms: Millis,
     limit_ms: Millis,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    until: Option<UntilRow>,
     #[serde(flatten)]
     others: toml::Table,
+}
+
+/// What a step waits for. A grip that this version does not know is refused: a step that does not wait is another.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct UntilRow {
+    grip: WaitedGrip,
+    within_ms: Millis,
+    #[serde(default)]
+    retries: Retries,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum WaitedGrip {
+    Holding,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -146,6 +165,11 @@ fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
             speed: step.speed,
             dwell_ms: step.dwell,
             limit_ms: step.limit,
+            until: step.until.map(|until| UntilRow {
+                grip: WaitedGrip::Holding,
+                within_ms: until.within,
+                retries: until.retries,
+            }),
             others: step.others.clone(),
         })
     });
@@ -335,6 +359,12 @@ impl PoseReader<'_> {
             speed: row.speed,
             dwell: row.dwell_ms,
             limit: row.limit_ms,
+            until: row.until.map(|until| match until.grip {
+                WaitedGrip::Holding => UntilHolding {
+                    within: until.within_ms,
+                    retries: until.retries,
+                },
+            }),
             others: row.others,
         })
     }

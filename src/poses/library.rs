@@ -140,6 +140,62 @@ impl From<Millis> for i64 {
     }
 }
 
+/// How often a step that closed on nothing opens and closes again, 0 to 20.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(try_from = "i64", into = "i64")]
+pub struct Retries(u8);
+
+/// A number of retries that no step may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{got} retries is outside 0 to {}", Retries::MAX)]
+pub struct BadRetries {
+    /// What was given.
+    pub got: i64,
+}
+
+impl Retries {
+    /// More than that, and the object is not where the hand closes.
+    pub const MAX: u8 = 20;
+
+    /// The number.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl TryFrom<i64> for Retries {
+    type Error = BadRetries;
+    fn try_from(got: i64) -> Result<Self, BadRetries> {
+        match u8::try_from(got) {
+            Ok(retries) if retries <= Self::MAX => Ok(Self(retries)),
+            _ => Err(BadRetries { got }),
+        }
+    }
+}
+
+impl From<Retries> for i64 {
+    fn from(retries: Retries) -> Self {
+        retries.0.into()
+    }
+}
+
+/// A step that is over once the hand holds something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UntilHolding {
+    /// The sequence ends if nothing is held so long after the pose counts as reached.
+    pub within: Millis,
+    /// How often the hand opens and closes again where it closed on nothing.
+    pub retries: Retries,
+}
+
+impl UntilHolding {
+    /// What the user starts from.
+    pub const FIRST: Self = Self {
+        within: Millis(3000),
+        retries: Retries(0),
+    };
+}
+
 /// Six angles under a name, and how to go there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LibraryPose {
@@ -195,6 +251,8 @@ pub struct SequenceStep {
     pub dwell: Millis,
     /// Time after which a pose that is not reached counts as reached.
     pub limit: Millis,
+    /// The grip that it waits for before its dwell, if any.
+    pub until: Option<UntilHolding>,
     /// Keys of a newer version, kept as they are.
     pub others: toml::Table,
 }

@@ -1,11 +1,19 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
+use crate::hand::grip::{GripEstimate, GripState};
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
-use crate::poses::library::{EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{
+    EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId, UntilHolding,
+};
 use crate::poses::reaction::TouchForce;
 use crate::poses::way::{Targets, way};
 use std::collections::VecDeque;
 use std::time::Duration;
+
+/// A grip that is empty for so long is no finger that is just about to touch.
+const EMPTY_FOR: Duration = Duration::from_millis(300);
+/// Until then, readings may show what the hand did before it was told something: it takes 66 ms, and is read every 25.
+const REACTS_WITHIN: Duration = Duration::from_millis(150);
 
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +29,8 @@ pub struct Cue {
     pub dwell: Duration,
     /// Time after which a pose, or a part of the way to it, that is not reached counts as reached.
     pub limit: Duration,
+    /// The grip that it waits for before its dwell, if any.
+    pub until: Option<UntilHolding>,
 }
 
 /// The steps of a sequence as they are now.
@@ -36,6 +46,7 @@ pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
             force: pose.force,
             dwell: step.dwell.duration(),
             limit: step.limit.duration(),
+            until: step.until,
         })
     });
     cues.collect()
@@ -51,6 +62,7 @@ impl Cue {
             force: pose.force,
             dwell: Duration::ZERO,
             limit: Millis::LIMIT.duration(),
+            until: None,
         }
     }
 
@@ -69,6 +81,15 @@ impl Cue {
         }
         legs
     }
+
+    /// Lets go: the joints that it moves open. The thumb keeps its rotation, which the next try needs.
+    fn opening(&self) -> Self {
+        let opens = |dof: Dof| self.targets[dof].filter(|_| dof != Dof::ThumbRotate);
+        Self {
+            targets: PerDof::from_fn(|dof| opens(dof).map(|_| Angle::MAX)),
+            ..self.clone()
+        }
+    }
 }
 
 /// All that is needed to play an entry of the library: one that is edited meanwhile does not change what runs.
@@ -84,7 +105,7 @@ pub struct PlayPlan {
 }
 
 impl PlayPlan {
-    /// All that it may ever send.
+    /// All that it may send; a step that tries again opens the joints of its own.
     pub fn cues(&self) -> impl Iterator<Item = &Cue> {
         let touched = self.reaction.iter().map(|reaction| &reaction.touched);
         self.cues.iter().chain(touched)
@@ -140,6 +161,8 @@ pub enum PlayEnd {
     LinkLost,
     /// The user moved the hand in another way.
     TakenOver,
+    /// A step waited for a grip that did not come in time; this was the grip then.
+    NotHolding(GripState),
 }
 
 /// Where a sequence stands.
@@ -147,6 +170,10 @@ pub enum PlayEnd {
 pub enum PlayPhase {
     /// On the way to a pose.
     Moving { since: Moment },
+    /// At a pose, until the hand holds something.
+    Waiting { since: Moment },
+    /// It closed on nothing, and opens to close again.
+    Opening { since: Moment },
     /// At a pose.
     Dwelling { since: Moment },
     /// The user paused it, or the one step that was asked for is done.
@@ -173,6 +200,20 @@ pub struct PlayView {
     pub phase: PlayPhase,
     /// Steps that ran into their time limit.
     pub late: u32,
+    /// How often the step closed again.
+    pub retries: u8,
+}
+
+impl PlayView {
+    /// The first step, at its begin.
+    pub(crate) const fn first(now: Moment) -> Self {
+        Self {
+            at: 0,
+            phase: PlayPhase::Moving { since: now },
+            late: 0,
+            retries: 0,
+        }
+    }
 }
 
 /// A running sequence.
@@ -186,37 +227,43 @@ pub struct Player {
     legs: VecDeque<Cue>,
     /// The next part of the way is to be sent.
     due: bool,
-    /// The current pose was reached, or its time is up.
+    /// The current pose was reached, or its time is up; what it waits for is there.
     arrived: bool,
 }
 
 impl Player {
     /// Begins with the first step. Without steps it is over at once.
     pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
-        let phase = if cues.is_empty() {
-            PlayPhase::Ended(PlayEnd::Finished)
-        } else {
-            PlayPhase::Moving { since: now }
-        };
+        let mut view = PlayView::first(now);
+        if cues.is_empty() {
+            view.phase = PlayPhase::Ended(PlayEnd::Finished);
+        }
         Self {
             legs: VecDeque::new(),
             due: !cues.is_empty(),
             cues,
             looped,
             pace,
-            view: PlayView {
-                at: 0,
-                phase,
-                late: 0,
-            },
+            view,
             arrived: false,
         }
     }
 
-    /// Targets of the current step.
+    /// Where it goes now.
     pub fn targets(&self) -> PerDof<Option<Angle>> {
-        let cue = self.cues.get(self.view.at);
-        cue.map_or(PerDof::splat(None), |cue| cue.targets)
+        self.goal().map_or(PerDof::splat(None), |cue| cue.targets)
+    }
+
+    fn goal(&self) -> Option<Cue> {
+        let cue = self.cues.get(self.view.at)?;
+        Some(match self.view.phase {
+            PlayPhase::Opening { .. } => cue.opening(),
+            _ => cue.clone(),
+        })
+    }
+
+    fn until(&self) -> Option<UntilHolding> {
+        self.cues.get(self.view.at)?.until
     }
 
     /// Where it stands.
@@ -236,22 +283,50 @@ impl Player {
 
     /// Advances the time. Returns the cue to send now, if one is due.
     ///
-    /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at.
-    pub fn tick(&mut self, now: Moment, seen: &PerDof<Option<i16>>) -> Option<Cue> {
+    /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at. `grasp` as it
+    /// is known at `now`.
+    pub fn tick(
+        &mut self,
+        now: Moment,
+        seen: &PerDof<Option<i16>>,
+        grasp: &GripEstimate,
+    ) -> Option<Cue> {
         match self.view.phase {
-            PlayPhase::Moving { since } if !self.due => self.moving(since, now, seen),
+            PlayPhase::Moving { since } if !self.due && self.took_hold(since, grasp) => {
+                self.arrive(now);
+            }
+            PlayPhase::Moving { since } | PlayPhase::Opening { since } if !self.due => {
+                self.moving(since, now, seen);
+            }
+            PlayPhase::Waiting { since } => self.waiting(since, now, grasp),
             PlayPhase::Dwelling { since } => self.dwelling(since, now),
             _ => {}
         }
-        if !self.due || !matches!(self.view.phase, PlayPhase::Moving { .. }) {
+        let moves = matches!(
+            self.view.phase,
+            PlayPhase::Moving { .. } | PlayPhase::Opening { .. }
+        );
+        if !self.due || !moves {
             return None;
         }
         self.due = false;
         if self.legs.pop_front().is_none() || self.legs.is_empty() {
-            let cue = self.cues.get(self.view.at)?;
-            self.legs = cue.legs(seen).into();
+            self.legs = self.goal()?.legs(seen).into();
         }
         self.legs.front().cloned()
+    }
+
+    /// What closes on an object never arrives: the grip that the step waits for ends its way. One of before does not.
+    fn took_hold(&self, since: Moment, grasp: &GripEstimate) -> bool {
+        let is_new = grasp.since >= since.plus(REACTS_WITHIN);
+        let is_held = grasp.state == GripState::Holding && is_new;
+        is_held && self.until().is_some() && self.legs.len() == 1
+    }
+
+    /// The step's pose counts as reached, with all that it waits for.
+    const fn arrive(&mut self, now: Moment) {
+        self.arrived = true;
+        self.view.phase = PlayPhase::Dwelling { since: now };
     }
 
     fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
@@ -271,13 +346,40 @@ impl Player {
         }
         if is_there && self.legs.len() > 1 {
             // Each part of the way has as much time as a straight one.
-            self.view.phase = PlayPhase::Moving { since: now };
+            if let PlayPhase::Moving { since } | PlayPhase::Opening { since } = &mut self.view.phase
+            {
+                *since = now;
+            }
             self.due = true;
             return;
         }
+        if matches!(self.view.phase, PlayPhase::Opening { .. }) {
+            self.begin(now);
+            return;
+        }
         self.view.late += u32::from(!is_there);
-        self.arrived = true;
-        self.view.phase = PlayPhase::Dwelling { since: now };
+        if self.until().is_some() {
+            self.view.phase = PlayPhase::Waiting { since: now };
+        } else {
+            self.arrive(now);
+        }
+    }
+
+    fn waiting(&mut self, since: Moment, now: Moment, grasp: &GripEstimate) {
+        let Some(until) = self.until() else {
+            return;
+        };
+        let is_empty = grasp.state == GripState::Empty && now.since(grasp.since) >= EMPTY_FOR;
+        if grasp.state == GripState::Holding {
+            self.arrive(now);
+        } else if is_empty && self.view.retries < until.retries.get() {
+            self.view.retries += 1;
+            self.legs.clear();
+            self.view.phase = PlayPhase::Opening { since: now };
+            self.due = true;
+        } else if now.since(since) >= until.within.duration() {
+            self.end(PlayEnd::NotHolding(grasp.state));
+        }
     }
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
@@ -301,6 +403,7 @@ impl Player {
             self.view.phase = PlayPhase::Ended(PlayEnd::Finished);
             return;
         }
+        self.view.retries = 0;
         self.begin(now);
     }
 
@@ -315,7 +418,10 @@ impl Player {
     pub const fn pause(&mut self) -> bool {
         let ran = matches!(
             self.view.phase,
-            PlayPhase::Moving { .. } | PlayPhase::Dwelling { .. }
+            PlayPhase::Moving { .. }
+                | PlayPhase::Waiting { .. }
+                | PlayPhase::Opening { .. }
+                | PlayPhase::Dwelling { .. }
         );
         if ran {
             self.view.phase = PlayPhase::Paused;

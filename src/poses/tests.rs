@@ -1,9 +1,10 @@
 //! Proves the library's file and its players. What they send is proven with the task that plays.
 
+use crate::hand::grip::{GripEstimate, GripState};
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
 use crate::poses::edit::{PoseEdit, SequenceEdit};
 use crate::poses::file::{read, write};
-use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary};
+use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary, Retries, UntilHolding};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, Player};
 use crate::poses::preview::Preview;
 use proptest::prelude::*;
@@ -36,6 +37,7 @@ pose = "Pinch"
 speed = 250
 dwell_ms = 400
 limit_ms = 3000
+until = { grip = "holding", within_ms = 2000, retries = 3 }
 note = "slow"
 "#;
 
@@ -53,6 +55,8 @@ fn a_file_is_read_as_documented_and_unknown_keys_survive() {
     assert!(sequence.looped);
     assert_eq!(sequence.steps[0].pose, pose.id);
     assert_eq!(sequence.steps[0].dwell, Millis::try_from(400).unwrap());
+    let until = sequence.steps[0].until.unwrap();
+    assert_eq!((until.within.get(), until.retries.get()), (2000, 3));
     let again = write(&library).unwrap();
     for kept in ["mood = \"calm\"", "colour = \"red\"", "note = \"slow\""] {
         assert!(again.contains(kept), "{kept}\n{again}");
@@ -80,6 +84,10 @@ fn a_bad_file_is_refused_with_line_and_field() {
         ("pose = \"Pinch\"", "pose = \"Fist\"", 24, "pose"),
         ("dwell_ms = 400", "dwell_ms = 600001", 26, "dwell_ms"),
         ("loop = true", "loop = 1", 22, "loop"),
+        ("\"holding\"", "\"open\"", 28, "grip"),
+        ("within_ms = 2000", "within_ms = -1", 28, "within_ms"),
+        ("retries = 3", "retries = 21", 28, "retries"),
+        ("retries = 3", "retry = 3", 28, "retry"),
         ("colour = \"red\"", "key = \"A\"", 11, "key"),
         ("colour = \"red\"", "key = \"é\"", 11, "key"),
         ("colour = \"red\"", "name_zh = \"\"", 11, "name_zh"),
@@ -144,6 +152,10 @@ proptest! {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
             let mut step = library.sequence(own).unwrap().steps[at].clone();
             step.dwell = Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap();
+            step.until = (dwell % 2 == 0).then_some(UntilHolding {
+                within: step.dwell,
+                retries: Retries::try_from(i64::from(dwell % 21)).unwrap(),
+            });
             step.speed = Speed::nearest(speed);
             library.edit_sequence(own, SequenceEdit::Change(at, step));
         }
@@ -166,6 +178,7 @@ fn cue(angle: i16) -> Cue {
         force: Force::GENTLE,
         dwell: Duration::from_millis(200),
         limit: Duration::from_millis(1000),
+        until: None,
     }
 }
 
@@ -177,12 +190,85 @@ fn at(angle: i16) -> PerDof<Option<i16>> {
     PerDof::splat(Some(angle))
 }
 
+/// One moment of a player that nobody tells a grip.
+fn tick(player: &mut Player, millis: u64, angle: i16) -> Option<Cue> {
+    player.tick(ms(millis), &at(angle), &GripEstimate::default())
+}
+
+fn grasp(state: GripState, since: u64) -> GripEstimate {
+    GripEstimate {
+        state,
+        since: ms(since),
+        asked: Some(ms(since)),
+    }
+}
+
+/// A step at 200 that waits at most a second and tries once more.
+fn waiting_cue() -> Cue {
+    Cue {
+        until: Some(UntilHolding {
+            within: Millis::try_from(1000).unwrap(),
+            retries: Retries::try_from(1).unwrap(),
+        }),
+        ..cue(200)
+    }
+}
+
+#[test]
+fn only_holding_ends_a_wait_and_what_is_there_instead_is_told() {
+    for state in GripState::ALL {
+        let mut player = Player::start(vec![waiting_cue()], false, PlayMode::Through, ms(0));
+        let mut seen = |millis| {
+            let sent = player.tick(ms(millis), &at(200), &grasp(state, 0));
+            (sent.is_some(), player.view().phase)
+        };
+        assert!(seen(0).0);
+        assert!(matches!(seen(10), (false, PlayPhase::Waiting { .. })));
+        let at_once = seen(20);
+        seen(400);
+        let end = seen(1010);
+        match state {
+            GripState::Holding => {
+                assert!(matches!(at_once, (false, PlayPhase::Dwelling { .. })));
+                assert_eq!(end.1, PlayPhase::Ended(PlayEnd::Finished));
+            }
+            GripState::Empty => assert!(matches!(end.1, PlayPhase::Opening { .. })),
+            _ => {
+                let why = PlayPhase::Ended(PlayEnd::NotHolding(state));
+                assert_eq!((at_once.0, end), (false, (false, why)));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_new_grip_ends_the_way_and_one_of_before_does_not() {
+    let mut player = Player::start(vec![waiting_cue()], false, PlayMode::Through, ms(1000));
+    let held = |player: &mut Player, now, since| {
+        player.tick(ms(now), &at(500), &grasp(GripState::Holding, since));
+        player.view().phase
+    };
+    held(&mut player, 1000, 500);
+    let moving = PlayPhase::Moving { since: ms(1000) };
+    assert_eq!(held(&mut player, 1500, 500), moving, "held before");
+    assert_eq!(
+        held(&mut player, 1600, 1100),
+        moving,
+        "it had not moved yet"
+    );
+    assert_eq!(
+        held(&mut player, 1700, 1650),
+        PlayPhase::Dwelling { since: ms(1700) }
+    );
+    assert_eq!(player.view().late, 0);
+}
+
 #[test]
 fn a_player_waits_for_arrival_then_for_the_dwell_and_loops() {
     let mut player = Player::start(vec![cue(0), cue(1000)], true, PlayMode::Through, ms(0));
     let mut sent = |now, angle| {
         player
-            .tick(ms(now), &at(angle))
+            .tick(ms(now), &at(angle), &GripEstimate::default())
             .map(|cue| cue.targets[Dof::Index])
     };
     assert_eq!(sent(0, 500), Some(Angle::new(0).ok()));
@@ -212,7 +298,7 @@ fn each_part_of_a_way_has_its_own_time() {
     let cues = vec![Cue { targets, ..cue(0) }];
     let mut player = Player::start(cues, false, PlayMode::Through, ms(0));
     let mut sent = |now, seen: PerDof<Option<i16>>| {
-        let sent = player.tick(ms(now), &seen)?;
+        let sent = player.tick(ms(now), &seen, &GripEstimate::default())?;
         Some(sent.targets.map(|angle| angle.map(Angle::get)))
     };
     let thumb = |angle| {
@@ -240,20 +326,20 @@ fn each_part_of_a_way_has_its_own_time() {
 #[test]
 fn one_step_pauses_and_only_a_person_goes_on() {
     let mut player = Player::start(vec![cue(0), cue(1000)], false, PlayMode::OneStep, ms(0));
-    assert!(player.tick(ms(0), &at(0)).is_some());
-    player.tick(ms(10), &at(0));
-    player.tick(ms(300), &at(0));
+    assert!(tick(&mut player, 0, 0).is_some());
+    tick(&mut player, 10, 0);
+    tick(&mut player, 300, 0);
     assert!(player.is_paused());
     for later in [1000, 100_000] {
-        assert_eq!(player.tick(ms(later), &at(0)), None);
+        assert_eq!(tick(&mut player, later, 0), None);
     }
     player.resume(PlayMode::Through, ms(100_000));
-    assert!(player.tick(ms(100_000), &at(0)).is_some(), "the next pose");
+    assert!(tick(&mut player, 100_000, 0).is_some(), "the next pose");
     assert!(player.pause());
     player.resume(PlayMode::Through, ms(100_500));
     assert_eq!(player.view().at, 1);
     assert!(
-        player.tick(ms(100_500), &at(0)).is_some(),
+        tick(&mut player, 100_500, 0).is_some(),
         "the same pose again"
     );
     player.end(PlayEnd::Fault);
@@ -264,7 +350,7 @@ fn one_step_pauses_and_only_a_person_goes_on() {
         PlayPhase::Ended(PlayEnd::Fault),
         "the first reason stays"
     );
-    assert_eq!(player.tick(ms(100_700), &at(1000)), None);
+    assert_eq!(tick(&mut player, 100_700, 1000), None);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 pub mod entry;
 pub mod export;
 pub mod file;
+pub(crate) mod grip;
 pub mod heard;
 pub mod import;
 pub mod quirk_sheet;

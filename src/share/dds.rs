@@ -3,7 +3,7 @@
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
-use crate::link::{Clock, LinkHandle, Records};
+use crate::link::{Clock, LinkEntries, LinkHandle};
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
 use crate::record::file::format::encode::EntryEncoder;
@@ -115,9 +115,10 @@ impl DdsPublisher {
             clock: link.clock(),
             told,
         };
+        let entries = LinkEntries::new(link.observe(), link.clock());
         Ok(Self {
             told: view,
-            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(link.records()))),
+            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(entries))),
         })
     }
 
@@ -164,6 +165,7 @@ struct Writers {
     state: DdsWriter,
     joints: DdsWriter,
     touch: [DdsWriter; Finger::ALL.len()],
+    grip: DdsWriter,
 }
 
 impl Writers {
@@ -181,6 +183,7 @@ impl Writers {
             })?,
             joints: node.writer(&ros_topic(Topic::Joints))?,
             touch: [little?, ring?, middle?, index?, thumb?],
+            grip: node.writer(&ros_topic(Topic::Grip))?,
         })
     }
 }
@@ -202,11 +205,13 @@ struct Publishing {
 }
 
 impl Publishing {
-    async fn run(self, mut records: Records) {
-        while let Some(record) = records.next().await {
-            if let Record::Reading { sample, fresh } = &record {
+    async fn run(mut self, mut entries: LinkEntries) {
+        while let Some(entry) = entries.next().await {
+            if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
                 self.state(sample, *fresh);
-                self.ros(record);
+            }
+            if !matches!(entry, Entry::Wire(_)) {
+                self.ros(&entry);
             }
         }
     }
@@ -225,10 +230,11 @@ impl Publishing {
         });
     }
 
-    fn ros(&self, record: Record) {
-        for message in self.encoder.encode(&Entry::Heard(record)) {
+    fn ros(&mut self, entry: &Entry) {
+        for message in self.encoder.encode(entry) {
             let writer = match message.topic {
                 Topic::Joints => &self.writers.joints,
+                Topic::Grip => &self.writers.grip,
                 Topic::Touch(finger) => {
                     let [little, ring, middle, index, thumb] = &self.writers.touch;
                     match finger {

@@ -4,6 +4,7 @@ use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::run::{
     ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitView, ExhibitWish,
 };
+use crate::hand::grip::GripEstimator;
 use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, Owner};
 use crate::poses::player::{PlayMode, PlayPlan};
@@ -29,6 +30,8 @@ pub struct ExhibitStart {
     pub locked: PerDof<bool>,
     /// What was read until now.
     pub seen: HandSample,
+    /// What is gripped, from that.
+    pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
     /// When visitors and staff saw the page last.
@@ -76,6 +79,7 @@ pub async fn exhibit<H: TaskHand>(
         run: ExhibitRun::new(start.plan, clock.now()),
         locked: start.locked,
         sample: start.seen,
+        grip: start.grip,
         playing: None,
         lease: None,
         told,
@@ -102,7 +106,10 @@ pub async fn exhibit<H: TaskHand>(
             Some(setpoints) = sent.recv() => tell(ExhibitStep::Sent(setpoints)),
             () = ended(&mut at.playing) => at.run.ended(clock.now()),
             record = timeout(TICK, records.next()) => match record {
-                Ok(Some(Record::Reading { sample, .. })) => at.sample = *sample,
+                Ok(Some(Record::Reading { sample, fresh })) => {
+                    at.sample = *sample;
+                    at.grip.take(&sample, fresh, sample.newest(fresh).unwrap_or_default());
+                }
                 // A link may be back before anybody looks at its state.
                 Ok(Some(Record::State { state, .. })) if !state.is_live() => at.run.link_lost(),
                 _ => {}
@@ -137,6 +144,7 @@ struct ExhibitTask<'a, H> {
     run: ExhibitRun,
     locked: PerDof<bool>,
     sample: HandSample,
+    grip: GripEstimator,
     playing: Option<PlayingPiece>,
     /// What the user granted; it may have ended.
     lease: Option<Lease>,
@@ -206,6 +214,7 @@ impl<H: TaskHand> ExhibitTask<'_, H> {
             lease,
             locked: self.locked,
             seen: self.sample,
+            grip: self.grip.clone(),
             clock: self.clock,
         };
         let (commands, wanted) = mpsc::channel(1);

@@ -1,6 +1,7 @@
 //! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. Whoever else moves
 //! the hand ends it.
 
+use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, Lease, LinkStatus};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
@@ -32,6 +33,8 @@ pub struct PlayStart {
     pub locked: PerDof<bool>,
     /// What was read until now.
     pub seen: HandSample,
+    /// What is gripped, from that.
+    pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
 }
@@ -81,6 +84,7 @@ pub async fn play<H: TaskHand>(
         epoch: start.epoch,
         locked: start.locked,
         sample: start.seen,
+        grip: start.grip,
         clock,
     };
     let mut shown = None;
@@ -100,8 +104,9 @@ pub async fn play<H: TaskHand>(
                 None => run.player.end(PlayEnd::TakenOver),
             },
             record = timeout(TICK, records.next()) => {
-                if let Ok(Some(Record::Reading { sample, .. })) = record {
+                if let Ok(Some(Record::Reading { sample, fresh })) = record {
                     run.sample = *sample;
+                    run.grip.take(&sample, fresh, sample.newest(fresh).unwrap_or_default());
                 }
             }
         }
@@ -123,6 +128,7 @@ struct Playing<'a, H> {
     epoch: ArmEpoch,
     locked: PerDof<bool>,
     sample: HandSample,
+    grip: GripEstimator,
     clock: Clock,
 }
 
@@ -147,7 +153,8 @@ impl<H: TaskHand> Playing<'_, H> {
         if self.player.is_over() {
             return;
         }
-        if let Some(why) = reason(&self.hand.status(), self.epoch) {
+        let status = self.hand.status();
+        if let Some(why) = reason(&status, self.epoch) {
             self.player.end(why);
             return;
         }
@@ -158,7 +165,9 @@ impl<H: TaskHand> Playing<'_, H> {
             let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
             Some(target.unwrap_or_else(|| angles[dof].raw()))
         });
-        if let Some(cue) = self.player.tick(self.clock.now(), &seen) {
+        let now = self.clock.now();
+        let grip = self.grip.known(status.is_believed(), now);
+        if let Some(cue) = self.player.tick(now, &seen, &grip.grasp) {
             let mut setpoints = Setpoints::none(self.epoch);
             for (dof, to) in self.free(&cue.targets) {
                 setpoints.speed[dof] = Some(cue.speed);

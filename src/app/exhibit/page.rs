@@ -34,6 +34,7 @@ impl ExhibitState {
             plan: start.plan.clone(),
             locked: hand.controls.locked(),
             seen: hand.readings.sample,
+            grip: hand.readings.grip.clone(),
             clock: env.clock,
             drawn: Arc::default(),
         };

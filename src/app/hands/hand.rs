@@ -27,7 +27,7 @@ use crate::hand::{
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LeaseRefusal, LinkStatus, RequestError};
-use crate::poses::player::{PlayMode, PlayPhase, PlayPlan, PlayView};
+use crate::poses::player::{PlayMode, PlayPlan, PlayView};
 use crate::record::{ArmRefusal, LinkState, Record};
 use crate::tasks::play::{self, PlayCommand, PlayStart};
 use crate::transport::Endpoint;
@@ -434,8 +434,8 @@ impl Hand {
 
     /// What the hand grips now; unknown while feedback does not follow what the hand was told.
     pub fn grip_now(&self, now: Moment) -> Grip {
-        let is_believed = self.connection.is_live() && !self.connection.status.feedback_in_doubt;
-        self.readings.grip_now(is_believed, now)
+        let is_believed = self.connection.is_live() && self.connection.status.is_believed();
+        self.readings.grip.known(is_believed, now)
     }
 
     /// Between the pads of thumb and index while they alone hold something, mm by the model.
@@ -496,6 +496,7 @@ impl Hand {
             lease: open.lend_lease(),
             locked: self.controls.locked(),
             seen: self.readings.sample,
+            grip: self.readings.grip.clone(),
             clock: env.clock,
         };
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
@@ -505,11 +506,7 @@ impl Hand {
         });
         self.sequence = Some(SequenceRun {
             entry,
-            view: PlayView {
-                at: 0,
-                phase: PlayPhase::Moving { since: now },
-                late: 0,
-            },
+            view: PlayView::first(now),
             commands: Some(commands),
             task: Some(task),
         });

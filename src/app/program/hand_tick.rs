@@ -13,6 +13,7 @@ use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;
 use crate::app::trials::{SeriesPlan, SeriesRun, TrialsState};
 use crate::hand::{Moment, Status};
+use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::record::EventKind;
 use std::time::Duration;
 
@@ -31,9 +32,14 @@ pub(super) struct Shared<'a> {
 /// Lets one hand go on.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.take_news(&mut ctx.notices, ctx.now);
+    let ran = hand.sequence.as_ref().is_some_and(SequenceRun::is_running);
     let played = hand.sequence.as_mut().map(SequenceRun::news);
     if let Some(sent) = played {
         sent.iter().for_each(|setpoints| hand.sent(setpoints));
+    }
+    let phase = hand.sequence.as_ref().map(|run| run.view.phase);
+    if let Some(PlayPhase::Ended(PlayEnd::NotHolding(grip))) = phase.filter(|_| ran) {
+        ctx.tell(NoticeKind::NotHolding { grip });
     }
     if !hand.sequence.as_ref().is_some_and(SequenceRun::is_running) {
         restore_rested(hand);

@@ -13,7 +13,7 @@ use crate::app::readings::faults::{FaultEntry, FaultList};
 use crate::app::readings::pace::ReadingPace;
 use crate::app::readings::peaks::ForcePeaks;
 use crate::app::readings::tare::Tare;
-use crate::hand::grip::{Grip, GripEstimator};
+use crate::hand::grip::GripEstimator;
 use crate::hand::{
     Angle, AngleReading, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger,
 };
@@ -99,15 +99,6 @@ impl Readings {
     pub fn tip_freshness(&self, finger: Finger, is_live: bool, now: Moment) -> Freshness {
         let asked = self.sample.tactile[finger].map(|block| block.asked);
         freshness(asked, self.tip_pace[finger], is_live, now)
-    }
-
-    /// What is gripped now; unknown of readings that are not believed.
-    pub fn grip_now(&self, is_believed: bool, now: Moment) -> Grip {
-        if is_believed {
-            self.grip.grip().at(now)
-        } else {
-            Grip::default()
-        }
     }
 
     /// The pose that the hand has, if all six angles are known, live and fresh.

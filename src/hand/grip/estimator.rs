@@ -74,6 +74,15 @@ impl GripEstimator {
         }
     }
 
+    /// The grip as it is known at `now`; unknown where readings are not believed.
+    pub fn known(&self, is_believed: bool, now: Moment) -> Grip {
+        if is_believed {
+            self.grip().at(now)
+        } else {
+            Grip::default()
+        }
+    }
+
     /// What needs the user comes first; a grasp holds once no finger is on its way.
     fn grasp_state(&self, fingers: &PerFinger<GripEstimate>) -> GripState {
         let count = |state: GripState| {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::time::Duration;
 
 /// What a finger, or the whole grasp, does to an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GripState {
     /// What it would rest on is missing, old, or contradicts itself.
@@ -40,6 +40,11 @@ impl GripState {
         Self::Lost,
         Self::TooHard,
     ];
+
+    /// Stable number, as tables of numbers have it: 0 unknown to 7 too hard, in the order of [`Self::ALL`].
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
 
     /// Stable lower-case name, as JSON has it.
     pub const fn name(self) -> &'static str {
@@ -102,6 +107,19 @@ pub struct Grip {
 }
 
 impl Grip {
+    /// Nothing is known, since then.
+    pub fn unknown(since: Moment) -> Self {
+        let estimate = GripEstimate {
+            since,
+            ..GripEstimate::default()
+        };
+        Self {
+            fingers: PerFinger::splat(estimate),
+            grasp: estimate,
+            fresh_for: Duration::ZERO,
+        }
+    }
+
     /// The grip as it is known at `now`: what rests on old readings is unknown.
     #[must_use]
     pub fn at(&self, now: Moment) -> Self {
@@ -121,6 +139,7 @@ mod tests {
     fn each_is_called_as_json_has_it() {
         for state in GripState::ALL {
             assert_eq!(serde_json::to_value(state).unwrap(), state.name());
+            assert_eq!(GripState::ALL[usize::from(state.number())], state);
         }
     }
 

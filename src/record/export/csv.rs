@@ -1,10 +1,12 @@
 //! A recording as comma-separated values: one line for each moment of receipt, the columns of the history's tables, what happened last.
 
-use crate::hand::column::{channel_column, joint_column, text_cell, tip_column};
+use crate::hand::column::{channel_column, grip_columns, joint_column, text_cell, tip_column};
+use crate::hand::grip::Grip;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::Source;
 use crate::record::file::FileMark;
+use crate::record::grip;
 use crate::record::{Entry, EventKind, Record};
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -35,9 +37,13 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     };
     let broken = |error: io::Error| output.error(&error);
     lines.head().map_err(broken)?;
+    let grip = source.grip_before();
+    let mut follower = grip.map_err(|error| error.of(&output))?;
     let damage = source.without_wire().entries(|entry| {
+        let grip = follower.take(&entry);
         if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
             lines.reading(entry.at(), sample, *fresh)?;
+            lines.grip(&grip.unwrap_or_default());
         }
         Ok(())
     });
@@ -97,6 +103,20 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
             let _done = write!(words, "{gap}{value}");
         }
         Ok(())
+    }
+
+    /// The grip after what the line holds so far.
+    fn grip(&mut self, grip: &Grip) {
+        let states = grip::states(grip).map(|state| grip::cell(state).unwrap_or_default());
+        for (cell, state) in self
+            .line
+            .cells
+            .iter_mut()
+            .rev()
+            .zip(states.into_iter().rev())
+        {
+            state.clone_into(cell);
+        }
     }
 
     /// Writes the line that was gathered, and before it what happened until then.
@@ -165,7 +185,7 @@ fn columns() -> impl Iterator<Item = String> {
     let channels = Finger::ALL
         .into_iter()
         .flat_map(|finger| (0..CHANNELS).map(move |channel| channel_column(channel, finger)));
-    joints.chain(tips).chain(channels)
+    joints.chain(tips).chain(channels).chain(grip_columns())
 }
 
 /// A number that no reader takes for a whole one, and then the column for one of whole numbers.

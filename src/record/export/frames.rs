@@ -1,8 +1,10 @@
 //! DatasetFrames at an even rate, made of readings and commands that come when they come.
 
+use crate::hand::grip::Grip;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity};
 use crate::record::export::targets::CommandedTargets;
 use crate::record::file::RecordingFile;
+use crate::record::grip::{GripFollower, states};
 use crate::record::{Entry, Record, WriteFate};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -20,6 +22,8 @@ const TOUCH_HZ_MIN: f64 = 4.0;
 const TOUCH_WIDTH: usize = 10;
 /// Values of the force sensors of the joints, which stand before the fingertips.
 const FORCE_WIDTH: usize = 6;
+/// States of the grip: the grasp's, then the fingers'.
+const GRIP_WIDTH: usize = 6;
 
 /// What was known at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +41,8 @@ pub(crate) struct DatasetFrame {
     action: [f32; 6],
     /// Forces of the joints, then of the fingertips, if those are there.
     environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
+    /// Numbers of the states of the grasp and the fingers.
+    grip: [f32; GRIP_WIDTH],
 }
 
 /// Names and lengths of the parts of a frame.
@@ -51,6 +57,7 @@ pub(crate) fn frame_parts(with_touch: bool) -> Vec<(&'static str, usize)> {
     if with_touch {
         parts.push(("observation.touch", TOUCH_WIDTH));
     }
+    parts.push(("observation.grip", GRIP_WIDTH));
     parts
 }
 
@@ -64,6 +71,7 @@ impl DatasetFrame {
         } else {
             parts.extend([force, force]);
         }
+        parts.push(&self.grip);
         parts
     }
 }
@@ -94,6 +102,8 @@ pub(crate) struct DatasetFrames {
     plan: FramePlan,
     sample: HandSample,
     targets: CommandedTargets,
+    follower: GripFollower,
+    grip: Grip,
     note: Option<Arc<str>>,
     began: Option<Moment>,
     number: u64,
@@ -105,6 +115,8 @@ impl DatasetFrames {
             plan,
             sample: HandSample::default(),
             targets: CommandedTargets::UNKNOWN,
+            follower: GripFollower::default(),
+            grip: Grip::default(),
             note: None,
             began: None,
             number: 0,
@@ -120,6 +132,9 @@ impl DatasetFrames {
             self.begin(at);
         }
         self.advance(now, &mut give);
+        if let Some(grip) = self.follower.take(entry) {
+            self.grip = grip;
+        }
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
             Entry::Heard(Record::Sent {
@@ -205,6 +220,7 @@ impl DatasetFrames {
             state: [0.0; 6],
             action: [0.0; 6],
             environment: [0.0; FORCE_WIDTH + TOUCH_WIDTH],
+            grip: states(&self.grip.at(at)).map(|state| state.number().into()),
         };
         let (forces, touch) = frame.environment.split_at_mut(FORCE_WIDTH);
         let joints = frame.state.iter_mut().zip(&mut frame.action).zip(forces);

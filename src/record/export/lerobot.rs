@@ -2,6 +2,7 @@
 //! not read is never filled in: a silence ends the episode.
 
 use crate::hand::Moment;
+use crate::hand::grip::GripState;
 use crate::hand::kinematics::Side;
 use crate::record::EventKind;
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
@@ -388,6 +389,7 @@ impl Meta<'_> {
             "resampling": "each frame holds the newest reading received before its time",
             "gaps": "a silence of more than 0.5 s, or a value outside the manual's ranges, is not filled; it ends the episode",
             "action": "the newest target sent to each joint, stops and other programs' writes included; before the first, what the hand held (ANGLE_SET); the angle itself for a joint that was only ever left alone",
+            "grip_states": GripState::ALL,
             "action_read_back_frames": read_back,
             "action_warning": (read_back > 0).then_some(READ_BACK),
             "recordings": recordings.collect::<Vec<Value>>(),
@@ -423,6 +425,7 @@ impl Meta<'_> {
         let tips = ["Pinky", "Ring", "Middle", "Index", "Thumb"];
         let tip = |what: &str| tips.map(|tip| format!("{side}{tip}{what}"));
         let touch = [tip("Normal"), tip("Tangential")].concat();
+        let grip = [vec![format!("{side}Grip")], tip("Grip").to_vec()].concat();
         let mut environment = joints
             .each_ref()
             .map(|joint| format!("{joint}Force"))
@@ -435,6 +438,7 @@ impl Meta<'_> {
             let names = match part {
                 "observation.environment_state" => environment.as_slice(),
                 "observation.touch" => touch.as_slice(),
+                "observation.grip" => grip.as_slice(),
                 _ => joints.as_slice(),
             };
             let feature = json!({ "dtype": "float32", "shape": [width], "names": names });

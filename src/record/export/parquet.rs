@@ -1,7 +1,8 @@
 //! A recording as a Parquet table: one row for each reading, nothing where it was not part of the reading. Units, the hand and what
 //! happened stand in the file's metadata.
 
-use crate::hand::column::{channel_column, joint_column, tip_column};
+use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
+use crate::hand::grip::Grip;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, TactileBlock};
 use crate::hand::{Timed, Touch};
 use crate::record::export::arrow_schema::{ARROW_SCHEMA, arrow_schema};
@@ -10,6 +11,7 @@ use crate::record::export::csv::UNDOCUMENTED;
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::Source;
 use crate::record::file::format::opening::nanos_of;
+use crate::record::grip;
 use crate::record::{Entry, Record};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -34,8 +36,12 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     let output = Unfinished::new(to)?;
     let error = |error: ParquetError| output.parquet_error(error);
     let mut table = ParquetTable::new(source, output.file()?).map_err(error)?;
+    let grip = source.grip_before();
+    let mut follower = grip.map_err(|error| error.of(&output))?;
     let damage = source.without_wire().entries(|entry| {
+        let grip = follower.take(&entry);
         if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
+            table.grip(&grip.unwrap_or_default());
             table.reading(entry.at(), sample, *fresh)?;
         }
         Ok(())
@@ -48,7 +54,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
 }
 
 struct ParquetTable {
-    /// The last names values outside the manual's ranges.
+    /// The last names values outside the manual's ranges; those before it tell the grip.
     columns: Vec<ParquetColumn>,
     to: SerializedFileWriter<BufWriter<Sink>>,
     start: Moment,
@@ -75,6 +81,16 @@ impl ParquetTable {
             base_nanos: source.file.opening().base_nanos,
             rows: 0,
         })
+    }
+
+    fn grip(&mut self, grip: &Grip) {
+        let columns = self.columns.iter_mut().rev().skip(1);
+        for (column, state) in columns.zip(grip::states(grip).into_iter().rev()) {
+            match grip::cell(state) {
+                Some(state) => column.push_text(state),
+                None => column.push(ParquetCell::Null),
+            }
+        }
     }
 
     fn reading(
@@ -212,6 +228,7 @@ fn all_columns() -> Vec<ParquetColumn> {
         let channels = (0..CHANNELS).map(|channel| channel_column(channel, finger));
         all.extend(channels.map(|name| ParquetColumn::new(name, "", Values::Long(Vec::new()))));
     }
+    all.extend(grip_columns().map(|name| ParquetColumn::new(name, "", Values::Text(Vec::new()))));
     all.push(ParquetColumn::new(
         UNDOCUMENTED,
         "",
@@ -220,7 +237,7 @@ fn all_columns() -> Vec<ParquetColumn> {
     all
 }
 
-/// The cells of a row between its times and its last, in the order of the columns.
+/// The cells of a row between its times and its texts, in the order of the columns.
 fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell> {
     let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);

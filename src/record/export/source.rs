@@ -5,6 +5,7 @@ use crate::record::Entry;
 use crate::record::export::output::{ExportError, Unfinished};
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, Stretch};
+use crate::record::grip::GripFollower;
 use mcap::McapError;
 use parquet::errors::ParquetError;
 use std::io;
@@ -85,6 +86,28 @@ impl<'a> Source<'a> {
     pub(crate) const fn without_wire(mut self) -> Self {
         self.stretch.wire = false;
         self
+    }
+
+    /// The grip as it was followed until the stretch begins: what is told of it in the stretch rests on that.
+    pub(crate) fn grip_before(&self) -> Result<GripFollower, Broken> {
+        let mut grip = GripFollower::default();
+        let from = self.stretch.from;
+        if from <= self.file.first() {
+            return Ok(grip);
+        }
+        // How far the export is begins with the stretch.
+        let watch = |_| (self.watch)(0.0);
+        let mut before = Source {
+            watch: &watch,
+            ..self.without_wire()
+        };
+        before.stretch.from = Moment::ZERO;
+        before.stretch.to = Moment::from_micros(from.micros() - 1);
+        before.entries(|entry| {
+            grip.take(&entry);
+            Ok(())
+        })?;
+        Ok(grip)
     }
 
     /// Gives each entry to `take`, until one cannot be taken.

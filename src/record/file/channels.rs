@@ -4,7 +4,7 @@ use crate::record::file::format::topic::Topic;
 use mcap::records::Record;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Definitions of each kind that are taken from one file. Ours have twelve.
+/// Definitions of each kind that are taken from one file. Ours have thirteen.
 const DEFINITIONS_MAX: usize = 1024;
 /// Letters kept of a name, and of what a schema says.
 const NAME_MAX: usize = 200;
@@ -148,13 +148,15 @@ impl Definitions {
         self.counts.values().sum()
     }
 
-    /// True if each topic has the number that Handscope gives it, and nothing else is defined.
+    /// True if each topic has the number that Handscope gives it, and nothing else is defined. The first files tell no grip.
     pub(crate) fn are_own(&self) -> bool {
-        let own = |topic: Topic| {
-            let channel = self.channels.get(&topic.channel());
-            channel.is_some_and(|channel| channel.topic == topic.name())
+        let is_defined = |topic: Topic| self.channels.contains_key(&topic.channel());
+        let is_own = |(number, channel): (&u16, &Channel)| {
+            let topic = Topic::by_channel(*number);
+            topic.is_some_and(|topic| channel.topic == topic.name())
         };
-        Topic::all().all(own) && self.channels.len() == Topic::all().count()
+        let mut since_the_first = Topic::all().filter(|topic| *topic != Topic::Grip);
+        since_the_first.all(is_defined) && self.channels.iter().all(is_own)
     }
 
     /// The topics of the channels, and what is skipped.

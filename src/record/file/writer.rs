@@ -132,6 +132,7 @@ impl RecordingWriter {
     pub(crate) fn next(&self, opening: &Opening) -> Result<Self, McapError> {
         Ok(Self {
             overview: self.overview.next(),
+            encoder: self.encoder.next(opening),
             ..Self::new(opening)?
         })
     }

@@ -1,7 +1,7 @@
 //! A recording out of the comma-separated values that `export::csv` writes: its columns are known by their names, whatever their order.
 //! What no column says stays unknown: the day, the hand, its settings, the bytes on the wire.
 
-use crate::hand::column::{channel_column, joint_column, tip_column};
+use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::feedback::tactile::{BLOCK_LEN, TactileBlock};
 use crate::hand::kinematics::Side;
@@ -231,6 +231,8 @@ enum CsvColumn {
     Channel(usize, Finger),
     Undocumented,
     Event,
+    /// The grip of the grasp, or of a finger: found out anew from the readings.
+    Grip(usize),
     Unknown,
 }
 
@@ -263,7 +265,12 @@ impl CsvColumns {
         if !has(|column| column == CsvColumn::Time) {
             return Err(CsvFault::NoTime);
         }
-        if !has(|column| !matches!(column, CsvColumn::Time | CsvColumn::Unknown)) {
+        if !has(|column| {
+            !matches!(
+                column,
+                CsvColumn::Time | CsvColumn::Grip(_) | CsvColumn::Unknown
+            )
+        }) {
             return Err(CsvFault::NothingKnown);
         }
         Ok(Self { all, unknown })
@@ -300,6 +307,8 @@ fn known() -> BTreeMap<String, CsvColumn> {
     let mut known = BTreeMap::new();
     known.insert("time_s".to_owned(), CsvColumn::Time);
     known.insert(UNDOCUMENTED.to_owned(), CsvColumn::Undocumented);
+    let grips = grip_columns().into_iter().enumerate();
+    known.extend(grips.map(|(nth, name)| (name, CsvColumn::Grip(nth))));
     known.insert("event".to_owned(), CsvColumn::Event);
     for quantity in Quantity::ALL {
         for dof in Dof::ALL {
@@ -376,7 +385,7 @@ impl CsvRow {
     /// Reads one cell; `None` if its text is not valid in the column.
     fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
-            CsvColumn::Unknown => {}
+            CsvColumn::Unknown | CsvColumn::Grip(_) => {}
             CsvColumn::Time => self.at = moment(cell)?,
             CsvColumn::Event => self.event = Some(event(cell)),
             CsvColumn::Undocumented => {

@@ -143,7 +143,7 @@ mod tests {
             );
         }
         assert_eq!(wanted(0, 12).topic(), Some(Topic::Touch(Finger::Thumb)));
-        for none in [0, 13, 65537, u64::MAX] {
+        for none in [0, 14, 65537, u64::MAX] {
             assert_eq!(wanted(0, none).topic(), None);
         }
     }

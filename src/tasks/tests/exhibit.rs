@@ -6,6 +6,7 @@ use crate::exhibit::run::{
     ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitStage, ExhibitView, ExhibitWish,
     HaltReason,
 };
+use crate::hand::grip::GripEstimator;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target, TemperatureReading,
     Timed,
@@ -66,6 +67,7 @@ impl Booth {
             plan: Arc::new(plan),
             locked,
             seen: HandSample::default(),
+            grip: GripEstimator::default(),
             clock: hand.clock,
             drawn: Arc::default(),
         };

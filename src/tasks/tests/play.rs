@@ -1,5 +1,6 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
+use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::link::Owner;
 use crate::poses::library::{EntryId, PoseId, SequenceId};
@@ -22,6 +23,7 @@ fn cue(pose: u64, angle: i16) -> Cue {
         force: Force::nearest(900),
         dwell: Duration::from_millis(50),
         limit: Duration::from_secs(5),
+        until: None,
     }
 }
 
@@ -49,6 +51,7 @@ impl Bench {
             lease: hand.grant(Owner::Task),
             locked,
             seen: HandSample::default(),
+            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         let (commands, wanted) = mpsc::channel(4);

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::hand::Speed;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{EntryId, Millis, Sequence, SequenceStep};
+use crate::poses::library::{EntryId, Millis, Retries, Sequence, SequenceStep, UntilHolding};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
@@ -103,33 +103,52 @@ fn numbers_ui(
     (at, step): (usize, &SequenceStep),
 ) {
     let look = pane.look;
-    let mut number = |pane: &mut Pane<'_>, caption: Text, tip: Text, (value, max): (f64, f64)| {
+    let named = |caption: Text| {
         let text = look.say(caption);
-        let label = format!("{} {} {text}", look.say(poses::STEP), at + 1);
+        format!("{} {} {text}", look.say(poses::STEP), at + 1)
+    };
+    let number = |ui: &mut Ui, pane: &mut Pane<'_>, (caption, tip): (Text, Text), (now, max)| {
+        let label = named(caption);
         let field = NumberField::new(&label, look.say(tip), 0.0..=max);
         let (size, down) = (vec2(58.0, 36.0), Layout::top_down(Align::Min));
         let typed = ui.allocate_ui_with_layout(size, down, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
-            Label::new(text, look.palette.muted).small().ui(ui);
-            field.whole_ui(ui, pane, Some(value))
+            Label::new(look.say(caption), look.palette.muted)
+                .small()
+                .ui(ui);
+            field.whole_ui(ui, pane, Some::<f64>(now))
         });
         typed.inner
     };
-    let millis = |time: Millis| (f64::from(time.get()), f64::from(Millis::MAX));
-    let limit = number(pane, poses::LIMIT, poses::LIMIT.tip(), millis(step.limit));
-    let dwell = number(pane, poses::DWELL, poses::DWELL.tip(), millis(step.dwell));
-    let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(pane, main::NAME_SPEED, poses::SPEED.tip(), now);
-    let time = |typed: i64| Millis::try_from(typed).ok();
-    let new = SequenceStep {
-        limit: limit.and_then(time).unwrap_or(step.limit),
-        dwell: dwell.and_then(time).unwrap_or(step.dwell),
-        speed: speed
-            .and_then(|typed| Speed::new(typed).ok())
-            .unwrap_or(step.speed),
-        ..step.clone()
+    let millis = |ui: &mut Ui, pane: &mut Pane<'_>, caption: Text, now: Millis| {
+        let of = (f64::from(now.get()), f64::from(Millis::MAX));
+        let typed = number(ui, pane, (caption, caption.tip()), of);
+        let typed = typed.and_then(|typed| Millis::try_from(typed).ok());
+        typed.unwrap_or(now)
     };
+    let mut new = step.clone();
+    if let Some(until) = &mut new.until {
+        let of = (until.retries.get().into(), Retries::MAX.into());
+        let typed = number(ui, pane, (poses::RETRIES, poses::RETRIES.tip()), of);
+        let typed = typed.and_then(|typed| Retries::try_from(typed).ok());
+        until.retries = typed.unwrap_or(until.retries);
+        until.within = millis(ui, pane, poses::WITHIN, until.within);
+    }
+    let label = named(poses::UNTIL);
+    let waits = Button::said(look, poses::UNTIL).named(&label);
+    if waits.choice(step.until.is_some()).ui(ui, look).clicked() {
+        new.until = match step.until {
+            Some(_) => None,
+            None => Some(UntilHolding::FIRST),
+        };
+    }
+    new.limit = millis(ui, pane, poses::LIMIT, step.limit);
+    new.dwell = millis(ui, pane, poses::DWELL, step.dwell);
+    let now = (f64::from(step.speed.get()), 1000.0);
+    let speed = number(ui, pane, (main::NAME_SPEED, poses::SPEED.tip()), now);
+    let speed = speed.and_then(|typed| Speed::new(typed).ok());
+    new.speed = speed.unwrap_or(step.speed);
     if new != *step {
         change(pane, sequence, SequenceEdit::Change(at, new));
     }

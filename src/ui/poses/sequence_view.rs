@@ -9,7 +9,7 @@ use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_ui};
-use crate::ui::text::poses;
+use crate::ui::text::{panels, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, Panel, ScrollArea, Ui, UiBuilder, vec2};
 use std::time::Duration;
@@ -193,6 +193,8 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     };
     let (text, color) = match run.view.phase {
         PlayPhase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
+        PlayPhase::Waiting { .. } => (poses::SAY_WAITING, palette.armed),
+        PlayPhase::Opening { .. } => (poses::SAY_OPENING, palette.armed),
         PlayPhase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
         PlayPhase::Paused => (poses::SAY_PAUSED, palette.warn),
         PlayPhase::Ended(PlayEnd::Finished) => (poses::END_FINISHED, palette.ok),
@@ -201,6 +203,10 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         PlayPhase::Ended(PlayEnd::Fault) => (poses::END_FAULT, palette.bad),
         PlayPhase::Ended(PlayEnd::LinkLost) => (poses::END_LOST, palette.bad),
         PlayPhase::Ended(PlayEnd::TakenOver) => (poses::END_TAKEN, palette.warn),
+        PlayPhase::Ended(PlayEnd::NotHolding(grip)) => {
+            let grip = look.say(panels::grip(grip));
+            return (look.fill(poses::END_NOT_HOLDING, &[&grip]), palette.warn);
+        }
     };
     let mut words = look.say(text).to_owned();
     if run.is_running() {

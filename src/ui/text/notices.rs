@@ -232,6 +232,9 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.fill(window::OPEN_ELSEWHERE, &[endpoint, hand])
         }
         NoticeKind::ExhibitNotBegun => said(main::EXHIBIT_NOT_BEGUN),
+        NoticeKind::NotHolding { grip } => {
+            look.fill(poses::END_NOT_HOLDING, &[&look.say(panels::grip(*grip))])
+        }
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),

@@ -83,6 +83,9 @@ texts! {
     ADD: "Add", "添加", "Adds this pose as the last step.", "把该姿态添加为最后一步。";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
+    UNTIL: "Until holding", "直到握住", "Waits at the pose until the hand holds something, as its grip tells; an unknown grip does not count.", "在该姿态等待，直到抓握状态为“握住”；状态未知不算。";
+    WITHIN: "within, ms", "时限 ms", "If nothing is held so long after the pose was reached, the sequence ends and says so, milliseconds.", "到达姿态后超过此时间仍未握住时，序列结束并说明，毫秒。";
+    RETRIES: "retries", "重试", "If the hand closes on nothing, it opens and closes again, at most so often, 0 to 20.", "空握时张开并重新握，最多这么多次，0 到 20。";
     REMOVE: "Remove", "移除", "Takes this step away.", "移除该步骤。";
     LOOP: "Loop", "循环", "Begins again after the last step.", "最后一步之后从头开始。";
     DRY: "Dry run", "试运行", "Plays it on the drawn hand. Nothing is sent.", "仅在图上播放，不发送任何内容。";
@@ -95,6 +98,8 @@ texts! {
     NOT_RUNNING: "No sequence runs.", "没有序列在运行。";
     SAY_IDLE: "Ready", "就绪";
     SAY_MOVING: "On the way to step", "正在前往第几步：";
+    SAY_WAITING: "Waits until holding at step", "等待握住，第几步：";
+    SAY_OPENING: "Closed on nothing, opens to try again: step", "空握，张开后重试，第几步：";
     SAY_DWELLING: "At step", "停留在第几步：";
     SAY_PAUSED: "Paused at step", "暂停于第几步：";
     SAY_DRY: "Dry run, step", "试运行，第几步：";
@@ -105,6 +110,7 @@ texts! {
     END_FAULT: "Ended: a drive reports a fault", "已结束：驱动器报告故障";
     END_LOST: "Ended: the link was lost", "已结束：连接断开";
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
+    END_NOT_HOLDING: "Ended: the hand was to hold something and did not in time. Grip: {}.", "已结束：未在时限内握住。抓握：{}。";
     PICTURE: "Picture of the pose", "姿态图";
 
     EXPERT: "For experts: the register that starts a gesture", "高级：手势的启动方式";

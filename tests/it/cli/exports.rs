@@ -361,6 +361,11 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
         info["features"]["observation.environment_state"]["names"][3],
         "kRightHandIndexForce"
     );
+    let grip = &info["features"]["observation.grip"];
+    assert_eq!(grip["shape"], serde_json::json!([6]));
+    assert_eq!(grip["names"][0], "kRightHandGrip");
+    assert_eq!(grip["names"][5], "kRightHandThumbGrip");
+    assert_eq!(info["handscope"]["grip_states"][4], "holding");
     let names = place.names();
     for (files, more, code, words) in [
         (

@@ -3,6 +3,7 @@
 
 mod actions;
 mod exhibit_report;
+mod gripping;
 mod keeping;
 mod lost_replies;
 mod motion;

@@ -210,7 +210,7 @@ async fn a_link_that_is_lost_in_a_pose_gives_the_own_speed_back_when_the_hand_is
     assert_eq!(holds(&bench, SPEED_SET), [200; 6]);
 }
 
-fn phase(bench: &Bench) -> Option<PlayPhase> {
+pub(super) fn phase(bench: &Bench) -> Option<PlayPhase> {
     let run = bench.hand().sequence.as_ref();
     run.map(|run| run.view.phase)
 }

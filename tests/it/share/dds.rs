@@ -7,6 +7,7 @@ use crate::setup::skipped::skipped;
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, LinkHandle};
 use handscope::record::file::format::cdr;
+use handscope::record::file::format::message::GripMessage;
 use handscope::share::dds::DdsPublisher;
 use handscope::transport::dds::{DdsError, DdsMessage, DdsNode, DdsPlace, DdsTopic};
 use nix::sys::signal::Signal;
@@ -81,6 +82,37 @@ async fn states_are_told_while_the_hand_answers_and_not_a_moment_longer() {
     while heard.try_recv().is_ok() {}
     let more = timeout(Duration::from_millis(700), heard.recv()).await;
     assert!(more.is_err(), "{more:?}");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn the_grip_is_told_as_a_recording_has_it() {
+    let (tells, listens) = (DdsNode::open(&place(57)), DdsNode::open(&place(57)));
+    let topic = DdsTopic {
+        name: "rt/handscope/grip".into(),
+        type_name: "handscope_msgs::msg::dds_::Grip_".into(),
+    };
+    let mut heard = listens.unwrap().reader(&topic, 64).unwrap();
+    let (link, _records): (LinkHandle, _) = link::open(
+        config("tcp:127.0.0.1:1", to_hand(hand::plain())),
+        &Handle::current(),
+    );
+    let publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left).unwrap();
+    let first = timeout(PATIENCE, async {
+        loop {
+            let message = heard.recv().await.unwrap();
+            let grip: GripMessage = cdr::decode(&message.bytes).unwrap();
+            if grip.state != "unknown" {
+                return grip;
+            }
+        }
+    });
+    let grip = first.await.unwrap();
+    assert_eq!(grip.finger_states.len(), 5);
+    assert!(
+        grip.at.nanos() >= grip.since.nanos() && grip.asked.nanos() > 0,
+        "{grip:?}"
+    );
+    assert_eq!(publisher.told().lost, 0);
 }
 
 #[test]

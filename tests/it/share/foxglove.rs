@@ -191,7 +191,7 @@ async fn all_topics_come_as_they_happen_in_the_bytes_of_a_recording() {
     let stage = stage().await;
     let (mut client, _) = Client::of(&stage.server).await;
     client.subscribe(Topic::all()).await;
-    until(|| stage.server.viewers()[0].topics == 12).await;
+    until(|| stage.server.viewers()[0].topics == 13).await;
     stage.link.stop();
     stage
         .hand
@@ -347,7 +347,7 @@ async fn viewers_that_stop_flood_or_talk_nonsense_change_the_links_pace_by_nothi
             .server
             .viewers()
             .iter()
-            .any(|viewer| viewer.topics == 12)
+            .any(|viewer| viewer.topics == 13)
     })
     .await;
     for _ in 0..400 {

@@ -1,12 +1,13 @@
 //! Claims about poses: kept, taken, played, read from files; and that none of it moves a hand unasked.
 
-use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET, Write};
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, LARGE, Role, SPEED_SET, Write};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, Speed};
 use handscope::poses::player::{PlayEnd, PlayPhase};
+use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
 
 const LEAVE: i16 = -1;
@@ -30,7 +31,10 @@ fn enter(bench: &mut Bench, field: &str, text: &str) {
 
 /// Two poses, 500 and 1000, in a sequence; the hand at 1000 and armed.
 fn with_sequence() -> Bench {
-    let mut bench = Bench::live();
+    sequence_on(Bench::live())
+}
+
+fn sequence_on(mut bench: Bench) -> Bench {
     open(&mut bench);
     pose(&mut bench, 500);
     bench.click("Save the pose the hand has now");
@@ -314,6 +318,41 @@ fn steps_are_put_in_order_by_dragging_and_by_arrows() {
         "the last stays the last"
     );
     assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn a_step_is_told_to_wait_for_the_grip_and_says_what_it_waits_for() {
+    let free = SimConfig {
+        scenario: Scenario::Free,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::open(free, LARGE);
+    bench.wait(1000);
+    let mut bench = sequence_on(bench);
+    bench.click("Step 2 Until holding");
+    bench.run(60);
+    enter(&mut bench, "Step 2 within, ms", "1500");
+    enter(&mut bench, "Step 2 retries", "1");
+    let until = |bench: &Bench| {
+        let steps = &bench.state().poses.library.sequences[0].steps;
+        let until = steps[1].until;
+        until.map(|until| (until.within.get(), until.retries.get()))
+    };
+    assert_eq!(until(&bench), Some((1500, 1)));
+    enter(&mut bench, "Step 2 retries", "21");
+    assert_eq!(until(&bench), Some((1500, 1)), "out of range");
+    enter(&mut bench, "Step 2 retries", "1");
+    bench.click("Start");
+    for said in [
+        "Closed on nothing, opens to try again: step 2",
+        "Waits until holding at step 2",
+        "Ended: the hand was to hold something and did not in time. Grip: Empty.",
+    ] {
+        bench.until(9000, |bench| !bench.texts_with(said).is_empty());
+    }
+    bench.click("Step 2 Until holding");
+    bench.run(60);
+    assert_eq!(until(&bench), None);
 }
 
 #[test]

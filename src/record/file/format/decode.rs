@@ -50,7 +50,7 @@ impl EntryDecoder {
     /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read.
     pub fn decode(&mut self, topic: Topic, bytes: &[u8]) -> Option<Entry> {
         match topic {
-            Topic::Joints => None,
+            Topic::Joints | Topic::Grip => None,
             Topic::State => self.state(&cdr::decode(bytes)?),
             Topic::Touch(finger) => self.touch(finger, &cdr::decode(bytes)?),
             Topic::Command => self.command(&cdr::decode(bytes)?),

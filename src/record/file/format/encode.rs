@@ -1,15 +1,21 @@
 //! Entries as messages.
 
+use crate::hand::grip::{Grip, GripEstimate, GripState};
 use crate::hand::kinematics::{joint_names, joint_radians};
 use crate::hand::{Finger, Group, Groups, HandSample, Moment, Quantity, register};
 use crate::record::file::format::cdr;
 use crate::record::file::format::message::{
-    CommandFate, CommandMessage, EventMessage, Header, JointState, LinkMessage, StateMessage, Time,
-    TouchMessage, WireMessage,
+    CommandFate, CommandMessage, EventMessage, GripMessage, Header, JointState, LinkMessage,
+    StateMessage, Time, TouchMessage, WireMessage,
 };
 use crate::record::file::format::opening::{Opening, nanos_of};
 use crate::record::file::format::topic::Topic;
+use crate::record::grip::{GripFollower, states};
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
+use std::time::Duration;
+
+/// A grip that stays the same is told again after this.
+const GRIP_EACH: Duration = Duration::from_secs(1);
 
 /// The word of a refusal to arm among events; the words are the reason in JSON.
 pub(crate) const ARM_REFUSED: &str = "arm_refused";
@@ -31,6 +37,9 @@ pub struct Message {
 pub(crate) struct EntryEncoder {
     base_nanos: u64,
     joint_names: Vec<String>,
+    grip: GripFollower,
+    /// The grip that was told last, and when.
+    told: Option<(Moment, [GripState; 6])>,
 }
 
 impl EntryEncoder {
@@ -38,7 +47,22 @@ impl EntryEncoder {
         Self {
             base_nanos: opening.base_nanos,
             joint_names: joint_names(opening.side),
+            grip: GripFollower::default(),
+            told: None,
         }
+    }
+
+    /// For the file after this one. What was learnt of the grip is known in it.
+    pub(crate) fn next(&self, opening: &Opening) -> Self {
+        Self {
+            grip: self.grip.clone(),
+            ..Self::new(opening)
+        }
+    }
+
+    /// Takes an entry of which no messages are wanted: those of later ones depend on it.
+    pub(crate) fn pass(&mut self, entry: &Entry) {
+        self.grip.take(entry);
     }
 
     fn nanos(&self, at: Moment) -> u64 {
@@ -60,7 +84,37 @@ impl EntryEncoder {
     }
 
     /// The messages of one entry.
-    pub(crate) fn encode(&self, entry: &Entry) -> Vec<Message> {
+    pub(crate) fn encode(&mut self, entry: &Entry) -> Vec<Message> {
+        let mut messages = self.own(entry);
+        let grip = self.grip.take(entry);
+        messages.extend(grip.and_then(|grip| self.tell(&grip, entry.at())));
+        messages
+    }
+
+    /// The grip, if it changed or was not told for a while.
+    fn tell(&mut self, grip: &Grip, at: Moment) -> Option<Message> {
+        let is_told = |(told, before): (Moment, [GripState; 6])| {
+            before == states(grip) && at.since(told) < GRIP_EACH
+        };
+        if self.told.is_some_and(is_told) {
+            return None;
+        }
+        self.told = Some((at, states(grip)));
+        let asked = |own: &GripEstimate| own.asked.map(|at| self.time(at)).unwrap_or_default();
+        let fingers = grip.fingers.as_array();
+        let message = GripMessage {
+            at: self.time(at),
+            state: grip.grasp.state.name().into(),
+            since: self.time(grip.grasp.since),
+            asked: asked(&grip.grasp),
+            finger_states: fingers.iter().map(|own| own.state.name().into()).collect(),
+            finger_since: fingers.iter().map(|own| self.time(own.since)).collect(),
+            finger_asked: fingers.iter().map(asked).collect(),
+        };
+        Some(self.message(Topic::Grip, at, &message))
+    }
+
+    fn own(&self, entry: &Entry) -> Vec<Message> {
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
             Entry::Heard(record) => self.record(record).into_iter().collect(),

@@ -106,6 +106,23 @@ pub struct TouchMessage {
     pub raw: Vec<u8>,
 }
 
+/// What is gripped, in words: unknown, open, moving, empty, holding, slipping, lost or too_hard.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct GripMessage {
+    /// When that was told.
+    pub at: Time,
+    /// State of the whole grasp.
+    pub state: String,
+    /// When that state began.
+    pub since: Time,
+    /// When the oldest reading that it rests on was asked for; 0 if there is none.
+    pub asked: Time,
+    /// The same of little, ring, middle, index, thumb.
+    pub finger_states: Vec<String>,
+    pub finger_since: Vec<Time>,
+    pub finger_asked: Vec<Time>,
+}
+
 /// A write that left for the hand.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CommandMessage {

@@ -21,6 +21,8 @@ pub enum Topic {
     Wire,
     /// Blocks of one fingertip.
     Touch(Finger),
+    /// What is gripped.
+    Grip,
 }
 
 /// A definition that several topics may share.
@@ -173,7 +175,26 @@ uint8[] raw
     ),
 };
 
-/// Topics without the fingertips' in the order of their numbers.
+const GRIP: Schema = Schema {
+    id: 9,
+    name: "handscope_msgs/msg/Grip",
+    text: with_time!(
+"# What is gripped: unknown, open, moving, empty, holding, slipping, lost or too_hard. Told when a state changes, and once a
+# second. Each state has the time of its begin, and when the oldest reading that it rests on was asked for: 0 if there is none.
+builtin_interfaces/Time at
+# Of the whole grasp.
+string state
+builtin_interfaces/Time since
+builtin_interfaces/Time asked
+# Of little, ring, middle, index, thumb.
+string[] finger_states
+builtin_interfaces/Time[] finger_since
+builtin_interfaces/Time[] finger_asked
+"
+    ),
+};
+
+/// Topics without the fingertips' and what came after them in the order of their numbers.
 const PLAIN: [Topic; 7] = [
     Topic::Joints,
     Topic::State,
@@ -185,11 +206,14 @@ const PLAIN: [Topic; 7] = [
 ];
 /// Number of the first fingertip's channel.
 const FIRST_TIP: u16 = 8;
+/// Number of the channel behind the last fingertip's.
+const GRIP_CHANNEL: u16 = 13;
 
 impl Topic {
     /// All, in the order of their numbers.
     pub fn all() -> impl Iterator<Item = Self> {
-        PLAIN.into_iter().chain(Finger::ALL.map(Self::Touch))
+        let tips = Finger::ALL.map(Self::Touch);
+        PLAIN.into_iter().chain(tips).chain([Self::Grip])
     }
 
     /// The number of its channel.
@@ -204,6 +228,7 @@ impl Topic {
             Self::Wire => 7,
             #[expect(clippy::cast_possible_truncation, reason = "there are five fingers")]
             Self::Touch(finger) => FIRST_TIP + finger.index() as u16,
+            Self::Grip => GRIP_CHANNEL,
         }
     }
 
@@ -227,6 +252,7 @@ impl Topic {
             Self::Touch(Finger::Middle) => "/handscope/touch/middle",
             Self::Touch(Finger::Index) => "/handscope/touch/index",
             Self::Touch(Finger::Thumb) => "/handscope/touch/thumb",
+            Self::Grip => "/handscope/grip",
         }
     }
 
@@ -241,6 +267,7 @@ impl Topic {
             Self::Event => EVENT,
             Self::Wire => WIRE,
             Self::Touch(_) => TOUCH,
+            Self::Grip => GRIP,
         }
     }
 }

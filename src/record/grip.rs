@@ -1,0 +1,182 @@
+//! The grip of the hand that entries tell of: the same for a file, a viewer, DDS and a table.
+
+use crate::hand::Moment;
+use crate::hand::grip::{Grip, GripEstimator, GripState};
+use crate::record::{Entry, LinkReport, Record};
+use serde::Deserialize;
+
+/// Follows the grip entry after entry.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct GripFollower {
+    estimator: GripEstimator,
+    /// Feedback does not follow what the hand was told, since then.
+    doubted: Option<Moment>,
+}
+
+/// What counts of a status of the link.
+#[derive(Deserialize)]
+struct Doubt {
+    #[serde(default)]
+    feedback_in_doubt: bool,
+}
+
+impl GripFollower {
+    /// Takes an entry. The grip after it, if it is a reading or the end of them.
+    pub(crate) fn take(&mut self, entry: &Entry) -> Option<Grip> {
+        match entry {
+            Entry::Heard(Record::Reading { sample, fresh }) => {
+                let at = entry.at();
+                let grip = self.estimator.take(sample, *fresh, at).at(at);
+                Some(self.doubted.map_or(grip, Grip::unknown))
+            }
+            Entry::Heard(Record::State { at, state }) if !state.is_live() => {
+                *self = Self::default();
+                Some(Grip::unknown(*at))
+            }
+            Entry::Link(report) => {
+                self.report(report);
+                None
+            }
+            Entry::Heard(_) | Entry::Wire(_) | Entry::Event(_) => None,
+        }
+    }
+
+    /// A status that did not change is not told.
+    fn report(&mut self, report: &LinkReport) {
+        if let Ok(status) = serde_json::from_str::<Doubt>(&report.status) {
+            let is_new = self.doubted.is_none();
+            self.doubted = match status.feedback_in_doubt {
+                true if is_new => Some(report.at),
+                true => self.doubted,
+                false => None,
+            };
+        }
+    }
+}
+
+/// A state as a table has it: nothing where it is unknown.
+pub(crate) const fn cell(state: GripState) -> Option<&'static str> {
+    match state {
+        GripState::Unknown => None,
+        known => Some(known.name()),
+    }
+}
+
+/// The state of the grasp, then of each finger.
+pub(crate) fn states(grip: &Grip) -> [GripState; 6] {
+    let [little, ring, middle, index, thumb] = *grip.fingers.map(|own| own.state).as_array();
+    [grip.grasp.state, little, ring, middle, index, thumb]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::dof::{PerDof, PerFinger};
+    use crate::hand::feedback::tactile::TactileBlock;
+    use crate::hand::kinematics::Side;
+    use crate::hand::{AngleReading, ForceReading, Group, HandSample, Status, Timed};
+    use crate::record::LinkState;
+    use crate::record::file::Opening;
+    use crate::record::file::format::cdr;
+    use crate::record::file::format::encode::EntryEncoder;
+    use crate::record::file::format::message::GripMessage;
+    use crate::record::file::format::topic::Topic;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    /// All fingers closed, at rest and pressing.
+    fn reading(at: Moment) -> Entry {
+        fn timed<T>(value: T, at: Moment) -> Option<Timed<T>> {
+            Some(Timed {
+                value,
+                asked: at,
+                received: at,
+            })
+        }
+        let block = TactileBlock::decode(&[0; 58]).unwrap();
+        let pressed = TactileBlock {
+            normal_n: 5.0,
+            ..block
+        };
+        let sample = HandSample {
+            angle: timed(PerDof::splat(AngleReading::new(400)), at),
+            force: timed(PerDof::splat(ForceReading::new(500)), at),
+            status: timed(PerDof::splat(Status::ForceReached), at),
+            tactile: PerFinger::from_fn(|_| timed(pressed, at)),
+            ..HandSample::default()
+        };
+        Entry::Heard(Record::Reading {
+            sample: Arc::new(sample),
+            fresh: Group::ALL.into_iter().collect(),
+        })
+    }
+
+    #[test]
+    fn a_grip_is_told_when_it_changes_and_once_a_second() {
+        let opening = Opening::begin(
+            "sim:".into(),
+            (Moment::ZERO, Duration::from_secs(100)),
+            Side::Right,
+        );
+        let mut encoder = EntryEncoder::new(&opening);
+        let mut told: Vec<GripMessage> = Vec::new();
+        for ms in (10..=2500).step_by(10) {
+            let messages = encoder.encode(&reading(Moment::from_micros(ms * 1000)));
+            let grips = messages.iter().filter(|own| own.topic == Topic::Grip);
+            told.extend(grips.map(|own| cdr::decode::<GripMessage>(&own.bytes).unwrap()));
+        }
+        let states: Vec<&str> = told.iter().map(|own| own.state.as_str()).collect();
+        let held = states.iter().position(|state| *state == "holding").unwrap();
+        assert!(held <= 2, "{states:?}");
+        assert_eq!(states[held..], ["holding"; 3], "and no more");
+        let last = &told[told.len() - 1];
+        assert_eq!(last.finger_states, ["holding"; 5]);
+        assert_eq!(last.since, told[held].since);
+        assert_eq!(last.asked, last.at, "it was asked for at once");
+        let second = last.at.nanos() - told[told.len() - 2].at.nanos();
+        assert_eq!(second, 1_000_000_000);
+        // The next file knows of it at once.
+        let mut next = encoder.next(&opening);
+        let messages = next.encode(&reading(Moment::from_micros(2_510_000)));
+        let first = messages
+            .iter()
+            .find(|own| own.topic == Topic::Grip)
+            .unwrap();
+        let first: GripMessage = cdr::decode(&first.bytes).unwrap();
+        assert_eq!((first.state.as_str(), first.since), ("holding", last.since));
+    }
+
+    #[test]
+    fn a_grip_is_unknown_while_feedback_is_in_doubt_and_once_the_link_is_gone() {
+        let mut follower = GripFollower::default();
+        let mut ms = 0;
+        let mut held = |follower: &mut GripFollower| {
+            let mut states = [GripState::Unknown; 6];
+            for _ in 0..50 {
+                ms += 10;
+                let entry = reading(Moment::from_micros(ms * 1000));
+                states = super::states(&follower.take(&entry).unwrap());
+            }
+            states
+        };
+        assert_eq!(held(&mut follower), [GripState::Holding; 6]);
+        let report = |status: &str| {
+            Entry::Link(LinkReport {
+                at: Moment::ZERO,
+                state: LinkState::Armed,
+                trouble: String::new(),
+                status: status.into(),
+                figures: String::new(),
+            })
+        };
+        follower.take(&report(r#"{"feedback_in_doubt":true}"#));
+        follower.take(&report(""));
+        assert_eq!(held(&mut follower), [GripState::Unknown; 6]);
+        follower.take(&report(r#"{"feedback_in_doubt":false}"#));
+        assert_eq!(held(&mut follower), [GripState::Holding; 6]);
+        let at = Moment::from_micros(9_000_000);
+        let state = LinkState::Offline;
+        let gone = follower.take(&Entry::Heard(Record::State { at, state }));
+        assert_eq!(gone, Some(Grip::unknown(at)));
+    }
+}
