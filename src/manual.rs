@@ -34,6 +34,7 @@ topics! {
     hands: "how a hand is named: sim:, rs485:, rtu:, tcp:, slcan:, usbcan:, can:";
     files: "poses, parameters, backups and trial sessions on disk";
     tune: "the fastest close on an object that stays under a limit";
+    check: "a check-up of an empty hand: what is measured, what is good";
     sessions: "recordings of everything at a hand: files, exports, replay";
     gamepad: "driving a hand with a gamepad: controls, files, permission";
     exhibit: "a hand that visitors of a booth play with, and what staff do";

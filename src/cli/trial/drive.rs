@@ -9,10 +9,11 @@ use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{ArmEpoch, HandSample};
-use crate::link::{Clock, Lease, LinkHandle, Owner, Records};
+use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
+use crate::trials::series::Steered;
 use crate::trials::{Abort, TrialPlan, TrialSeries};
 use anyhow::bail;
 use std::time::Duration;
@@ -35,7 +36,7 @@ pub(crate) async fn drive(
         folder: args.out.as_deref(),
         criterion: args.criterion(),
     };
-    let mut hand = ArmedHand::ready(&args.hand, plan).await?;
+    let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(plan)).await?;
     let mut results = hand.results(out, wanted, plan).await?;
     let series = TrialSeries::start(plan.clone(), hand.epoch, hand.clock.now())?;
     let (_series, report) = hand.run(series, &mut results).await;
@@ -43,7 +44,7 @@ pub(crate) async fn drive(
     Ok(Outcome::of(trials, report, args.criterion()))
 }
 
-/// A hand that the user armed for trials on the command line.
+/// A hand that the user armed for trials or a check-up on the command line.
 pub(crate) struct ArmedHand {
     pub(crate) link: LinkHandle,
     pub(crate) epoch: ArmEpoch,
@@ -54,15 +55,15 @@ pub(crate) struct ArmedHand {
 }
 
 impl ArmedHand {
-    /// Opens a link, waits for the hand, and arms it within the limits of the plan.
-    pub(crate) async fn ready(endpoint: &Endpoint, plan: &TrialPlan) -> anyhow::Result<Self> {
+    /// Opens a link, waits for the hand, and arms it within these limits.
+    pub(crate) async fn ready(endpoint: &Endpoint, limits: ArmRequest) -> anyhow::Result<Self> {
         let mut interrupt = Interrupt::listen()?;
         let clock = Clock::start();
         let (link, mut records) = session::open_with_records(endpoint, series::RATES, clock);
         let ready = tokio::select! {
             biased;
             () = interrupt.wished() => None,
-            ready = make_ready(&link, &mut records, endpoint, plan) => Some(ready?),
+            ready = make_ready(&link, &mut records, endpoint, limits) => Some(ready?),
         };
         let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
             // Arming may have been under way.
@@ -99,30 +100,54 @@ impl ArmedHand {
         }
     }
 
-    /// Runs a series to its end, says what the user must know of the stop, and waits until the hand is not armed any more.
+    /// Runs a series of trials to its end, as [`Self::steer`] does.
     pub(crate) async fn run(
         &mut self,
         series: TrialSeries,
         results: &mut TrialResults<'_>,
     ) -> (TrialSeries, SeriesReport) {
-        let start = SeriesStart {
+        let start = self.start(series);
+        let take = |step| results.take(step);
+        let ended = by_user(&mut self.interrupt);
+        let ended = series::series(&self.link, start, ended, take).await;
+        self.let_go(ended.1).await;
+        ended
+    }
+
+    /// Runs what moves the hand to its end, says what the user must know of the stop, and waits until the hand is not armed any
+    /// more. `tell` as of [`series::steer`].
+    pub(crate) async fn steer<S: Steered>(
+        &mut self,
+        steered: S,
+        tell: impl FnMut(&mut S) -> bool,
+    ) -> (S, SeriesReport) {
+        let start = self.start(steered);
+        let ended = by_user(&mut self.interrupt);
+        let ended = series::steer(&self.link, start, ended, tell).await;
+        self.let_go(ended.1).await;
+        ended
+    }
+
+    const fn start<S>(&self, series: S) -> SeriesStart<S> {
+        SeriesStart {
             series,
             lease: self.lease,
             seen: self.seen,
             clock: self.clock,
-        };
-        let ended = async {
-            self.interrupt.wished().await;
-            Abort::Person
-        };
-        let take = |step| results.take(step);
-        let (series, report) = series::series(&self.link, start, ended, take).await;
+        }
+    }
+
+    async fn let_go(&self, report: SeriesReport) {
         if report.stop == Some(Stop::NotConfirmed) {
             say(session::NOT_CONFIRMED);
         }
         disarm(&self.link).await;
-        (series, report)
     }
+}
+
+async fn by_user(interrupt: &mut Interrupt) -> Abort {
+    interrupt.wished().await;
+    Abort::Person
 }
 
 /// Disarms, and waits until the link has done so.
@@ -139,7 +164,7 @@ async fn make_ready(
     link: &LinkHandle,
     records: &mut Records,
     endpoint: &Endpoint,
-    plan: &TrialPlan,
+    limits: ArmRequest,
 ) -> anyhow::Result<(Lease, HandSample)> {
     session::answered(link, endpoint).await?;
     let mut seen = HandSample::default();
@@ -154,7 +179,7 @@ async fn make_ready(
         }
     }
     let lease = link.grant(Owner::Task);
-    link.arm(lease, series::arm_limits(plan))?;
+    link.arm(lease, limits)?;
     while link.status().armed.is_none() {
         take_news(records, &mut seen).await?;
         if Instant::now() >= until {

@@ -10,6 +10,7 @@ use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsWanted;
 use crate::cli::tune::output::SearchReport;
+use crate::tasks::series::arm_limits;
 use crate::trials::TrialSeries;
 use crate::trials::search::SettingsSearch;
 use anyhow::bail;
@@ -50,7 +51,7 @@ async fn run_search(
         folder: args.out.as_deref(),
         criterion: None,
     };
-    let mut hand = ArmedHand::ready(&args.hand, &plan).await?;
+    let mut hand = ArmedHand::ready(&args.hand, arm_limits(&plan)).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
     let series = TrialSeries::search(search, hand.epoch, hand.clock.now());
     let (series, ended) = hand.run(series, &mut results).await;

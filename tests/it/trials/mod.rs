@@ -1,5 +1,6 @@
 //! Grasp trials on the simulated hand.
 
+mod checkup;
 mod hidden;
 mod search;
 mod series;
