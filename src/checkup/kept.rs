@@ -56,3 +56,46 @@ pub fn add(file: &Path, before: &[Kept], kept: Kept) -> io::Result<()> {
     let lines: Result<Vec<String>, _> = all.map(|kept| serde_json::to_string(&kept)).collect();
     replace_keeping_last(file, &(lines?.join("\n") + "\n"))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::checkup::subject::{Of, Subject};
+    use crate::hand::{Dof, Finger};
+
+    fn kept(nth: usize) -> Kept {
+        let of = [
+            Of::Joint(Dof::ThumbBend),
+            Of::Fingertip(Finger::Ring),
+            Of::Hand,
+        ];
+        let measured = of.map(|of| Measured {
+            what: Subject::Backlash,
+            of,
+            value: (nth > 0).then_some(1.5),
+        });
+        Kept {
+            at: format!("{nth}"),
+            hand: "rtu:/dev/x?id=1".into(),
+            figures: measured.into(),
+        }
+    }
+
+    #[test]
+    fn the_first_stays_and_the_oldest_of_the_others_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = file_of(folder.path(), &"tcp:127.0.0.1:6000".parse().unwrap());
+        assert_eq!(read(&file).unwrap(), []);
+        for nth in 0..KEPT_MAX + 3 {
+            let before = read(&file).unwrap();
+            add(&file, &before, kept(nth)).unwrap();
+        }
+        let all = read(&file).unwrap();
+        assert_eq!(all.len(), KEPT_MAX);
+        assert_eq!((&all[0], all[1].at.as_str()), (&kept(0), "4"));
+        assert_eq!(all[KEPT_MAX - 1], kept(KEPT_MAX + 2));
+        std::fs::write(&file, "no JSON\n").unwrap();
+        read(&file).unwrap_err();
+    }
+}

@@ -1,7 +1,7 @@
 //! What the readings of a check-up come to, as figures with units. Judges nothing.
 
-use crate::checkup::check::{Of, Subject};
 use crate::checkup::steps::{SPEEDS, Step, Way};
+use crate::checkup::subject::{Of, Subject};
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Timed};
 use serde::{Deserialize, Serialize};

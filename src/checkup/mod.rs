@@ -7,7 +7,9 @@ mod measure;
 pub mod report;
 pub mod run;
 mod steps;
+pub mod subject;
 
-pub use crate::checkup::check::{Check, Light, Of, Subject};
+pub use crate::checkup::check::Check;
 pub use crate::checkup::measure::Measured;
 pub use crate::checkup::run::Checkup;
+pub use crate::checkup::subject::{Light, Of, Subject};

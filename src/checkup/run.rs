@@ -17,7 +17,7 @@ use std::time::Duration;
 pub const LIMITS: Limits = Limits {
     ceiling_g: 300,
     stop_c: 60,
-    start_c: 50,
+    start_c: 55,
 };
 /// Each joint stops by itself this far above its zero, g.
 const THRESHOLD_G: f64 = 150.0;

@@ -1,6 +1,7 @@
 //! A check-up as one HTML page, with nothing from elsewhere. Writes no file itself.
 
-use crate::checkup::check::{Check, Light};
+use crate::checkup::check::Check;
+use crate::checkup::subject::Light;
 use askama::Template;
 
 /// What a report begins with.
@@ -52,5 +53,47 @@ impl<'a> ReportPage<'a> {
         let groups = self.checks.chunk_by(same);
         let named = groups.filter_map(|own| Some((own.first()?.measured.of.name(), own)));
         named.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::checkup::measure::Measured;
+    use crate::checkup::subject::{Of, Subject};
+    use crate::hand::Dof;
+
+    #[test]
+    fn the_page_says_what_is_worn_what_is_not_known_and_that_it_is_partial() {
+        let of = Of::Joint(Dof::Index);
+        let measured = |what, value| Measured { what, of, value };
+        let checks = [
+            measured(Subject::Backlash, Some(48.0)),
+            measured(Subject::DeadTime, None),
+            measured(Subject::OpenEnd, Some(1000.0)),
+        ];
+        let first = [measured(Subject::Backlash, Some(4.0))];
+        let checks = checks.map(|own| Check::of(own, &first, &[]));
+        let head = ReportHead {
+            hand: "tcp:<b>".into(),
+            simulated: false,
+            at: "2026-11-25 10:00:00".into(),
+            aborted: Some("ended by a person".into()),
+            earlier: 1,
+            summary: summary(&checks),
+        };
+        let page = html(&head, &checks).unwrap();
+        for wanted in [
+            "<td class=\"act\">48</td><td>-8 to 14</td><td>4</td><td>-</td><td>look at the linkage",
+            "<td class=\"unknown\">-</td>",
+            "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td><td></td>",
+            "Partial: it ended early, ended by a person",
+            "3 figures: 1 as they should be, 0 to watch, 1 to act on, 1 not measured",
+            "<h2>index</h2>",
+        ] {
+            assert!(page.contains(wanted), "{wanted}\n{page}");
+        }
+        assert!(!page.contains("<b>"));
     }
 }

@@ -7,9 +7,10 @@ pub(crate) use args::CheckArgs;
 
 use crate::app::files::settings_file;
 use crate::checkup::Checkup;
-use crate::checkup::check::{Check, Light};
+use crate::checkup::check::Check;
 use crate::checkup::kept::{self, Kept};
 use crate::checkup::report::{ReportHead, html, summary};
+use crate::checkup::subject::Light;
 use crate::cli::out::{Out, end, say};
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::stop_words;

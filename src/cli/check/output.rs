@@ -1,8 +1,9 @@
 //! A check-up as JSON, a contract with scripts, and as lines of text.
 
-use crate::checkup::check::{Check, Light};
+use crate::checkup::check::Check;
 use crate::checkup::report::ReportHead;
 use crate::checkup::run::CheckupView;
+use crate::checkup::subject::Light;
 use crate::cli::out::say;
 use serde_json::{Value, json};
 

@@ -5,3 +5,4 @@ mod hidden;
 mod search;
 mod series;
 mod virtual_hand;
+mod worn;
