@@ -44,13 +44,6 @@ mod tune;
 mod virtual_hand;
 mod waiting;
 #[path = "../it/trials/worn.rs"]
-#[expect(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::cast_possible_truncation,
-    reason = "it is a file of the tests, which use more of it and may stop at what is wrong"
-)]
 mod worn;
 
 use crate::report::{Failure, Report};
