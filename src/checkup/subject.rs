@@ -213,8 +213,8 @@ impl Subject {
             Self::WarmerThanOthers => row(
                 "warmer than the other drives",
                 "°C",
-                [-18.0, 18.0],
-                [-40.0, 35.0],
+                [-12.0, 12.0],
+                [-40.0, 28.0],
                 (
                     NONE,
                     "let the hand cool, and check again; if it stays, have the drive looked at",

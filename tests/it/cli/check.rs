@@ -1,6 +1,7 @@
 //! A check-up by script: what it needs before anything moves, and a person who ends it.
 
 use crate::setup::process::{run, sim_on_tcp, start};
+use handscope::checkup::kept::file_of;
 use nix::sys::signal::Signal;
 
 #[test]
@@ -11,8 +12,7 @@ fn nothing_moves_before_all_is_in_order() {
     let full = folder.path().join("full");
     std::fs::create_dir(&full).unwrap();
     std::fs::write(full.join("x"), "x").unwrap();
-    let place_of_hand = hand.trim_start_matches("tcp:").replace([':', '?'], "_");
-    let unreadable = folder.path().join(format!("{place_of_hand}-id1.jsonl"));
+    let unreadable = file_of(folder.path(), &hand.parse().unwrap());
     for (more, words) in [
         (&[][..], "--arm"),
         (&["--arm", "--out", full.to_str().unwrap()], "not empty"),
