@@ -6,6 +6,9 @@ use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Timed};
 use serde::{Deserialize, Serialize};
 
+/// The angle of an open joint, and counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
+const OPEN: f64 = 1000.0;
+const COUNTS: f64 = 2.0;
 /// The middle of a stroke, where a joint goes at its full speed.
 const MIDDLE: [f64; 2] = [0.25, 0.75];
 /// A channel of a fingertip is dead that never differs in so many readings.
@@ -116,16 +119,20 @@ impl StepRecord {
     }
 
     fn stroke(&self, dof: Dof) -> Stroke {
-        let position = self.line(dof, |own| own.position);
         let angle = self.line(dof, |own| own.angle);
-        let first = position.first().map(|(_, value)| *value);
-        let last = position.last().map(|(_, value)| *value);
+        // Angles are read often, positions seldom.
+        let way = angle
+            .iter()
+            .map(|(at, angle)| (*at, COUNTS * (OPEN - angle)));
+        let way: Line = way.collect();
+        let first = way.first().map(|(_, value)| *value);
+        let last = way.last().map(|(_, value)| *value);
         let middle = first.zip(last).map(|(first, last)| {
             let inside = |value: f64| {
                 let part = (value - first) / (last - first);
                 (MIDDLE[0]..=MIDDLE[1]).contains(&part)
             };
-            let inside = position.iter().filter(|(_, value)| inside(*value));
+            let inside = way.iter().filter(|(_, value)| inside(*value));
             inside.copied().collect::<Line>()
         });
         let middle = middle.unwrap_or_default();
@@ -145,7 +152,8 @@ impl StepRecord {
             speed: fit.map(|fit| fit.slope.abs()),
             dead_ms: dead_s.map(|dead| dead * 1000.0),
             current: mean(&current),
-            half_way: crossing(&angle, 500.0).and_then(|at| value_at(&position, at)),
+            half_way: crossing(&angle, OPEN / 2.0)
+                .and_then(|at| value_at(&self.line(dof, |own| own.position), at)),
         }
     }
 
@@ -168,7 +176,7 @@ struct Stroke {
     end: Option<f64>,
     /// Counts a second.
     speed: Option<f64>,
-    /// From the command to the motion.
+    /// From the command to the motion of the joint.
     dead_ms: Option<f64>,
     /// mA, at full speed.
     current: Option<f64>,
@@ -376,12 +384,11 @@ fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
             .filter_map(|own| Some(way(own)? / f64::from(own.0)));
         mean(&per_unit.collect::<Vec<_>>())
     };
-    let dead = figures.of(dof, |own| own.dead_ms);
-    let dead: Vec<f64> = dead
-        .iter()
-        .flat_map(|(_, closing, opening)| [*closing, *opening])
-        .flatten()
-        .collect();
+    // What the drive turns for nothing is no time of the hand's.
+    let slack = backlash.map_or(0.0, |(closing, opening)| (closing - opening).max(0.0));
+    let own = figures.strokes[dof].iter().map(|(_, _, stroke)| stroke);
+    let dead = own.filter_map(|own| Some(own.dead_ms? - 1000.0 * slack / own.speed?));
+    let dead: Vec<f64> = dead.collect();
     let scatter = (dead.len() >= 3).then(|| (spread(&dead) / (count(&dead) - 1.0)).sqrt());
     let first = figures.rests.first();
     let last = figures.rests.get(1);

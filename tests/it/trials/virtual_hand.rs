@@ -105,14 +105,9 @@ impl VirtualHand {
     fn read(&mut self, series: &mut impl Steered) {
         self.now = self.now.plus(EACH);
         self.round += 1;
-        let often = [
-            Group::Position,
-            Group::Angle,
-            Group::Force,
-            Group::Current,
-            Group::Status,
-        ];
+        let often = [Group::Angle, Group::Force, Group::Current, Group::Status];
         let seldom = [
+            Group::Position,
             Group::Faults,
             Group::Temperature,
             Group::SpeedSet,
