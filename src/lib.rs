@@ -18,6 +18,7 @@
 //! | 3 | [`sim`] | a hand that answers on the wire |
 //! | 3 | [`params`], [`poses`], [`trials`] | the subjects: parameters that a hand keeps, poses and sequences, grasp trials |
 //! | 4 | [`inputs`] | motion from elsewhere: gamepad, streams, DDS, another hand; what they ask for, checked, and how a hand follows it |
+//! | 4 | [`checkup`] | a check-up of an empty hand: what is measured, what it should be, what it was at first |
 //! | 4 | [`share`] | one hand for several programs: gateway, DDS, live viewers |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, follow, exhibit |
@@ -56,6 +57,7 @@
 //!   a fault that needs the user ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;
+pub mod checkup;
 pub mod cli;
 pub mod codec;
 pub mod exhibit;

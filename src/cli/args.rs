@@ -1,5 +1,6 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
+use crate::cli::check::CheckArgs;
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::grip::GripArgs;
 use crate::cli::help::{self, HelpArgs};
@@ -102,6 +103,11 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size is told by the model. Ctrl-C stops the hand. 'handscope help grip' tells more.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."
     )]
     Grip(GripArgs),
+    /// Check an empty hand: strokes, backlash, friction, speed, forces, fingertips, supply
+    #[command(
+        after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about a minute and a half. Each joint stops by itself 150 g above its zero; the hand is stopped at 300 g or 60 degrees. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' tells what each figure means, and what is kept of it.\n\nExit status: 0 nothing is to be done; 1 something is, or it ended early; 2 wrong usage."
+    )]
+    Check(CheckArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script
     #[command(
         after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."

@@ -1,6 +1,7 @@
 //! The command line: one file a command, each of which carries out its command and reports the outcome.
 
 mod args;
+mod check;
 mod doctor;
 mod grip;
 mod help;
@@ -101,6 +102,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),
         Command::Exhibit(args) => window::exhibit::run(&mut out, args),
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        Command::Check(args) => wait_for(check::run(&mut out, &args)),
         Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
         Command::Grip(args) => wait_for(grip::run(&mut out, &args)),
         Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),

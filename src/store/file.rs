@@ -23,6 +23,19 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
     folder.create(path)
 }
 
+/// Makes a folder for results, which must be new or empty.
+///
+/// # Errors
+/// What the system says, or that something is in it.
+pub fn create_empty_folder(path: &Path) -> io::Result<()> {
+    create_folder(path)?;
+    if std::fs::read_dir(path)?.next().is_some() {
+        let kind = io::ErrorKind::AlreadyExists;
+        return Err(io::Error::new(kind, "the folder is not empty"));
+    }
+    Ok(())
+}
+
 /// Makes a file that only its person can read, or empties one.
 fn create_file(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();

@@ -8,7 +8,7 @@ use crate::tasks::hand::TaskHand;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::{SearchProgress, SettingsSearch};
-use crate::trials::series::{SeriesOrder, SeriesView, TrialSeries};
+use crate::trials::series::{SeriesOrder, SeriesView, Steered, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
 use std::time::Duration;
@@ -61,9 +61,9 @@ pub struct SeriesReport {
 
 /// What a series begins with.
 #[derive(Debug, Clone)]
-pub struct SeriesStart {
+pub struct SeriesStart<S = TrialSeries> {
     /// The series, in the arming that the user gave for it.
-    pub series: TrialSeries,
+    pub series: S,
     /// The right to move the hand.
     pub lease: Lease,
     /// What was read until now.
@@ -72,27 +72,42 @@ pub struct SeriesStart {
     pub clock: Clock,
 }
 
-/// Runs a series to its end, and gives it back. `tell` says whether it could keep what it was told; else the series ends. `ended`
-/// resolves when the user ends it. At the end the hand is not armed any more.
+/// Runs a series of trials to its end, and gives it back. `tell` says whether it could keep what it was told; else the series ends.
+/// `ended` resolves when the user ends it. At the end the hand is not armed any more.
 pub async fn series<H: TaskHand>(
     hand: &H,
-    start: SeriesStart,
+    mut start: SeriesStart,
     ended: impl Future<Output = Abort>,
     mut tell: impl FnMut(SeriesStep) -> bool,
 ) -> (TrialSeries, SeriesReport) {
+    if !tell_search(&start.series, &mut tell) {
+        let now = start.clock.now();
+        let _nothing_moves_yet = start.series.end(Abort::NotKept, now);
+    }
+    let mut shown = None;
+    steer(hand, start, ended, |series| {
+        tell_news(series, &mut shown, &mut tell)
+    })
+    .await
+}
+
+/// Runs what moves a hand from its readings to its end, and gives it back. `tell` sees it after each reading, and says whether it
+/// could keep what is new; else it ends. `ended` resolves when the user ends it. At the end the hand is not armed any more.
+pub async fn steer<H: TaskHand, S: Steered>(
+    hand: &H,
+    start: SeriesStart<S>,
+    ended: impl Future<Output = Abort>,
+    mut tell: impl FnMut(&mut S) -> bool,
+) -> (S, SeriesReport) {
     let SeriesStart {
         mut series,
         lease,
         seen: mut sample,
         clock,
     } = start;
-    if !tell_search(&series, &mut tell) {
-        let _nothing_moves_yet = series.end(Abort::NotKept, clock.now());
-    }
     let mut records = hand.records();
     hand.read_at(RATES);
     let mut ended = pin!(ended);
-    let mut shown = None;
     let mut stop = None;
     while !series.is_over() {
         let mut order = None;
@@ -113,14 +128,14 @@ pub async fn series<H: TaskHand>(
             // A lease that ended has disarmed too, and that ends the series.
             let _set = hand.set(lease, setpoints);
         }
-        if !tell_news(&mut series, &mut shown, &mut tell) {
+        if !tell(&mut series) {
             order = series.end(Abort::NotKept, clock.now()).or(order);
         }
         if order == Some(SeriesOrder::Stop) {
             stop = Some(hold(hand, &mut records).await);
         }
     }
-    tell_news(&mut series, &mut shown, &mut tell);
+    tell(&mut series);
     hand.read_at(PollRates::default());
     if stop.is_none() {
         hand.disarm();

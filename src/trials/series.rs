@@ -16,6 +16,20 @@ pub const COOLING_MAX: Duration = Duration::from_secs(900);
 /// Speed at which the contact is looked for.
 const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
 
+/// What moves a hand from its readings until it is over: a series of trials, a check-up.
+pub trait Steered {
+    /// True once nothing is sent any more.
+    fn is_over(&self) -> bool;
+    /// Why it ended early, if it did.
+    fn aborted(&self) -> Option<Abort>;
+    /// Ends it. Returns the stop that has to follow, if it ran.
+    fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder>;
+    /// Takes readings.
+    fn take(&mut self, sample: &HandSample, fresh: Groups);
+    /// Advances the time. Returns what to send now, if anything.
+    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder>;
+}
+
 /// What to tell the link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeriesOrder {
@@ -131,16 +145,6 @@ impl TrialSeries {
         }
     }
 
-    /// True once nothing is sent any more.
-    pub const fn is_over(&self) -> bool {
-        matches!(self.phase, SeriesPhase::Over)
-    }
-
-    /// Why it ended early, if it did.
-    pub const fn aborted(&self) -> Option<Abort> {
-        self.aborted
-    }
-
     /// Where it stands.
     pub fn view(&self) -> SeriesView {
         let (setting, is_probing, stage) = match &self.phase {
@@ -162,47 +166,6 @@ impl TrialSeries {
     /// The next finished trial. Each is returned once.
     pub fn finished(&mut self) -> Option<Trial> {
         self.done.pop_front()
-    }
-
-    /// Ends it. Returns the stop that has to follow, if it ran.
-    pub fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder> {
-        if self.is_over() {
-            return None;
-        }
-        if let SeriesPhase::Running(runner, _) = &mut self.phase {
-            runner.abort(why, now);
-        }
-        Some(self.fail(why))
-    }
-
-    pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
-        if let SeriesPhase::Running(runner, _) = &mut self.phase {
-            runner.take(sample, fresh);
-        }
-    }
-
-    /// Advances the time. Returns what to send now, if anything.
-    pub fn tick(
-        &mut self,
-        sample: &HandSample,
-        link: LinkView,
-        now: Moment,
-    ) -> Option<SeriesOrder> {
-        match &mut self.phase {
-            SeriesPhase::Waiting { until } => {
-                let until = *until;
-                self.wait(sample, link, until, now)
-            }
-            SeriesPhase::Running(runner, _) => {
-                let setpoints = runner.tick(sample, link, now);
-                match runner.ending() {
-                    None => setpoints.map(SeriesOrder::Set),
-                    Some(Err(why)) => Some(self.fail(why)),
-                    Some(Ok(())) => self.next(now),
-                }
-            }
-            SeriesPhase::Over => None,
-        }
     }
 
     fn wait(
@@ -368,6 +331,50 @@ impl TrialSeries {
         }
         self.phase = SeriesPhase::Over;
         SeriesOrder::Stop
+    }
+}
+
+impl Steered for TrialSeries {
+    fn is_over(&self) -> bool {
+        matches!(self.phase, SeriesPhase::Over)
+    }
+
+    fn aborted(&self) -> Option<Abort> {
+        self.aborted
+    }
+
+    fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder> {
+        if self.is_over() {
+            return None;
+        }
+        if let SeriesPhase::Running(runner, _) = &mut self.phase {
+            runner.abort(why, now);
+        }
+        Some(self.fail(why))
+    }
+
+    fn take(&mut self, sample: &HandSample, fresh: Groups) {
+        if let SeriesPhase::Running(runner, _) = &mut self.phase {
+            runner.take(sample, fresh);
+        }
+    }
+
+    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder> {
+        match &mut self.phase {
+            SeriesPhase::Waiting { until } => {
+                let until = *until;
+                self.wait(sample, link, until, now)
+            }
+            SeriesPhase::Running(runner, _) => {
+                let setpoints = runner.tick(sample, link, now);
+                match runner.ending() {
+                    None => setpoints.map(SeriesOrder::Set),
+                    Some(Err(why)) => Some(self.fail(why)),
+                    Some(Ok(())) => self.next(now),
+                }
+            }
+            SeriesPhase::Over => None,
+        }
     }
 }
 

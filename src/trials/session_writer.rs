@@ -30,11 +30,7 @@ impl TrialSessionWriter {
         head: SessionHead,
         criterion: Option<Criterion>,
     ) -> io::Result<Self> {
-        store::create_folder(folder)?;
-        if std::fs::read_dir(folder)?.next().is_some() {
-            let kind = io::ErrorKind::AlreadyExists;
-            return Err(io::Error::new(kind, "the folder is not empty"));
-        }
+        store::create_empty_folder(folder)?;
         let writer = Self {
             folder: folder.to_owned(),
             file: TrialSessionFile {

@@ -1,6 +1,7 @@
 //! How fast the program is, as a table of figures and aims: `cargo bench`, or `cargo bench -- WORD` for a part.
 //! A figure that misses its aim is told, and fails nothing: machines differ.
 
+mod check;
 mod clock;
 mod codec;
 mod cycles;
@@ -42,6 +43,8 @@ mod tune;
 )]
 mod virtual_hand;
 mod waiting;
+#[path = "../it/trials/worn.rs"]
+mod worn;
 
 use crate::report::{Failure, Report};
 use std::path::Path;
@@ -73,7 +76,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 18] = [
+const PARTS: [Part; 19] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -92,6 +95,7 @@ const PARTS: [Part; 18] = [
     ("record", record::run),
     ("several", hands::run),
     ("tune", tune::run),
+    ("check", check::run),
 ];
 
 fn main() -> ExitCode {

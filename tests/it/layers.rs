@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 11] = [
     &["codec", "transport", "record", "store"],
     &["history"],
     &["link", "sim", "params", "poses", "trials"],
-    &["exhibit", "share", "inputs"],
+    &["exhibit", "share", "inputs", "checkup"],
     &["tasks"],
     &["app"],
     &["ui"],

@@ -13,6 +13,7 @@ use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
+use crate::trials::series::Steered;
 use crate::trials::{Abort, TrialPlan, TrialSeries};
 use anyhow::bail;
 use std::time::Duration;
@@ -99,29 +100,48 @@ impl ArmedHand {
         }
     }
 
-    /// Runs a series to its end, says what the user must know of the stop, and waits until the hand is not armed any more.
+    /// Runs a series of trials to its end, as [`Self::steer`] does.
     pub(crate) async fn run(
         &mut self,
         series: TrialSeries,
         results: &mut TrialResults<'_>,
     ) -> (TrialSeries, SeriesReport) {
-        let start = SeriesStart {
+        let start = self.start(series);
+        let take = |step| results.take(step);
+        let ended = by_user(&mut self.interrupt);
+        let ended = series::series(&self.link, start, ended, take).await;
+        self.let_go(ended.1).await;
+        ended
+    }
+
+    /// Runs what moves the hand to its end, says what the user must know of the stop, and waits until the hand is not armed any
+    /// more. `tell` as of [`series::steer`].
+    pub(crate) async fn steer<S: Steered>(
+        &mut self,
+        steered: S,
+        tell: impl FnMut(&mut S) -> bool,
+    ) -> (S, SeriesReport) {
+        let start = self.start(steered);
+        let ended = by_user(&mut self.interrupt);
+        let ended = series::steer(&self.link, start, ended, tell).await;
+        self.let_go(ended.1).await;
+        ended
+    }
+
+    const fn start<S>(&self, series: S) -> SeriesStart<S> {
+        SeriesStart {
             series,
             lease: self.lease,
             seen: self.seen,
             clock: self.clock,
-        };
-        let ended = async {
-            self.interrupt.wished().await;
-            Abort::Person
-        };
-        let take = |step| results.take(step);
-        let (series, report) = series::series(&self.link, start, ended, take).await;
+        }
+    }
+
+    async fn let_go(&self, report: SeriesReport) {
         if report.stop == Some(Stop::NotConfirmed) {
             say(session::NOT_CONFIRMED);
         }
         self.disarm().await;
-        (series, report)
     }
 
     /// Disarms, and waits until the link has done so.
@@ -132,6 +152,11 @@ impl ArmedHand {
             sleep(TICK).await;
         }
     }
+}
+
+async fn by_user(interrupt: &mut Interrupt) -> Abort {
+    interrupt.wished().await;
+    Abort::Person
 }
 
 /// Waits until the hand tells where it is, and arms it as the user asked for.

@@ -2,6 +2,7 @@
 
 #[cfg(unix)]
 mod can;
+mod check;
 mod consent;
 #[cfg(unix)]
 mod cut_short;

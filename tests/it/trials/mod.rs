@@ -1,6 +1,8 @@
 //! Grasp trials on the simulated hand.
 
+mod checkup;
 mod hidden;
 mod search;
 mod series;
 mod virtual_hand;
+mod worn;

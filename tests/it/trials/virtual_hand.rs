@@ -13,6 +13,7 @@ use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
+use handscope::trials::series::Steered;
 use handscope::trials::{
     Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
     Until,
@@ -59,10 +60,30 @@ impl VirtualHand {
     /// Runs a series to its end. `meanwhile` may interfere after each reading.
     pub(crate) fn run(
         &mut self,
-        mut series: TrialSeries,
+        series: TrialSeries,
         mut meanwhile: impl FnMut(&mut SimHand, &mut TrialSeries),
     ) -> Run {
         let mut trials = Vec::new();
+        let (series, stopped) = self.steer(series, |hand, series| {
+            while let Some(trial) = series.finished() {
+                trials.push(trial);
+            }
+            meanwhile(hand, series);
+        });
+        Run {
+            finding: series.settings_search().and_then(SettingsSearch::finding),
+            aborted: series.aborted(),
+            stopped,
+            trials,
+        }
+    }
+
+    /// Runs what moves a hand to its end, and whether it ended in a stop.
+    pub(crate) fn steer<S: Steered>(
+        &mut self,
+        mut series: S,
+        mut meanwhile: impl FnMut(&mut SimHand, &mut S),
+    ) -> (S, bool) {
         let mut stopped = false;
         let link = LinkView {
             state: LinkState::Armed,
@@ -76,31 +97,31 @@ impl VirtualHand {
                 Some(SeriesOrder::Stop) => stopped = true,
                 None => {}
             }
-            while let Some(trial) = series.finished() {
-                trials.push(trial);
-            }
             meanwhile(&mut self.hand, &mut series);
         }
-        Run {
-            finding: series.settings_search().and_then(SettingsSearch::finding),
-            aborted: series.aborted(),
-            stopped,
-            trials,
-        }
+        (series, stopped)
     }
 
-    fn read(&mut self, series: &mut TrialSeries) {
+    fn read(&mut self, series: &mut impl Steered) {
         self.now = self.now.plus(EACH);
         self.round += 1;
         let often = [Group::Angle, Group::Force, Group::Current, Group::Status];
         let seldom = [
+            Group::Position,
             Group::Faults,
             Group::Temperature,
             Group::SpeedSet,
             Group::ForceSet,
         ];
         let is_seldom = self.round % SELDOM == 1;
-        let tactile = (self.round.is_multiple_of(2)).then_some(Group::Tactile(Finger::Index));
+        let tip = match self.round % 8 {
+            1 => Finger::Little,
+            3 => Finger::Ring,
+            5 => Finger::Middle,
+            7 => Finger::Thumb,
+            _ => Finger::Index,
+        };
+        let tactile = [Group::Tactile(tip)];
         let groups = often
             .into_iter()
             .chain(seldom.into_iter().filter(|_| is_seldom))

@@ -1,0 +1,101 @@
+//! The check-ups of one hand, one line of JSON each, the first for ever: its birth record.
+
+use crate::checkup::measure::Measured;
+use crate::store::replace_keeping_last;
+use crate::transport::Endpoint;
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Check-ups kept of a hand: the first, and the last of them.
+pub const KEPT_MAX: usize = 200;
+
+/// One check-up that was done to its end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// When, universal time.
+    pub at: String,
+    /// The hand, as an endpoint.
+    pub hand: String,
+    pub figures: Vec<Measured>,
+}
+
+/// The file of the hand at an endpoint, told by place and id.
+pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
+    let (place, id) = hand.place_and_id();
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '.';
+    let plain = |letter| if is_plain(letter) { letter } else { '_' };
+    let place: String = place.chars().map(plain).collect();
+    folder.join(format!("{place}-id{id}.jsonl"))
+}
+
+/// The check-ups in a file, oldest first; none where there is no file.
+///
+/// # Errors
+/// The system's, or that a line is none of ours.
+pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
+    let text = match std::fs::read_to_string(file) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(error),
+    };
+    let lines = text.lines().filter(|line| !line.trim().is_empty());
+    let kept: Result<Vec<Kept>, _> = lines.map(serde_json::from_str).collect();
+    kept.map_err(io::Error::from)
+}
+
+/// Adds one to those of a file, whole or not at all.
+///
+/// # Errors
+/// The system's.
+pub fn add(file: &Path, before: &[Kept], kept: Kept) -> io::Result<()> {
+    let first = before.first().cloned();
+    let later = before.iter().skip(1).cloned();
+    let skipped = before.len().saturating_sub(KEPT_MAX - 1);
+    let all = first.into_iter().chain(later.skip(skipped)).chain([kept]);
+    let lines: Result<Vec<String>, _> = all.map(|kept| serde_json::to_string(&kept)).collect();
+    replace_keeping_last(file, &(lines?.join("\n") + "\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::checkup::subject::{Of, Subject};
+    use crate::hand::{Dof, Finger};
+
+    fn kept(nth: usize) -> Kept {
+        let of = [
+            Of::Joint(Dof::ThumbBend),
+            Of::Fingertip(Finger::Ring),
+            Of::Hand,
+        ];
+        let measured = of.map(|of| Measured {
+            what: Subject::Backlash,
+            of,
+            value: (nth > 0).then_some(1.5),
+        });
+        Kept {
+            at: format!("{nth}"),
+            hand: "rtu:/dev/x?id=1".into(),
+            figures: measured.into(),
+        }
+    }
+
+    #[test]
+    fn the_first_stays_and_the_oldest_of_the_others_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = file_of(folder.path(), &"tcp:127.0.0.1:6000".parse().unwrap());
+        assert_eq!(read(&file).unwrap(), []);
+        for nth in 0..KEPT_MAX + 3 {
+            let before = read(&file).unwrap();
+            add(&file, &before, kept(nth)).unwrap();
+        }
+        let all = read(&file).unwrap();
+        assert_eq!(all.len(), KEPT_MAX);
+        assert_eq!((&all[0], all[1].at.as_str()), (&kept(0), "4"));
+        assert_eq!(all[KEPT_MAX - 1], kept(KEPT_MAX + 2));
+        std::fs::write(&file, "no JSON\n").unwrap();
+        read(&file).unwrap_err();
+    }
+}

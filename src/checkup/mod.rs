@@ -1,0 +1,15 @@
+//! A check-up of an empty hand: each joint goes through its stroke alone, gently, and what the registers say meanwhile is compared
+//! with what hands of the family were measured to do, and with this hand's own first check-up. Sends nothing itself.
+
+pub mod check;
+pub mod kept;
+mod measure;
+pub mod report;
+pub mod run;
+mod steps;
+pub mod subject;
+
+pub use crate::checkup::check::Check;
+pub use crate::checkup::measure::Measured;
+pub use crate::checkup::run::Checkup;
+pub use crate::checkup::subject::{Light, Of, Subject};

@@ -1,0 +1,304 @@
+//! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
+
+use crate::checkup::check::Check;
+use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, TipReading, figures};
+use crate::checkup::steps::{Step, steps};
+use crate::hand::{
+    Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
+    Target,
+};
+use crate::trials::Limits;
+use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
+use crate::trials::series::{SeriesOrder, Steered};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// What ends it at once: an empty hand meets nothing, and warms little.
+pub const LIMITS: Limits = Limits {
+    ceiling_g: 300,
+    stop_c: 60,
+    start_c: 55,
+};
+/// Each joint stops by itself this far above its zero, g.
+const THRESHOLD_G: f64 = 150.0;
+/// How long nothing moves where it rests.
+const REST: Duration = Duration::from_secs(3);
+/// How long the hand may take to confirm a speed and a threshold.
+const CONFIRMS_WITHIN: Duration = Duration::from_secs(3);
+/// A joint stands still that stayed so long within [`STILL`], and that had so long to begin.
+const STILL_FOR: Duration = Duration::from_millis(300);
+const BEGINS_WITHIN: Duration = Duration::from_millis(1000);
+/// Units of ANGLE_ACT.
+const STILL: i16 = 1;
+/// A joint this near to its target has arrived.
+const ARRIVED: i16 = 3;
+/// No stroke takes longer.
+const STROKE_MAX: Duration = Duration::from_secs(20);
+
+/// Where it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CheckupView {
+    /// Steps that are over.
+    pub done: usize,
+    /// Steps in all.
+    pub total: usize,
+    /// The joint that moves alone now.
+    pub joint: Option<Dof>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    /// Speed and threshold were sent at this time, and are to be read back.
+    Confirming {
+        since: Moment,
+    },
+    /// The targets were sent.
+    Moving,
+    Resting,
+}
+
+#[derive(Debug, Clone)]
+struct RunningStep {
+    stage: Stage,
+    record: StepRecord,
+    /// Where all joints stand still, and since when.
+    pose: Option<(Moment, PerDof<i16>)>,
+}
+
+/// A check-up in an arming that the user gave.
+#[derive(Debug, Clone)]
+pub struct Checkup {
+    epoch: ArmEpoch,
+    left: VecDeque<Step>,
+    total: usize,
+    running: Option<RunningStep>,
+    zero_g: PerDof<Option<f64>>,
+    warmth: [Option<PerDof<Option<u8>>>; 2],
+    figures: Figures,
+    is_over: bool,
+    aborted: Option<Abort>,
+}
+
+impl Checkup {
+    /// Nothing is sent before the first tick.
+    pub fn start(epoch: ArmEpoch) -> Self {
+        let left = steps();
+        Self {
+            epoch,
+            total: left.len(),
+            left,
+            running: None,
+            zero_g: PerDof::splat(None),
+            warmth: [None; 2],
+            figures: Figures::default(),
+            is_over: false,
+            aborted: None,
+        }
+    }
+
+    /// Where it stands.
+    pub fn view(&self) -> CheckupView {
+        let running = self.running.as_ref().map(|running| running.record.step);
+        let joint = match running {
+            Some(Step::Stroke(dof, _, _)) => Some(dof),
+            Some(Step::Open | Step::Rest | Step::Together(_)) | None => None,
+        };
+        CheckupView {
+            done: self.total - self.left.len() - usize::from(running.is_some()),
+            total: self.total,
+            joint,
+        }
+    }
+
+    /// What was measured until now.
+    pub fn measured(&self) -> Vec<Measured> {
+        figures(&self.figures, self.warmth)
+    }
+
+    /// What was measured until now, judged; `first` and `last` are of this hand's first and last check-up.
+    pub fn checks(&self, first: &[Measured], last: &[Measured]) -> Vec<Check> {
+        let measured = self.measured().into_iter();
+        measured.map(|own| Check::of(own, first, last)).collect()
+    }
+
+    fn fail(&mut self, why: Abort) -> SeriesOrder {
+        self.aborted.get_or_insert(why);
+        self.is_over = true;
+        self.running = None;
+        SeriesOrder::Stop
+    }
+
+    fn next(&mut self, sample: &HandSample, now: Moment) -> Option<SeriesOrder> {
+        let Some(step) = self.left.pop_front() else {
+            self.warmth[1] = warmth(sample);
+            self.is_over = true;
+            return None;
+        };
+        let record = StepRecord::new(step, now);
+        if step == Step::Rest {
+            self.running = Some(RunningStep {
+                stage: Stage::Resting,
+                record,
+                pose: None,
+            });
+            return None;
+        }
+        self.running = Some(RunningStep {
+            stage: Stage::Confirming { since: now },
+            record,
+            pose: None,
+        });
+        let moved = step.targets();
+        Some(SeriesOrder::Set(Setpoints {
+            force: PerDof::from_fn(|dof| moved[dof].map(|_| self.threshold(dof))),
+            speed: moved.map(|target| target.map(|_| step.speed())),
+            ..Setpoints::none(self.epoch)
+        }))
+    }
+
+    /// Above what the joint says of nothing.
+    fn threshold(&self, dof: Dof) -> Force {
+        let zero = self.zero_g[dof].unwrap_or_default().max(0.0);
+        #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+        let grams = (zero + THRESHOLD_G).round() as i64;
+        Force::nearest(grams.min(Force::GENTLE.get().into()))
+    }
+
+    fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<SeriesOrder> {
+        let running = self.running.as_ref()?;
+        let targets = running.record.step.targets();
+        let speed = running.record.step.speed();
+        let holds = |dof: Dof| {
+            let speeds = sample.speed_set.filter(|own| own.asked >= since);
+            let forces = sample.force_set.filter(|own| own.asked >= since);
+            let has_speed = speeds.is_some_and(|own| own.value[dof] == Some(speed));
+            has_speed && forces.is_some_and(|own| own.value[dof] == Some(self.threshold(dof)))
+        };
+        let mut moved = Dof::ALL.into_iter().filter(|dof| targets[*dof].is_some());
+        if let Some(dof) = moved.find(|dof| !holds(*dof)) {
+            let is_late = now.since(since) >= CONFIRMS_WITHIN;
+            return is_late.then(|| self.fail(Abort::LimitsRefused { dof }));
+        }
+        let running = self.running.as_mut()?;
+        running.stage = Stage::Moving;
+        running.record.told = now;
+        Some(SeriesOrder::Set(Setpoints {
+            angle: targets.map(|target| target.map(Target::Go)),
+            ..Setpoints::none(self.epoch)
+        }))
+    }
+
+    fn close_step(&mut self, sample: &HandSample) {
+        let Some(running) = self.running.take() else {
+            return;
+        };
+        if running.record.step == Step::Rest && self.warmth[0].is_none() {
+            self.warmth[0] = warmth(sample);
+            for (dof, zero) in running.record.zeros().iter() {
+                self.zero_g[dof] = zero.or(self.zero_g[dof]);
+            }
+        }
+        self.figures.add(&running.record);
+    }
+}
+
+impl Steered for Checkup {
+    fn is_over(&self) -> bool {
+        self.is_over
+    }
+
+    fn aborted(&self) -> Option<Abort> {
+        self.aborted
+    }
+
+    fn end(&mut self, why: Abort, _now: Moment) -> Option<SeriesOrder> {
+        (!self.is_over).then(|| self.fail(why))
+    }
+
+    fn take(&mut self, sample: &HandSample, fresh: Groups) {
+        if fresh.contains(Group::Force)
+            && let Some(force) = sample.force
+        {
+            for (dof, reading) in force.value.iter() {
+                self.zero_g[dof].get_or_insert_with(|| f64::from(reading.raw()));
+            }
+        }
+        let Some(running) = &mut self.running else {
+            return;
+        };
+        running.record.readings.extend(Reading::of(sample, fresh));
+        if running.record.step == Step::Rest {
+            let tips = Finger::ALL.into_iter();
+            let fresh_tips = tips.filter(|finger| fresh.contains(Group::Tactile(*finger)));
+            let tips = fresh_tips.filter_map(|finger| TipReading::of(sample, finger));
+            running.record.tips.extend(tips);
+        }
+        if fresh.contains(Group::Angle)
+            && let Some(angle) = sample.angle
+        {
+            let raw = angle.value.map(|reading| reading.raw());
+            let stands = |pose: &PerDof<i16>| {
+                Dof::ALL
+                    .into_iter()
+                    .all(|dof| (raw[dof] - pose[dof]).abs() <= STILL)
+            };
+            let kept = running.pose.filter(|(_, pose)| stands(pose));
+            running.pose = Some(kept.unwrap_or((angle.asked, raw)));
+        }
+    }
+
+    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder> {
+        if self.is_over {
+            return None;
+        }
+        let seen = Feedback {
+            sample,
+            rest_g: &self.zero_g,
+            now,
+        };
+        if let Some(why) = reason(link, self.epoch, &seen, &LIMITS) {
+            return Some(self.fail(why));
+        }
+        let Some(running) = &self.running else {
+            let warm = warmest(sample).filter(|(_, celsius)| *celsius >= LIMITS.start_c);
+            if let Some((dof, celsius)) = warm.filter(|_| self.left.len() == self.total) {
+                let limit = LIMITS.start_c;
+                return Some(self.fail(Abort::TooWarm {
+                    dof,
+                    celsius,
+                    limit,
+                }));
+            }
+            return self.next(sample, now);
+        };
+        let told = running.record.told;
+        let is_over = match running.stage {
+            Stage::Confirming { since } => return self.confirm(sample, since, now),
+            Stage::Resting => now.since(told) >= REST,
+            Stage::Moving => {
+                let targets = running.record.step.targets();
+                let still = running
+                    .pose
+                    .filter(|(since, _)| now.since(*since) >= STILL_FOR);
+                let near = |pose: &PerDof<i16>, dof: Dof| {
+                    let target = targets[dof].map(Angle::get);
+                    target.is_none_or(|target| (target - pose[dof]).abs() <= ARRIVED)
+                };
+                let arrived = |pose: &PerDof<i16>| Dof::ALL.iter().all(|dof| near(pose, *dof));
+                let waited = now.since(told);
+                still.is_some_and(|(_, pose)| arrived(&pose) || waited >= BEGINS_WITHIN)
+                    || waited >= STROKE_MAX
+            }
+        };
+        if !is_over {
+            return None;
+        }
+        self.close_step(sample);
+        self.next(sample, now)
+    }
+}
+
+fn warmth(sample: &HandSample) -> Option<PerDof<Option<u8>>> {
+    let temperature = sample.temperature?;
+    Some(temperature.value.map(|reading| reading.documented()))
+}

@@ -1,0 +1,319 @@
+//! What is measured, what it should be, and what to do where it is not. The ranges hold both hands of the family that were measured in
+//! public, and the manual's figures.
+
+use crate::hand::{Dof, Finger};
+use serde::{Deserialize, Serialize};
+
+/// What is measured.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::EnumIter,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    OpenEnd,
+    BentEnd,
+    Backlash,
+    ClosingCurrent,
+    OpeningCurrent,
+    CurrentPerSpeed,
+    ClosingSpeed,
+    OpeningSpeed,
+    DeadTime,
+    DeadTimeScatter,
+    OthersMoved,
+    ForceZero,
+    ForceNoise,
+    ForceDrift,
+    WarmerThanOthers,
+    WarmedBy,
+    DeadChannels,
+    ChannelDrift,
+    SlowerTogether,
+}
+
+/// What it is measured of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Of {
+    Joint(Dof),
+    Fingertip(Finger),
+    Hand,
+}
+
+/// How a figure compares with what it should be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Light {
+    /// As it should be.
+    Fine,
+    /// It could not be measured.
+    Unknown,
+    /// Beyond what was seen of good hands, or changed since the first check-up: look at it again soon.
+    Watch,
+    /// So far beyond that something is to be done before the hand works on.
+    Act,
+}
+
+/// One subject: what it is, its ranges, and what to do.
+#[derive(Debug, Clone, Copy)]
+pub struct SubjectRow {
+    /// In a few words.
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub decimals: usize,
+    /// What good hands do, from least to most.
+    pub good: [f64; 2],
+    /// Beyond this something is to be done.
+    pub bearable: [f64; 2],
+    /// The most that it may change from the first check-up of a hand.
+    pub change: f64,
+    /// What to do.
+    pub advice: &'static str,
+}
+
+impl Subject {
+    /// How a value compares with what is good, and with the first of this hand.
+    pub fn light(self, value: Option<f64>, first: Option<f64>) -> Light {
+        let row = self.row();
+        let Some(value) = value else {
+            return Light::Unknown;
+        };
+        let within = |[least, most]: [f64; 2]| (least..=most).contains(&value);
+        if !within(row.bearable) {
+            Light::Act
+        } else if !within(row.good) || first.is_some_and(|was| (value - was).abs() > row.change) {
+            Light::Watch
+        } else {
+            Light::Fine
+        }
+    }
+
+    /// What it is.
+    pub const fn row(self) -> SubjectRow {
+        const NONE: f64 = f64::INFINITY;
+        const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it stays, have the drive looked at";
+        const DRIVE: &str = "have the drive looked at";
+        const LINKAGE: &str =
+            "look at the linkage of the finger: worn pins and loose screws do this";
+        const SUPPLY: &str =
+            "look at the 24 V supply, its cable and its plug: the hand draws up to 2 A";
+        const TIP: &str = "clean the fingertip, look at its cable, and have it changed if it stays";
+        match self {
+            Self::OpenEnd => row(
+                "angle at the open end",
+                "",
+                [985.0, 1000.0],
+                [950.0, 1000.0],
+                (NONE, CLEAN),
+            ),
+            Self::BentEnd => row(
+                "angle at the bent end",
+                "",
+                [0.0, 15.0],
+                [0.0, 50.0],
+                (NONE, CLEAN),
+            ),
+            Self::Backlash => row(
+                "backlash, counts",
+                "",
+                [-8.0, 14.0],
+                [-30.0, 40.0],
+                (8.0, LINKAGE),
+            ),
+            Self::ClosingCurrent => row(
+                "current that closing takes",
+                "mA",
+                [0.0, 260.0],
+                [0.0, 450.0],
+                (60.0, CLEAN),
+            ),
+            Self::OpeningCurrent => row(
+                "current that opening takes",
+                "mA",
+                [0.0, 260.0],
+                [0.0, 450.0],
+                (60.0, CLEAN),
+            ),
+            Self::CurrentPerSpeed => row(
+                "more current for each unit of speed",
+                "mA",
+                [-0.1, 0.2],
+                [-0.5, 0.6],
+                (0.1, CLEAN),
+            )
+            .to(2),
+            Self::ClosingSpeed => row(
+                "counts a second for each unit of speed, closing",
+                "",
+                [2.7, 3.7],
+                [2.0, 5.0],
+                (0.3, SUPPLY),
+            )
+            .to(2),
+            Self::OpeningSpeed => row(
+                "counts a second for each unit of speed, opening",
+                "",
+                [2.7, 3.7],
+                [2.0, 5.0],
+                (0.3, SUPPLY),
+            )
+            .to(2),
+            Self::DeadTime => row(
+                "time from command to motion",
+                "ms",
+                [0.0, 90.0],
+                [0.0, 160.0],
+                (25.0, DRIVE),
+            ),
+            Self::DeadTimeScatter => row(
+                "scatter of that time",
+                "ms",
+                [0.0, 15.0],
+                [0.0, 60.0],
+                (15.0, DRIVE),
+            ),
+            Self::OthersMoved => row(
+                "how far other joints moved meanwhile",
+                "",
+                [0.0, 12.0],
+                [0.0, 40.0],
+                (NONE, LINKAGE),
+            ),
+            Self::ForceZero => row(
+                "force at rest",
+                "g",
+                [-260.0, 260.0],
+                [-500.0, 500.0],
+                (
+                    60.0,
+                    "calibrate the force sensors with an empty hand (Hand > Device)",
+                ),
+            ),
+            Self::ForceNoise => row(
+                "noise of the force",
+                "g",
+                [0.0, 8.0],
+                [0.0, 40.0],
+                (
+                    6.0,
+                    "look at the hand's ground and shield, and for a motor close by",
+                ),
+            )
+            .to(1),
+            Self::ForceDrift => row(
+                "drift of the force at rest",
+                "g",
+                [-20.0, 20.0],
+                [-80.0, 80.0],
+                (
+                    NONE,
+                    "let the hand warm up, calibrate the force sensors, and check again",
+                ),
+            ),
+            Self::WarmerThanOthers => row(
+                "warmer than the other drives",
+                "°C",
+                [-12.0, 12.0],
+                [-40.0, 28.0],
+                (
+                    NONE,
+                    "let the hand cool, and check again; if it stays, have the drive looked at",
+                ),
+            ),
+            Self::WarmedBy => row(
+                "warmed during the check-up",
+                "°C",
+                [-5.0, 2.0],
+                [-20.0, 12.0],
+                (NONE, CLEAN),
+            ),
+            Self::DeadChannels => row(
+                "channels that never change",
+                "",
+                [0.0, 0.0],
+                [0.0, 0.0],
+                (NONE, TIP),
+            ),
+            Self::ChannelDrift => row(
+                "drift of the channels a second, counts",
+                "",
+                [0.0, 1000.0],
+                [0.0, 20_000.0],
+                (NONE, TIP),
+            ),
+            Self::SlowerTogether => row(
+                "slower when all six move",
+                "%",
+                [-5.0, 26.0],
+                [-20.0, 45.0],
+                (10.0, SUPPLY),
+            ),
+        }
+    }
+}
+
+const fn row(
+    name: &'static str,
+    unit: &'static str,
+    good: [f64; 2],
+    bearable: [f64; 2],
+    (change, advice): (f64, &'static str),
+) -> SubjectRow {
+    SubjectRow {
+        name,
+        unit,
+        decimals: 0,
+        good,
+        bearable,
+        change,
+        advice,
+    }
+}
+
+impl SubjectRow {
+    const fn to(self, decimals: usize) -> Self {
+        Self { decimals, ..self }
+    }
+
+    /// A value with its unit.
+    pub fn text(&self, value: f64) -> String {
+        let decimals = self.decimals;
+        format!("{value:.decimals$} {}", self.unit)
+            .trim_end()
+            .to_owned()
+    }
+
+    /// The same; a dash for what is not known.
+    pub fn known(&self, value: &Option<f64>) -> String {
+        value.map_or_else(|| "-".to_owned(), |value| self.text(value))
+    }
+
+    /// What is good.
+    pub fn range(&self) -> String {
+        let ([least, most], decimals) = (self.good, self.decimals);
+        format!("{least:.decimals$} to {most:.decimals$}")
+    }
+}
+
+impl Of {
+    /// The joint's or the finger's name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Joint(dof) => dof.name(),
+            Self::Fingertip(finger) => finger.name(),
+            Self::Hand => "hand",
+        }
+    }
+}
+
+impl Light {
+    /// Its word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fine => "fine",
+            Self::Unknown => "unknown",
+            Self::Watch => "watch",
+            Self::Act => "act",
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! A check-up by script: what it needs before anything moves, and a person who ends it.
+
+use crate::setup::process::{run, sim_on_tcp, start};
+use handscope::checkup::kept::file_of;
+use nix::sys::signal::Signal;
+
+#[test]
+fn nothing_moves_before_all_is_in_order() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().to_str().unwrap();
+    let full = folder.path().join("full");
+    std::fs::create_dir(&full).unwrap();
+    std::fs::write(full.join("x"), "x").unwrap();
+    let unreadable = file_of(folder.path(), &hand.parse().unwrap());
+    for (more, words) in [
+        (&[][..], "--arm"),
+        (&["--arm", "--out", full.to_str().unwrap()], "not empty"),
+    ] {
+        let ended = run(&[&["check", "--hand", &hand, "--folder", place], more].concat());
+        assert_eq!(ended.code, Some(1), "{}", ended.err);
+        assert!(ended.err.contains(words), "{}", ended.err);
+        assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    }
+    std::fs::write(&unreadable, "no JSON\n").unwrap();
+    let ended = run(&["check", "--hand", &hand, "--folder", place, "--arm"]);
+    assert!(ended.err.contains("--folder"), "{}", ended.err);
+    let watched = run(&["watch", "--hand", &hand, "--json", "--for", "0.2"]).ok();
+    assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
+    let nobody = run(&[
+        "check",
+        "--hand",
+        "tcp:127.0.0.1:9",
+        "--folder",
+        place,
+        "--arm",
+    ]);
+    assert_eq!((nobody.code, nobody.err.lines().count()), (Some(1), 1));
+}
+
+#[test]
+fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let folder = tempfile::tempdir().unwrap();
+    let kept = folder.path().join("kept");
+    let out = folder.path().join("out");
+    let mut checks = start(&[
+        "check",
+        "--hand",
+        &hand,
+        "--arm",
+        "--folder",
+        kept.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    while !checks.complaint().contains("3 of 29") {}
+    checks.signal(Signal::SIGINT);
+    let ended = checks.end();
+    assert_eq!(ended.code, Some(1), "{}", ended.err);
+    let why = "partial: ended by a person; stopped: feedback shows rest";
+    assert!(ended.err.contains(why), "{}", ended.err);
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("Partial: it ended early, ended by a person"));
+    let json = std::fs::read_to_string(out.join("check.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["check"]["complete"], false);
+    assert!(!kept.exists(), "nothing partial is kept");
+}
