@@ -285,22 +285,28 @@ impl Figures {
         }
     }
 
-    fn of(&self, dof: Dof, get: fn(&Stroke) -> Option<f64>) -> Strokes {
-        let [slow, fast] = SPEEDS;
+    /// A figure of the strokes of a joint, at both speeds.
+    fn of(&self, dof: Dof, get: fn(&Stroke) -> Option<f64>) -> [BothWays; 2] {
         let find = |wanted_speed, wanted_way| {
             let mut own = self.strokes[dof].iter();
             let found = own.find(|(speed, way, _)| (*speed, *way) == (wanted_speed, wanted_way));
             found.and_then(|(_, _, stroke)| get(stroke))
         };
-        [
-            (slow, find(slow, Way::Closing), find(slow, Way::Opening)),
-            (fast, find(fast, Way::Closing), find(fast, Way::Opening)),
-        ]
+        SPEEDS.map(|speed| BothWays {
+            speed,
+            closing: find(speed, Way::Closing),
+            opening: find(speed, Way::Opening),
+        })
     }
 }
 
-/// A figure of the strokes of a joint: at each speed closing and opening.
-type Strokes = [(i16, Option<f64>, Option<f64>); 2];
+/// A figure of the strokes of a joint at one speed.
+#[derive(Debug, Clone, Copy)]
+struct BothWays {
+    speed: i16,
+    closing: Option<f64>,
+    opening: Option<f64>,
+}
 
 impl Rest {
     fn of(record: &StepRecord) -> Self {
@@ -371,17 +377,17 @@ pub(crate) fn figures(
 }
 
 fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
-    let [(slow, closed, opened), _] = figures.of(dof, |own| own.end);
-    let [(_, closing_at, opening_at), _] = figures.of(dof, |own| own.half_way);
-    let backlash = closing_at.zip(opening_at);
-    let currents = figures.of(dof, |own| own.current);
-    let [(_, closing_ma, opening_ma), (fast, fast_closing, _)] = currents;
-    let per_speed = closing_ma.zip(fast_closing);
+    let [ends, _] = figures.of(dof, |own| own.end);
+    let [half_way, _] = figures.of(dof, |own| own.half_way);
+    let backlash = half_way.closing.zip(half_way.opening);
+    let [current, fast_current] = figures.of(dof, |own| own.current);
+    let per_speed = current.closing.zip(fast_current.closing);
+    let faster = f64::from(fast_current.speed - current.speed);
     let speeds = figures.of(dof, |own| own.speed);
-    let law = |way: fn(&(i16, Option<f64>, Option<f64>)) -> Option<f64>| {
+    let law = |way: fn(&BothWays) -> Option<f64>| {
         let per_unit = speeds
             .iter()
-            .filter_map(|own| Some(way(own)? / f64::from(own.0)));
+            .filter_map(|own| Some(way(own)? / f64::from(own.speed)));
         mean(&per_unit.collect::<Vec<_>>())
     };
     // What the drive turns for nothing is no time of the hand's.
@@ -395,20 +401,20 @@ fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
     let zero = first.and_then(|rest| rest.zero_g[dof]);
     let drift = last.and_then(|rest| rest.zero_g[dof]).zip(zero);
     [
-        (Subject::OpenEnd, opened),
-        (Subject::BentEnd, closed),
+        (Subject::OpenEnd, ends.opening),
+        (Subject::BentEnd, ends.closing),
         (
             Subject::Backlash,
             backlash.map(|(closing, opening)| closing - opening),
         ),
-        (Subject::ClosingCurrent, closing_ma),
-        (Subject::OpeningCurrent, opening_ma),
+        (Subject::ClosingCurrent, current.closing),
+        (Subject::OpeningCurrent, current.opening),
         (
             Subject::CurrentPerSpeed,
-            per_speed.map(|(at_slow, at_fast)| (at_fast - at_slow) / f64::from(fast - slow)),
+            per_speed.map(|(at_slow, at_fast)| (at_fast - at_slow) / faster),
         ),
-        (Subject::ClosingSpeed, law(|own| own.1)),
-        (Subject::OpeningSpeed, law(|own| own.2)),
+        (Subject::ClosingSpeed, law(|own| own.closing)),
+        (Subject::OpeningSpeed, law(|own| own.opening)),
         (Subject::DeadTime, mean(&dead)),
         (Subject::DeadTimeScatter, scatter),
         (Subject::OthersMoved, figures.others[dof]),
@@ -450,8 +456,8 @@ fn fingertip(figures: &Figures, finger: Finger) -> [(Subject, Option<f64>); 2] {
 /// Percent of their speed that the joints lose when all move.
 fn slower_together(figures: &Figures) -> Option<f64> {
     let ratios = Dof::ALL.into_iter().filter_map(|dof| {
-        let [(_, alone, _), _] = figures.of(dof, |own| own.speed);
-        Some(figures.together[dof]? / alone?)
+        let [alone, _] = figures.of(dof, |own| own.speed);
+        Some(figures.together[dof]? / alone.closing?)
     });
     let ratio = median(&ratios.collect::<Vec<_>>())?;
     Some((1.0 - ratio) * 100.0)

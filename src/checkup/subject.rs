@@ -89,6 +89,7 @@ impl Subject {
     }
 
     /// What it is.
+    #[expect(clippy::too_many_lines, reason = "a table, a row for each subject")]
     pub const fn row(self) -> SubjectRow {
         const NONE: f64 = f64::INFINITY;
         const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it stays, have the drive looked at";
