@@ -195,13 +195,16 @@ impl Window {
             || self.cards.informs()
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
-        // Popups, fields and cards do so themselves.
+        let closes = is_open && state.hands.iter().all(|hand| rests(hand, state.now));
+        // Popups, fields and cards do so themselves. A note that is being written outlives a stop.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
             self.palette.hide();
-            self.body.own.status.drop_note();
+            if closes {
+                self.body.own.status.drop_note();
+            }
         }
-        if is_open && state.hands.iter().all(|hand| rests(hand, state.now)) {
+        if closes {
             Escape::Closes
         } else {
             Escape::Stops
