@@ -262,6 +262,9 @@ fn escape_stops_an_armed_hand_whatever_is_open() {
         bench.key(Key::Escape);
         bench.run(100);
         assert!(!bench.state().hand().connection.is_armed(), "{index}");
+        // What covers the window goes with the stop; what was being written does not.
+        let covers = matches!(index, 0 | 4);
+        assert!(!covers || !is_open(&bench), "{index}");
     }
 }
 
