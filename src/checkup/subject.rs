@@ -89,191 +89,139 @@ impl Subject {
     }
 
     /// What it is.
-    #[expect(clippy::too_many_lines, reason = "a table, a row for each subject")]
     pub const fn row(self) -> SubjectRow {
-        const NONE: f64 = f64::INFINITY;
         const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it stays, have the drive looked at";
         const DRIVE: &str = "have the drive looked at";
         const LINKAGE: &str =
             "look at the linkage of the finger: worn pins and loose screws do this";
         const SUPPLY: &str =
             "look at the 24 V supply, its cable and its plug: the hand draws up to 2 A";
+        const ZERO: &str = "calibrate the force sensors with an empty hand (Hand > Device)";
+        const NOISE: &str = "look at the hand's ground and shield, and for a motor close by";
+        const DRIFT: &str = "let the hand warm up, calibrate the force sensors, and check again";
+        const WARM: &str =
+            "let the hand cool, and check again; if it stays, have the drive looked at";
         const TIP: &str = "clean the fingertip, look at its cable, and have it changed if it stays";
         match self {
-            Self::OpenEnd => row(
-                "angle at the open end",
-                "",
-                [985.0, 1000.0],
-                [950.0, 1000.0],
-                (NONE, CLEAN),
-            ),
-            Self::BentEnd => row(
-                "angle at the bent end",
-                "",
-                [0.0, 15.0],
-                [0.0, 50.0],
-                (NONE, CLEAN),
-            ),
-            Self::Backlash => row(
-                "backlash, counts",
-                "",
-                [-8.0, 14.0],
-                [-30.0, 40.0],
-                (8.0, LINKAGE),
-            ),
-            Self::ClosingCurrent => row(
-                "current that closing takes",
-                "mA",
-                [0.0, 260.0],
-                [0.0, 450.0],
-                (60.0, CLEAN),
-            ),
-            Self::OpeningCurrent => row(
-                "current that opening takes",
-                "mA",
-                [0.0, 260.0],
-                [0.0, 450.0],
-                (60.0, CLEAN),
-            ),
-            Self::CurrentPerSpeed => row(
-                "more current for each unit of speed",
-                "mA",
-                [-0.1, 0.2],
-                [-0.5, 0.6],
-                (0.1, CLEAN),
-            )
-            .to(2),
-            Self::ClosingSpeed => row(
-                "counts a second for each unit of speed, closing",
-                "",
-                [2.7, 3.7],
-                [2.0, 5.0],
-                (0.3, SUPPLY),
-            )
-            .to(2),
-            Self::OpeningSpeed => row(
-                "counts a second for each unit of speed, opening",
-                "",
-                [2.7, 3.7],
-                [2.0, 5.0],
-                (0.3, SUPPLY),
-            )
-            .to(2),
-            Self::DeadTime => row(
-                "time from command to motion",
-                "ms",
-                [0.0, 90.0],
-                [0.0, 160.0],
-                (25.0, DRIVE),
-            ),
-            Self::DeadTimeScatter => row(
-                "scatter of that time",
-                "ms",
-                [0.0, 15.0],
-                [0.0, 60.0],
-                (15.0, DRIVE),
-            ),
-            Self::OthersMoved => row(
-                "how far other joints moved meanwhile",
-                "",
-                [0.0, 12.0],
-                [0.0, 40.0],
-                (NONE, LINKAGE),
-            ),
-            Self::ForceZero => row(
-                "force at rest",
-                "g",
-                [-260.0, 260.0],
-                [-500.0, 500.0],
-                (
-                    60.0,
-                    "calibrate the force sensors with an empty hand (Hand > Device)",
-                ),
-            ),
-            Self::ForceNoise => row(
-                "noise of the force",
-                "g",
-                [0.0, 8.0],
-                [0.0, 40.0],
-                (
-                    6.0,
-                    "look at the hand's ground and shield, and for a motor close by",
-                ),
-            )
-            .to(1),
-            Self::ForceDrift => row(
-                "drift of the force at rest",
-                "g",
-                [-20.0, 20.0],
-                [-80.0, 80.0],
-                (
-                    NONE,
-                    "let the hand warm up, calibrate the force sensors, and check again",
-                ),
-            ),
-            Self::WarmerThanOthers => row(
-                "warmer than the other drives",
-                "°C",
-                [-12.0, 12.0],
-                [-40.0, 28.0],
-                (
-                    NONE,
-                    "let the hand cool, and check again; if it stays, have the drive looked at",
-                ),
-            ),
-            Self::WarmedBy => row(
-                "warmed during the check-up",
-                "°C",
-                [-5.0, 2.0],
-                [-20.0, 12.0],
-                (NONE, CLEAN),
-            ),
-            Self::DeadChannels => row(
-                "channels that never change",
-                "",
-                [0.0, 0.0],
-                [0.0, 0.0],
-                (NONE, TIP),
-            ),
-            Self::ChannelDrift => row(
-                "drift of the channels a second, counts",
-                "",
-                [0.0, 1000.0],
-                [0.0, 20_000.0],
-                (NONE, TIP),
-            ),
-            Self::SlowerTogether => row(
-                "slower when all six move",
-                "%",
-                [-5.0, 26.0],
-                [-20.0, 45.0],
-                (10.0, SUPPLY),
-            ),
+            Self::OpenEnd => row("angle at the open end", CLEAN)
+                .good(985.0, 1000.0)
+                .bearable(950.0, 1000.0),
+            Self::BentEnd => row("angle at the bent end", CLEAN)
+                .good(0.0, 15.0)
+                .bearable(0.0, 50.0),
+            Self::Backlash => row("backlash, counts", LINKAGE)
+                .good(-8.0, 14.0)
+                .bearable(-30.0, 40.0)
+                .change(8.0),
+            Self::ClosingCurrent => row("current that closing takes", CLEAN)
+                .good(0.0, 260.0)
+                .bearable(0.0, 450.0)
+                .change(60.0)
+                .unit("mA", 0),
+            Self::OpeningCurrent => row("current that opening takes", CLEAN)
+                .good(0.0, 260.0)
+                .bearable(0.0, 450.0)
+                .change(60.0)
+                .unit("mA", 0),
+            Self::CurrentPerSpeed => row("more current for each unit of speed", CLEAN)
+                .good(-0.1, 0.2)
+                .bearable(-0.5, 0.6)
+                .change(0.1)
+                .unit("mA", 2),
+            Self::ClosingSpeed => row("counts a second for each unit of speed, closing", SUPPLY)
+                .good(2.7, 3.7)
+                .bearable(2.0, 5.0)
+                .change(0.3)
+                .unit("", 2),
+            Self::OpeningSpeed => row("counts a second for each unit of speed, opening", SUPPLY)
+                .good(2.7, 3.7)
+                .bearable(2.0, 5.0)
+                .change(0.3)
+                .unit("", 2),
+            Self::DeadTime => row("time from command to motion", DRIVE)
+                .good(0.0, 90.0)
+                .bearable(0.0, 160.0)
+                .change(25.0)
+                .unit("ms", 0),
+            Self::DeadTimeScatter => row("scatter of that time", DRIVE)
+                .good(0.0, 15.0)
+                .bearable(0.0, 60.0)
+                .change(15.0)
+                .unit("ms", 0),
+            Self::OthersMoved => row("how far other joints moved meanwhile", LINKAGE)
+                .good(0.0, 12.0)
+                .bearable(0.0, 40.0),
+            Self::ForceZero => row("force at rest", ZERO)
+                .good(-260.0, 260.0)
+                .bearable(-500.0, 500.0)
+                .change(60.0)
+                .unit("g", 0),
+            Self::ForceNoise => row("noise of the force", NOISE)
+                .good(0.0, 8.0)
+                .bearable(0.0, 40.0)
+                .change(6.0)
+                .unit("g", 1),
+            Self::ForceDrift => row("drift of the force at rest", DRIFT)
+                .good(-20.0, 20.0)
+                .bearable(-80.0, 80.0)
+                .unit("g", 0),
+            Self::WarmerThanOthers => row("warmer than the other drives", WARM)
+                .good(-12.0, 12.0)
+                .bearable(-40.0, 28.0)
+                .unit("°C", 0),
+            Self::WarmedBy => row("warmed during the check-up", CLEAN)
+                .good(-5.0, 2.0)
+                .bearable(-20.0, 12.0)
+                .unit("°C", 0),
+            Self::DeadChannels => row("channels that never change", TIP)
+                .good(0.0, 0.0)
+                .bearable(0.0, 0.0),
+            Self::ChannelDrift => row("drift of the channels a second, counts", TIP)
+                .good(0.0, 1000.0)
+                .bearable(0.0, 20_000.0),
+            Self::SlowerTogether => row("slower when all six move", SUPPLY)
+                .good(-5.0, 26.0)
+                .bearable(-20.0, 45.0)
+                .change(10.0)
+                .unit("%", 0),
         }
     }
 }
 
-const fn row(
-    name: &'static str,
-    unit: &'static str,
-    good: [f64; 2],
-    bearable: [f64; 2],
-    (change, advice): (f64, &'static str),
-) -> SubjectRow {
+/// A row without ranges yet.
+const fn row(name: &'static str, advice: &'static str) -> SubjectRow {
     SubjectRow {
         name,
-        unit,
+        unit: "",
         decimals: 0,
-        good,
-        bearable,
-        change,
+        good: [f64::NEG_INFINITY, f64::INFINITY],
+        bearable: [f64::NEG_INFINITY, f64::INFINITY],
+        change: f64::INFINITY,
         advice,
     }
 }
 
 impl SubjectRow {
-    const fn to(self, decimals: usize) -> Self {
-        Self { decimals, ..self }
+    const fn good(self, least: f64, most: f64) -> Self {
+        let good = [least, most];
+        Self { good, ..self }
+    }
+
+    const fn bearable(self, least: f64, most: f64) -> Self {
+        let bearable = [least, most];
+        Self { bearable, ..self }
+    }
+
+    const fn change(self, change: f64) -> Self {
+        Self { change, ..self }
+    }
+
+    const fn unit(self, unit: &'static str, decimals: usize) -> Self {
+        Self {
+            unit,
+            decimals,
+            ..self
+        }
     }
 
     /// A value with its unit.

@@ -17,12 +17,9 @@ use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
 use crate::app::trials::work::start_refusal;
 use crate::app::trials::{SeriesPlan, SeriesRun, StartRefusal};
-use crate::hand::gap::{self, Gap};
-use crate::hand::grip::Grip;
 use crate::hand::kinematics::Side;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof,
-    Setpoints, Target,
+    Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
@@ -415,57 +412,6 @@ impl Hand {
         self.controls.restore_limits(&mut setpoints, has_own);
         self.connection.send(&setpoints);
         true
-    }
-
-    /// Whether a joint that pinches is locked.
-    pub fn locks_pinch(&self) -> bool {
-        let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
-        pinching
-            .into_iter()
-            .any(|dof| self.controls.joints[dof].locked)
-    }
-
-    /// Whether thumb and index can go to any gap from where they are.
-    pub fn is_open_for_pinch(&self) -> bool {
-        let angle = self.readings.sample.angle;
-        let counts = angle.and_then(|angle| angle.value.map(AngleReading::documented).all());
-        counts.is_some_and(|counts| gap::is_open_for_pinch(&counts.map(f32::from)))
-    }
-
-    /// What the hand grips now; unknown while feedback does not follow what the hand was told.
-    pub fn grip_now(&self, now: Moment) -> Grip {
-        let is_believed = self.connection.is_live() && self.connection.status.is_believed();
-        self.readings.grip.known(is_believed, now)
-    }
-
-    /// Between the pads of thumb and index while they alone hold something, mm by the model.
-    pub fn held_gap(&self, now: Moment) -> Option<f32> {
-        let angle = self.readings.sample.angle?;
-        gap::gap_of_held(&self.grip_now(now), &angle.value)
-    }
-
-    /// Thumb and index straight to a gap, at speeds with which they arrive together.
-    pub(crate) fn pinch_to(&mut self, to: Gap) {
-        let angle = self.readings.sample.angle;
-        let counts = angle.and_then(|angle| angle.value.map(AngleReading::documented).all());
-        let Some(counts) = counts.map(|counts| counts.map(f32::from)) else {
-            return;
-        };
-        let leg = Gap::nearest(gap::pad_distance(&counts)).straight_to(to);
-        let own = self.controls.limits();
-        let together = [Dof::Index, Dof::ThumbBend];
-        let speeds = leg.speeds(own.speed[Dof::Index].min(own.speed[Dof::ThumbBend]));
-        let went = self.go_to(|setpoints| {
-            setpoints.angle = leg.to.map(|angle| Some(Target::Go(angle)));
-            for dof in together {
-                setpoints.speed[dof] = Some(speeds[dof]);
-                setpoints.force[dof] = Some(own.force[dof]);
-            }
-        });
-        if went {
-            let targets = PerDof::from_fn(|dof| together.contains(&dof).then_some(leg.to[dof]));
-            self.controls.override_limits(&targets);
-        }
     }
 
     /// The user moves the hand: what moved it before does not any more.

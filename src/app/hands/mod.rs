@@ -1,6 +1,7 @@
 //! The hands of the program: each composed of its parts, and the list of them.
 
 pub mod action;
+pub mod grip;
 pub mod hand;
 pub mod list;
 pub mod mover;

@@ -1,6 +1,7 @@
 //! Grips by size with the hand that is shown, and the blocks that make its sizes true.
 
 use crate::app::env::Env;
+use crate::app::hands::grip;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::hand::gap::{Block, Gap, SizeBlocks};
@@ -18,11 +19,11 @@ const OPENS_WITHIN: Duration = Duration::from_secs(30);
 pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
     let now = state.now;
     let hand = state.hand_mut();
-    if hand.locks_pinch() {
+    if grip::locks_pinch(hand) {
         return;
     }
-    if hand.is_open_for_pinch() {
-        hand.pinch_to(gap);
+    if grip::is_open_for_pinch(hand) {
+        grip::pinch_to(hand, gap);
         return;
     }
     let Some(pose) = starter().pose_named(PINCH) else {
@@ -52,7 +53,8 @@ pub(super) fn measure_block(state: &mut State, size_mm: f32) {
         ..
     } = state;
     let hand = hands.shown();
-    let (Some(gap_mm), Some(endpoint)) = (hand.held_gap(*now), &hand.connection.endpoint) else {
+    let (Some(gap_mm), Some(endpoint)) = (grip::held_gap(hand, *now), &hand.connection.endpoint)
+    else {
         return;
     };
     let mut blocks = settings.size_blocks(Some(endpoint));

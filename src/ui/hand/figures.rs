@@ -1,5 +1,6 @@
 //! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to its tip.
 
+use crate::app::hands::grip;
 use crate::app::readings::Freshness;
 use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
@@ -138,13 +139,13 @@ fn figure_ui(
 }
 
 fn grip(pane: &Pane<'_>) -> Grip {
-    pane.state.hand().grip_now(pane.state.now)
+    grip::grip_now(pane.state.hand(), pane.state.now)
 }
 
 /// The size of what thumb and index hold, in words; `None` while they hold nothing alone.
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
     let hand = pane.state.hand();
-    let gap_mm = hand.held_gap(pane.state.now)?;
+    let gap_mm = grip::held_gap(hand, pane.state.now)?;
     let blocks = pane
         .state
         .settings

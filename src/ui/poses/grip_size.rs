@@ -1,6 +1,7 @@
 //! Grips by size: a drawer with the kinds, the gap, the size of what is held, and the blocks that make it true.
 
 use crate::app::action::Action;
+use crate::app::hands::grip;
 use crate::hand::gap::{Block, Gap, GripKind, held_gap};
 use crate::hand::{Angle, AngleReading};
 use crate::ui::hand::{aim, figures};
@@ -52,8 +53,8 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
 /// Why no gap can be sent now, though the hand is armed.
 fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
     let (look, hand) = (pane.look, pane.state.hand());
-    let locked = hand.locks_pinch().then(|| look.say(main::LOCKED));
-    let closed = (!hand.is_open_for_pinch()).then(|| look.say(poses::GAP_CLOSED));
+    let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
+    let closed = (!grip::is_open_for_pinch(hand)).then(|| look.say(poses::GAP_CLOSED));
     pane.unready().or(locked).or(closed)
 }
 
@@ -98,11 +99,11 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     } else if wish.is_some() {
         aim::wish(ui, Gap::nearest(mm));
     }
-    let is_open = pane.state.hand().is_open_for_pinch();
+    let is_open = grip::is_open_for_pinch(pane.state.hand());
     if !is_armed {
         Label::note(look, poses::GAP_WISH).wrap().ui(ui);
     } else if !is_open {
-        let locked = pane.state.hand().locks_pinch();
+        let locked = grip::locks_pinch(pane.state.hand());
         let locked = locked.then(|| look.say(main::LOCKED));
         let button = Button::said(look, poses::GAP_OPEN).disabled(pane.unready().or(locked));
         button.on_click(ui, pane, Action::Pinch(Gap::MAX));

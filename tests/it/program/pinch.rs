@@ -3,6 +3,7 @@
 use crate::program::starter::{along, least_room, room};
 use crate::program::{ANGLE_SET, Bench, shorts};
 use handscope::app::action::Action;
+use handscope::app::hands::grip::is_open_for_pinch;
 use handscope::hand::gap::Gap;
 use handscope::hand::{Angle, Dof, PerDof};
 use handscope::poses::starter::starter;
@@ -76,12 +77,12 @@ async fn unarmed_a_gap_sends_nothing() {
 #[tokio::test(start_paused = true)]
 async fn a_hand_that_could_meet_itself_only_opens_and_goes_to_the_gap_when_asked_again() {
     let mut bench = Bench::armed().await;
-    assert!(!bench.hand().is_open_for_pinch(), "the thumb is beside");
+    assert!(!is_open_for_pinch(bench.hand()), "the thumb is beside");
     bench.act(Action::Pinch(Gap::nearest(30.0)));
     bench.run(6000).await;
     let open = counts(Gap::MAX).as_array().to_vec();
     assert_eq!(last_targets(&bench), open, "and no further");
-    assert!(bench.hand().is_open_for_pinch());
+    assert!(is_open_for_pinch(bench.hand()));
 
     bench.forget();
     bench.act(Action::Pinch(Gap::nearest(30.0)));

@@ -3,6 +3,7 @@
 use crate::setup::window::{ANGLE_SET, Bench, LARGE};
 use egui::Key;
 use handscope::app::action::Action;
+use handscope::app::hands::grip::is_open_for_pinch;
 use handscope::hand::gap::Gap;
 use handscope::hand::{Dof, PerDof};
 use handscope::sim::{Contact, Object, Scenario, SimConfig};
@@ -28,7 +29,7 @@ fn opened() -> Bench {
     bench.click("Grip by size");
     bench.run(100);
     bench.click_button("Open for the grip");
-    bench.until(10_000, |bench| bench.state().hand().is_open_for_pinch());
+    bench.until(10_000, |bench| is_open_for_pinch(bench.state().hand()));
     bench.run(3000);
     bench
 }

@@ -1,0 +1,59 @@
+//! What a hand grips, as far as it is believed, and whether and how thumb and index can go to a gap.
+
+use crate::app::hands::hand::Hand;
+use crate::hand::gap::{self, Gap};
+use crate::hand::grip::Grip;
+use crate::hand::{AngleReading, Dof, Moment, PerDof, Target};
+
+/// What the hand grips now; unknown while feedback does not follow what the hand was told.
+pub fn grip_now(hand: &Hand, now: Moment) -> Grip {
+    let is_believed = hand.connection.is_live() && hand.connection.status.is_believed();
+    hand.readings.grip.known(is_believed, now)
+}
+
+/// Between the pads of thumb and index while they alone hold something, mm by the model.
+pub fn held_gap(hand: &Hand, now: Moment) -> Option<f32> {
+    let angle = hand.readings.sample.angle?;
+    gap::gap_of_held(&grip_now(hand, now), &angle.value)
+}
+
+/// Whether a joint that pinches is locked.
+pub fn locks_pinch(hand: &Hand) -> bool {
+    let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
+    let mut pinching = pinching.into_iter();
+    pinching.any(|dof| hand.controls.joints[dof].locked)
+}
+
+/// Whether thumb and index can go to any gap from where they are.
+pub fn is_open_for_pinch(hand: &Hand) -> bool {
+    counts(hand).is_some_and(|counts| gap::is_open_for_pinch(&counts))
+}
+
+/// The angles, where all are known.
+fn counts(hand: &Hand) -> Option<PerDof<f32>> {
+    let angle = hand.readings.sample.angle?;
+    let counts = angle.value.map(AngleReading::documented).all()?;
+    Some(counts.map(f32::from))
+}
+
+/// Thumb and index straight to a gap, at speeds with which they arrive together.
+pub(crate) fn pinch_to(hand: &mut Hand, to: Gap) {
+    let Some(counts) = counts(hand) else {
+        return;
+    };
+    let leg = Gap::nearest(gap::pad_distance(&counts)).straight_to(to);
+    let own = hand.controls.limits();
+    let together = [Dof::Index, Dof::ThumbBend];
+    let speeds = leg.speeds(own.speed[Dof::Index].min(own.speed[Dof::ThumbBend]));
+    let went = hand.go_to(|setpoints| {
+        setpoints.angle = leg.to.map(|angle| Some(Target::Go(angle)));
+        for dof in together {
+            setpoints.speed[dof] = Some(speeds[dof]);
+            setpoints.force[dof] = Some(own.force[dof]);
+        }
+    });
+    if went {
+        let targets = PerDof::from_fn(|dof| together.contains(&dof).then_some(leg.to[dof]));
+        hand.controls.override_limits(&targets);
+    }
+}
