@@ -1,7 +1,7 @@
 //! The check-ups of one hand, one line of JSON each, the first for ever: its birth record.
 
 use crate::checkup::measure::Measured;
-use crate::store::replace_keeping_last;
+use crate::store::{read_text, replace_keeping_last};
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// Check-ups kept of a hand: the first, and the last of them.
 pub const KEPT_MAX: usize = 200;
+/// No file of them is larger, bytes.
+const FILE_MAX: u64 = 16 << 20;
 
 /// One check-up that was done to its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,8 +25,11 @@ pub struct Kept {
 /// The file of the hand at an endpoint, told by place and id.
 pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
     let (place, id) = hand.place_and_id();
-    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '.';
-    let plain = |letter| if is_plain(letter) { letter } else { '_' };
+    let plain = |letter: char| match letter {
+        letter if letter.is_ascii_alphanumeric() || letter == '.' => letter.to_string(),
+        // Each place has a name of its own.
+        letter => format!("_{:x}", u32::from(letter)),
+    };
     let place: String = place.chars().map(plain).collect();
     folder.join(format!("{place}-id{id}.jsonl"))
 }
@@ -34,11 +39,7 @@ pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
 /// # Errors
 /// The system's, or that a line is none of ours.
 pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
-    let text = match std::fs::read_to_string(file) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(error),
-    };
+    let text = read_text(file, FILE_MAX)?.unwrap_or_default();
     let lines = text.lines().filter(|line| !line.trim().is_empty());
     let kept: Result<Vec<Kept>, _> = lines.map(serde_json::from_str).collect();
     kept.map_err(io::Error::from)
@@ -87,6 +88,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = file_of(folder.path(), &"tcp:127.0.0.1:6000".parse().unwrap());
         assert_eq!(read(&file).unwrap(), []);
+        let [left, right] = ["rtu:/tmp/a-1", "rtu:/tmp/a_1"].map(|it| it.parse().unwrap());
+        assert_ne!(
+            file_of(folder.path(), &left),
+            file_of(folder.path(), &right)
+        );
         for nth in 0..KEPT_MAX + 3 {
             let before = read(&file).unwrap();
             add(&file, &before, kept(nth)).unwrap();
@@ -97,5 +103,7 @@ mod tests {
         assert_eq!(all[KEPT_MAX - 1], kept(KEPT_MAX + 2));
         std::fs::write(&file, "no JSON\n").unwrap();
         read(&file).unwrap_err();
+        // A folder, a pipe or an endless file is none.
+        read(folder.path()).unwrap_err();
     }
 }

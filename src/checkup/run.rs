@@ -21,6 +21,8 @@ pub const LIMITS: Limits = Limits {
 };
 /// Each joint stops by itself this far above its zero, g.
 const THRESHOLD_G: f64 = 150.0;
+/// No threshold is lower, whatever the zero, g: noise alone would stop a joint.
+const LEAST_G: i64 = 20;
 /// How long nothing moves where it rests.
 const REST: Duration = Duration::from_secs(3);
 /// How long the hand may take to confirm a speed and a threshold.
@@ -32,6 +34,8 @@ const BEGINS_WITHIN: Duration = Duration::from_millis(1000);
 const STILL: i16 = 1;
 /// A joint this near to its target has arrived.
 const ARRIVED: i16 = 3;
+/// The angle from which on a joint is in no other's way.
+const OPEN_ENOUGH: i16 = 900;
 /// No stroke takes longer.
 const STROKE_MAX: Duration = Duration::from_secs(20);
 
@@ -61,8 +65,24 @@ enum Stage {
 struct RunningStep {
     stage: Stage,
     record: StepRecord,
+    /// The thresholds that were sent for it.
+    forces: PerDof<Option<Force>>,
     /// Where all joints stand still, and since when.
     pose: Option<(Moment, PerDof<i16>)>,
+}
+
+impl RunningStep {
+    /// A joint that should be open now and is far from it: the next would meet it on its way.
+    fn blocked(&self) -> Option<Dof> {
+        let targets = self.record.step.targets();
+        let opens = |dof: &Dof| targets[*dof] == Some(Angle::MAX);
+        let is_open = |dof: &Dof| {
+            let (_, pose) = self.pose.as_ref()?;
+            (pose[*dof] >= OPEN_ENOUGH).then_some(())
+        };
+        let mut opening = Dof::ALL.into_iter().filter(opens);
+        opening.find(|dof| is_open(dof).is_none())
+    }
 }
 
 /// A check-up in an arming that the user gave.
@@ -139,18 +159,21 @@ impl Checkup {
             self.running = Some(RunningStep {
                 stage: Stage::Resting,
                 record,
+                forces: PerDof::splat(None),
                 pose: None,
             });
             return None;
         }
+        let moved = step.targets();
+        let forces = PerDof::from_fn(|dof| moved[dof].map(|_| self.threshold(dof)));
         self.running = Some(RunningStep {
             stage: Stage::Confirming { since: now },
             record,
+            forces,
             pose: None,
         });
-        let moved = step.targets();
         Some(SeriesOrder::Set(Setpoints {
-            force: PerDof::from_fn(|dof| moved[dof].map(|_| self.threshold(dof))),
+            force: forces,
             speed: moved.map(|target| target.map(|_| step.speed())),
             ..Setpoints::none(self.epoch)
         }))
@@ -158,10 +181,10 @@ impl Checkup {
 
     /// Above what the joint says of nothing.
     fn threshold(&self, dof: Dof) -> Force {
-        let zero = self.zero_g[dof].unwrap_or_default().max(0.0);
+        let zero = self.zero_g[dof].unwrap_or_default();
         #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
         let grams = (zero + THRESHOLD_G).round() as i64;
-        Force::nearest(grams.min(Force::GENTLE.get().into()))
+        Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
     }
 
     fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<SeriesOrder> {
@@ -172,7 +195,7 @@ impl Checkup {
             let speeds = sample.speed_set.filter(|own| own.asked >= since);
             let forces = sample.force_set.filter(|own| own.asked >= since);
             let has_speed = speeds.is_some_and(|own| own.value[dof] == Some(speed));
-            has_speed && forces.is_some_and(|own| own.value[dof] == Some(self.threshold(dof)))
+            has_speed && forces.is_some_and(|own| own.value[dof] == running.forces[dof])
         };
         let mut moved = Dof::ALL.into_iter().filter(|dof| targets[*dof].is_some());
         if let Some(dof) = moved.find(|dof| !holds(*dof)) {
@@ -259,6 +282,9 @@ impl Steered for Checkup {
         if let Some(why) = reason(link, self.epoch, &seen, &LIMITS) {
             return Some(self.fail(why));
         }
+        if self.zero_g.iter().any(|(_, zero)| zero.is_none()) {
+            return None;
+        }
         let Some(running) = &self.running else {
             let warm = warmest(sample).filter(|(_, celsius)| *celsius >= LIMITS.start_c);
             if let Some((dof, celsius)) = warm.filter(|_| self.left.len() == self.total) {
@@ -292,6 +318,10 @@ impl Steered for Checkup {
         };
         if !is_over {
             return None;
+        }
+        if let Some(dof) = running.blocked() {
+            let target = Angle::MAX.get();
+            return Some(self.fail(Abort::Unreached { dof, target }));
         }
         self.close_step(sample);
         self.next(sample, now)

@@ -142,7 +142,10 @@ fn outcome(args: &GripArgs, report: &GripReport) -> Result<String, String> {
         ),
         GripEnd::Late => Err("the hand did not get there in time".into()),
         GripEnd::Person => Err("ended by a person".into()),
-        GripEnd::Broken(why) => Err(broken(why).into()),
+        GripEnd::Broken(why) => Err(match report.disarmed {
+            Some(disarmed) => format!("{}: {disarmed}", broken(why)),
+            None => broken(why).into(),
+        }),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::hand::{
 use crate::link::{Clock, Lease};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{Targets, way};
-use crate::record::{Record, Rest};
+use crate::record::{Disarmed, Record, Rest};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
 use crate::tasks::series::{self, Stop};
@@ -73,6 +73,8 @@ pub enum GripEnd {
 pub struct GripReport {
     /// How it ended.
     pub end: GripEnd,
+    /// Why the hand was not armed any more then, if it was not.
+    pub disarmed: Option<Disarmed>,
     /// Between the pads then, in mm by the model; `None` where they do not face each other, or angles are old.
     pub gap_mm: Option<f32>,
     /// What the hand gripped then.
@@ -112,17 +114,22 @@ pub async fn grip<H: TaskHand>(
             break end;
         }
     };
+    let disarmed = hand.status().disarmed;
     let stop = match end {
-        GripEnd::Person | GripEnd::Late => Some(series::hold(hand, &mut records).await),
-        GripEnd::Held | GripEnd::Reached | GripEnd::Stopped | GripEnd::NotOpened => {
+        GripEnd::Held | GripEnd::Reached => {
             hand.disarm();
             None
         }
-        // Whatever broke it has stopped the hand, or cannot.
-        GripEnd::Broken(_) => None,
+        // Nothing goes on pressing what is not held, and what another wrote is no reason to go on.
+        GripEnd::Stopped
+        | GripEnd::NotOpened
+        | GripEnd::Late
+        | GripEnd::Person
+        | GripEnd::Broken(_) => Some(series::hold(hand, &mut records).await),
     };
     GripReport {
         end,
+        disarmed,
         gap_mm: run
             .angles()
             .and_then(|angles| held_gap(&angles.map(f32::from))),
@@ -130,6 +137,9 @@ pub async fn grip<H: TaskHand>(
         stop,
     }
 }
+
+/// Counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
+const COUNTS: f32 = 2.0;
 
 /// A part of the way.
 #[derive(Debug, Clone, Copy)]
@@ -250,5 +260,6 @@ fn legs(from: &PerDof<i16>, start: &GripStart) -> Vec<Leg> {
 fn limit(leg: &Leg) -> Duration {
     let fastest = leg.speeds.as_array().iter().map(|speed| speed.get()).max();
     let per_s = COUNTS_PER_SPEED_S * f32::from(fastest.unwrap_or(1).max(1));
-    Duration::from_secs_f32(f32::from(Angle::MAX.get()) / per_s) + SPARE
+    let stroke = COUNTS * f32::from(Angle::MAX.get());
+    Duration::from_secs_f32(stroke / per_s) + SPARE
 }

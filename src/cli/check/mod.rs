@@ -35,6 +35,12 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
         let name = file.as_deref().unwrap_or(Path::new("")).display();
         format!("the earlier check-ups of this hand in {name} cannot be read; move the file away, or name another folder with --folder")
     })?;
+    if let Some(folder) = file.as_deref().and_then(Path::parent) {
+        store::create_folder(folder).with_context(|| {
+            let name = folder.display();
+            format!("check-ups cannot be kept in {name}; name another folder with --folder")
+        })?;
+    }
     if let Some(folder) = &args.out {
         store::create_empty_folder(folder)
             .with_context(|| format!("cannot store the report in {}", folder.display()))?;
@@ -74,15 +80,13 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
             hand: head.hand.clone(),
             figures: checkup.measured(),
         };
-        if let Err(error) = kept::add(file, &earlier, own) {
+        // Another may have been added meanwhile.
+        if let Err(error) = kept::read(file).and_then(|before| kept::add(file, &before, own)) {
             say(&format!(
                 "this check-up is not kept in {}: {error}",
                 file.display()
             ));
         }
-    }
-    if let Some(folder) = &args.out {
-        write(folder, &head, &checks)?;
     }
     out.result(
         args.json,
@@ -90,6 +94,9 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
         output::lines(&head, &checks),
     )?;
     out.flush()?;
+    if let Some(folder) = &args.out {
+        write(folder, &head, &checks)?;
+    }
     match &head.aborted {
         Some(why) => bail!("the check-up ended early, its report is partial: {why}"),
         None => end(checks.iter().all(|check| check.light != Light::Act)),

@@ -35,7 +35,13 @@ pub(crate) fn json(head: &ReportHead, checks: &[Check]) -> Value {
 
 /// What is not as it should be, and what to do, with the summary.
 pub(crate) fn lines(head: &ReportHead, checks: &[Check]) -> Vec<String> {
-    let told = checks.iter().filter(|check| check.light != Light::Fine);
+    // What a partial one did not come to is no news.
+    let is_told = |light| match light {
+        Light::Fine => false,
+        Light::Unknown => head.aborted.is_none(),
+        Light::Watch | Light::Act => true,
+    };
+    let told = checks.iter().filter(|check| is_told(check.light));
     let mut lines: Vec<String> = told.map(line).collect();
     lines.push(head.summary.clone());
     lines

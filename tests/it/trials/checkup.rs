@@ -102,3 +102,18 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
         .find(|check| check.measured.what == Subject::SlowerTogether);
     assert_eq!(supply.unwrap().light, Light::Unknown);
 }
+
+#[test]
+fn no_joint_moves_while_another_does_not_open() {
+    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let (checkup, stopped) = hand.steer(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+        let is_bent = hand.true_angles()[Dof::Index] < 500.0;
+        if is_bent && checkup.view().joint == Some(Dof::Index) {
+            hand.set_dead(Dof::Index, true);
+        }
+    });
+    let target = 1000;
+    let dof = Dof::Index;
+    assert_eq!(checkup.aborted(), Some(Abort::Unreached { dof, target }));
+    assert!(stopped && hand.hand.true_angles()[Dof::ThumbBend] > 990.0);
+}
