@@ -120,6 +120,8 @@ pub async fn grip<H: TaskHand>(
             hand.disarm();
             None
         }
+        // Who has the hand now moves it.
+        GripEnd::Broken(PlayEnd::TakenOver) => None,
         // Nothing goes on pressing what is not held, and what another wrote is no reason to go on.
         GripEnd::Stopped
         | GripEnd::NotOpened
