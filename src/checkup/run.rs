@@ -9,7 +9,7 @@ use crate::hand::{
 };
 use crate::trials::Limits;
 use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
-use crate::trials::series::{SeriesOrder, Steered};
+use crate::trials::series::{Series, SeriesOrder};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -225,7 +225,7 @@ impl Checkup {
     }
 }
 
-impl Steered for Checkup {
+impl Series for Checkup {
     fn is_over(&self) -> bool {
         self.is_over
     }

@@ -1,7 +1,7 @@
 //! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to
 //! the gap or to what stands between them.
 
-use crate::hand::gap::{Gap, gap_of_held, held_gap};
+use crate::hand::gap::{Gap, gap_on_path, held_gap};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Force, Groups, HandSample, Moment, PerDof, Setpoints, Speed,
@@ -134,7 +134,7 @@ pub async fn grip<H: TaskHand>(
         disarmed,
         gap_mm: run
             .angles()
-            .and_then(|angles| held_gap(&angles.map(f32::from))),
+            .and_then(|angles| gap_on_path(&angles.map(f32::from))),
         grip: run.estimator.grip(),
         stop,
     }
@@ -211,7 +211,7 @@ impl<H: TaskHand> GripRun<'_, H> {
     fn at_rest(&self, leg: Leg, arrived: bool) -> GripEnd {
         let angle = self.sample.angle.map(|angle| angle.value);
         let grip = self.estimator.grip();
-        let gap = angle.and_then(|angle| gap_of_held(&grip, &angle));
+        let gap = angle.and_then(|angle| held_gap(&grip, &angle));
         match gap {
             Some(_) => GripEnd::Held,
             None if arrived => GripEnd::Reached,
@@ -239,7 +239,7 @@ impl<H: TaskHand> GripRun<'_, H> {
 
 /// The way from these angles: open first, unless the hand is on the path already, then along the path.
 fn legs(from: &PerDof<i16>, start: &GripStart) -> Vec<Leg> {
-    let on_path = held_gap(&from.map(f32::from));
+    let on_path = gap_on_path(&from.map(f32::from));
     let mut legs = Vec::with_capacity(5);
     if on_path.is_none() {
         let opened = way(&from.map(Some), &Gap::MAX.angles().map(Some));

@@ -8,7 +8,7 @@ use crate::tasks::hand::TaskHand;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::{SearchProgress, SettingsSearch};
-use crate::trials::series::{SeriesOrder, SeriesView, Steered, TrialSeries};
+use crate::trials::series::{Series, SeriesOrder, SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
 use std::time::Duration;
@@ -74,7 +74,7 @@ pub struct SeriesStart<S = TrialSeries> {
 
 /// Runs a series of trials to its end, and gives it back. `tell` says whether it could keep what it was told; else the series ends.
 /// `ended` resolves when the user ends it. At the end the hand is not armed any more.
-pub async fn series<H: TaskHand>(
+pub async fn trials<H: TaskHand>(
     hand: &H,
     mut start: SeriesStart,
     ended: impl Future<Output = Abort>,
@@ -85,7 +85,7 @@ pub async fn series<H: TaskHand>(
         let _nothing_moves_yet = start.series.end(Abort::NotKept, now);
     }
     let mut shown = None;
-    steer(hand, start, ended, |series| {
+    run(hand, start, ended, |series| {
         tell_news(series, &mut shown, &mut tell)
     })
     .await
@@ -93,7 +93,7 @@ pub async fn series<H: TaskHand>(
 
 /// Runs what moves a hand from its readings to its end, and gives it back. `tell` sees it after each reading, and says whether it
 /// could keep what is new; else it ends. `ended` resolves when the user ends it. At the end the hand is not armed any more.
-pub async fn steer<H: TaskHand, S: Steered>(
+pub async fn run<H: TaskHand, S: Series>(
     hand: &H,
     start: SeriesStart<S>,
     ended: impl Future<Output = Abort>,

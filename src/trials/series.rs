@@ -17,7 +17,7 @@ pub const COOLING_MAX: Duration = Duration::from_secs(900);
 const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
 
 /// What moves a hand from its readings until it is over: a series of trials, a check-up.
-pub trait Steered {
+pub trait Series {
     /// True once nothing is sent any more.
     fn is_over(&self) -> bool;
     /// Why it ended early, if it did.
@@ -334,7 +334,7 @@ impl TrialSeries {
     }
 }
 
-impl Steered for TrialSeries {
+impl Series for TrialSeries {
     fn is_over(&self) -> bool {
         matches!(self.phase, SeriesPhase::Over)
     }

@@ -8,7 +8,7 @@ use crate::hand::{ArmEpoch, Setpoints};
 use crate::record::LinkState;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
-use crate::trials::series::{SeriesOrder, Steered, TrialSeries};
+use crate::trials::series::{Series, SeriesOrder, TrialSeries};
 use crate::trials::summary::{Trial, TrialKind};
 use std::time::Duration;
 

@@ -7,14 +7,14 @@ use crate::hand::{AngleReading, Dof, Moment, PerDof, Target};
 
 /// What the hand grips now; unknown while feedback does not follow what the hand was told.
 pub fn grip_now(hand: &Hand, now: Moment) -> Grip {
-    let is_believed = hand.connection.is_live() && hand.connection.status.is_believed();
+    let is_believed = hand.connection.status.is_believed();
     hand.readings.grip.known(is_believed, now)
 }
 
 /// Between the pads of thumb and index while they alone hold something, mm by the model.
 pub fn held_gap(hand: &Hand, now: Moment) -> Option<f32> {
     let angle = hand.readings.sample.angle?;
-    gap::gap_of_held(&grip_now(hand, now), &angle.value)
+    gap::held_gap(&grip_now(hand, now), &angle.value)
 }
 
 /// Whether a joint that pinches is locked.
@@ -30,7 +30,7 @@ pub fn is_open_for_pinch(hand: &Hand) -> bool {
 }
 
 /// The angles, where all are known.
-fn counts(hand: &Hand) -> Option<PerDof<f32>> {
+pub fn counts(hand: &Hand) -> Option<PerDof<f32>> {
     let angle = hand.readings.sample.angle?;
     let counts = angle.value.map(AngleReading::documented).all()?;
     Some(counts.map(f32::from))

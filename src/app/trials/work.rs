@@ -13,7 +13,7 @@ use crate::hand::{ArmEpoch, Dof, HandSample, Moment, PerDof};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::{SeriesStart, SeriesStep, series};
+use crate::tasks::series::{self, SeriesStart, SeriesStep};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;
@@ -166,7 +166,7 @@ impl SeriesRun {
                 steps.tell(step);
                 true
             };
-            let (ended, report) = series(&link, start, ended, tell).await;
+            let (ended, report) = series::trials(&link, start, ended, tell).await;
             let search = ended.settings_search();
             SeriesEnd {
                 aborted: report.aborted,

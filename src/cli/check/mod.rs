@@ -52,7 +52,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     let mut hand = ArmedHand::ready(&args.hand, limits).await?;
     let mut told = None;
     let (checkup, ended) = hand
-        .steer(Checkup::start(hand.epoch), |checkup: &mut Checkup| {
+        .run(Checkup::start(hand.epoch), |checkup: &mut Checkup| {
             let view = checkup.view();
             if told.replace(view) != Some(view) && !args.json {
                 output::progress(view);

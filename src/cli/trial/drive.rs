@@ -13,7 +13,7 @@ use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
 use crate::transport::Endpoint;
-use crate::trials::series::Steered;
+use crate::trials::series::Series;
 use crate::trials::{Abort, TrialPlan, TrialSeries};
 use anyhow::bail;
 use std::time::Duration;
@@ -39,7 +39,7 @@ pub(crate) async fn drive(
     let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(plan)).await?;
     let mut results = hand.results(out, wanted, plan).await?;
     let series = TrialSeries::start(plan.clone(), hand.epoch, hand.clock.now())?;
-    let (_series, report) = hand.run(series, &mut results).await;
+    let (_series, report) = hand.run_trials(series, &mut results).await;
     let trials = results.close(report.aborted, None)?;
     Ok(Outcome::of(trials, report, args.criterion()))
 }
@@ -100,8 +100,8 @@ impl ArmedHand {
         }
     }
 
-    /// Runs a series of trials to its end, as [`Self::steer`] does.
-    pub(crate) async fn run(
+    /// Runs a series of trials to its end, as [`Self::run`] does.
+    pub(crate) async fn run_trials(
         &mut self,
         series: TrialSeries,
         results: &mut TrialResults<'_>,
@@ -109,21 +109,21 @@ impl ArmedHand {
         let start = self.start(series);
         let take = |step| results.take(step);
         let ended = by_user(&mut self.interrupt);
-        let ended = series::series(&self.link, start, ended, take).await;
+        let ended = series::trials(&self.link, start, ended, take).await;
         self.let_go(ended.1).await;
         ended
     }
 
-    /// Runs what moves the hand to its end, says what the user must know of the stop, and waits until the hand is not armed any
-    /// more. `tell` as of [`series::steer`].
-    pub(crate) async fn steer<S: Steered>(
+    /// Runs a series to its end, says what the user must know of the stop, and waits until the hand is not armed any
+    /// more. `tell` as of [`series::run`].
+    pub(crate) async fn run<S: Series>(
         &mut self,
-        steered: S,
+        series: S,
         tell: impl FnMut(&mut S) -> bool,
     ) -> (S, SeriesReport) {
-        let start = self.start(steered);
+        let start = self.start(series);
         let ended = by_user(&mut self.interrupt);
-        let ended = series::steer(&self.link, start, ended, tell).await;
+        let ended = series::run(&self.link, start, ended, tell).await;
         self.let_go(ended.1).await;
         ended
     }

@@ -54,7 +54,7 @@ async fn run_search(
     let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(&plan)).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
     let search = TrialSeries::search(search, hand.epoch, hand.clock.now());
-    let (searched, ended) = hand.run(search, &mut results).await;
+    let (searched, ended) = hand.run_trials(search, &mut results).await;
     let search = searched.settings_search();
     let report = SearchReport {
         series: ended,

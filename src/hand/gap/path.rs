@@ -97,7 +97,14 @@ impl Gap {
 
     /// Straight to another gap, off the path where that has its corner between: for small steps.
     pub fn straight_to(self, to: Self) -> PinchLeg {
-        PinchLeg::between(self, to)
+        let (start, to) = (self.angles(), to.angles());
+        let ways = PerDof::from_fn(|dof| f32::from(start[dof].get().abs_diff(to[dof].get())));
+        let longest = ways.as_array().iter().copied().fold(0.0, f32::max);
+        let share = |way: f32| if way > 0.0 { way / longest } else { 1.0 };
+        PinchLeg {
+            to,
+            shares: ways.map(share),
+        }
     }
 
     /// How far along the path, in corners: 0 where the pads meet.
@@ -138,17 +145,6 @@ pub struct PinchLeg {
 }
 
 impl PinchLeg {
-    fn between(from: Gap, to: Gap) -> Self {
-        let (start, to) = (from.angles(), to.angles());
-        let ways = PerDof::from_fn(|dof| f32::from(start[dof].get().abs_diff(to[dof].get())));
-        let longest = ways.as_array().iter().copied().fold(0.0, f32::max);
-        let share = |way: f32| if way > 0.0 { way / longest } else { 1.0 };
-        Self {
-            to,
-            shares: ways.map(share),
-        }
-    }
-
     /// Speeds at which all joints arrive together, the fastest at this one.
     pub fn speeds(&self, fastest: Speed) -> PerDof<Speed> {
         let least = fastest.min(Speed::nearest(1));
@@ -175,7 +171,7 @@ pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
 }
 
 /// The gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
-pub fn held_gap(counts: &PerDof<f32>) -> Option<f32> {
+pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     let gap = pad_distance(counts);
     let meant = Gap::new(gap).ok()?.angles();
     let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
@@ -184,7 +180,7 @@ pub fn held_gap(counts: &PerDof<f32>) -> Option<f32> {
 }
 
 /// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.
-pub fn gap_of_held(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
+pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
     let holds = |state| {
         matches!(
             state,
@@ -195,7 +191,7 @@ pub fn gap_of_held(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
         holds(estimate.state) == matches!(finger, Finger::Thumb | Finger::Index)
     });
     let counts = angles.map(|angle| angle.documented().map(f32::from));
-    held_gap(&counts.all()?).filter(|_| is_pinch)
+    gap_on_path(&counts.all()?).filter(|_| is_pinch)
 }
 
 /// Index and thumb bend so far along the path, in counts.
@@ -333,7 +329,7 @@ mod tests {
     #[test]
     fn what_is_gripped_is_read_back_from_the_angles_and_an_open_or_clenched_hand_has_no_gap() {
         for gap in all_gaps() {
-            let read = held_gap(&counts(gap));
+            let read = gap_on_path(&counts(gap));
             // The last counts may round beyond an end.
             let Some(read) = read else {
                 assert!(gap.mm() < 3.2 || gap.mm() > 119.8, "{gap:?}");
@@ -342,11 +338,11 @@ mod tests {
             assert!((read - gap.mm()).abs() < 0.2, "{gap:?}: {read}");
         }
         for elsewhere in [1000.0, 500.0, 0.0] {
-            assert_eq!(held_gap(&PerDof::splat(elsewhere)), None);
+            assert_eq!(gap_on_path(&PerDof::splat(elsewhere)), None);
         }
         let mut aside = counts(Gap::nearest(30.0));
         aside[Dof::ThumbRotate] = 200.0;
-        assert_eq!(held_gap(&aside), None, "the thumb is beside the index");
+        assert_eq!(gap_on_path(&aside), None, "the thumb is beside the index");
     }
 
     #[test]
@@ -359,7 +355,7 @@ mod tests {
             for finger in fingers {
                 grip.fingers[*finger].state = GripState::Holding;
             }
-            gap_of_held(&grip, &angles)
+            held_gap(&grip, &angles)
         };
         let told = held(&[Finger::Index, Finger::Thumb]).unwrap();
         assert!((told - 30.0).abs() < 0.2, "{told}");

@@ -4,7 +4,7 @@ use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof
 use crate::link::{Owner, PollRates};
 use crate::record::LinkState;
 use crate::tasks::TaskHand;
-use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, series};
+use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, trials};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::limits::Abort;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};
@@ -72,7 +72,7 @@ impl Bench {
                 told.lock().unwrap().push(step);
                 true
             };
-            series(&link, start, ended, tell).await
+            trials(&link, start, ended, tell).await
         });
         Self {
             hand,

@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::hands::grip;
-use crate::hand::gap::{Block, Gap, GripKind, held_gap};
-use crate::hand::{Angle, AngleReading};
+use crate::hand::Angle;
+use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
 use crate::ui::hand::{aim, figures};
 use crate::ui::kit::{Button, Label, NumberField, Pane};
 use crate::ui::text::{Text, main, poses};
@@ -63,11 +63,8 @@ fn gap_now(pane: &Pane<'_>) -> Gap {
     let hand = pane.state.hand();
     let targets = hand.controls.joints.map(|joint| joint.target).all();
     let sent = targets.map(|angles| angles.map(|angle: Angle| f32::from(angle.get())));
-    let angle = hand.readings.sample.angle;
-    let actual = angle.and_then(|angle| angle.value.map(AngleReading::documented).all());
-    let actual = actual.map(|angles| angles.map(f32::from));
-    let gap = [sent, actual].into_iter().flatten();
-    let gap = gap.filter_map(|counts| held_gap(&counts)).next();
+    let gap = [sent, grip::counts(hand)].into_iter().flatten();
+    let gap = gap.filter_map(|counts| gap_on_path(&counts)).next();
     gap.map_or(Gap::MAX, Gap::nearest)
 }
 

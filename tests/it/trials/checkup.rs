@@ -8,7 +8,7 @@ use handscope::hand::{ArmEpoch, Dof, Fault};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
 use handscope::trials::Abort;
-use handscope::trials::series::Steered;
+use handscope::trials::series::Series;
 
 #[test]
 fn healthy_bodies_are_told_to_be_healthy() {
@@ -55,7 +55,7 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
 #[test]
 fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, _) = hand.steer(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, _) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
     assert_eq!(checkup.aborted(), None);
     for entry in hand.hand.journal() {
         let (shorts, _) = entry.bytes.as_chunks::<2>();
@@ -71,7 +71,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
     }
     let block = object(13.0, None);
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &block);
-    let (checkup, stopped) = hand.steer(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
     let Some(Abort::Ceiling { grams, .. }) = checkup.aborted() else {
         panic!("{:?}", checkup.aborted());
     };
@@ -80,7 +80,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
         "{grams}"
     );
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.steer(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
         if checkup.view().joint == Some(Dof::Index) {
             hand.inject_fault(Dof::Index, Fault::OverCurrent);
         }
@@ -106,7 +106,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
 #[test]
 fn no_joint_moves_while_another_does_not_open() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.steer(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
         let is_bent = hand.true_angles()[Dof::Index] < 500.0;
         if is_bent && checkup.view().joint == Some(Dof::Index) {
             hand.set_dead(Dof::Index, true);

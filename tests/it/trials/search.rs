@@ -9,7 +9,7 @@ use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::tasks::series::{
-    RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, series,
+    RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, trials,
 };
 use handscope::trials::search::{Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch};
 use handscope::trials::{Abort, TrialSeries};
@@ -65,7 +65,7 @@ fn meanwhile(
     let mut hand = VirtualHand::new(body, 3, before);
     let series = hand.search(goal);
     let mut last = usize::MAX;
-    hand.run(series, |hand, series: &mut TrialSeries| {
+    hand.run_trials(series, |hand, series: &mut TrialSeries| {
         let number = series.view().number;
         if number != last {
             last = number;
@@ -237,7 +237,7 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
         }
     };
     let mut steps = Vec::new();
-    let (ended, report) = series(&link, start, ended, |step| {
+    let (ended, report) = trials(&link, start, ended, |step| {
         let trials = |step: &SeriesStep| matches!(step, SeriesStep::Trial(_));
         steps.push(step);
         let count = steps.iter().filter(|own| trials(own)).count();

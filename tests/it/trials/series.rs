@@ -9,7 +9,7 @@ use handscope::record::{Hold, LinkState, Record};
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
 use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
-use handscope::trials::series::Steered;
+use handscope::trials::series::Series;
 use handscope::trials::{
     Abort, Approach, Criterion, EarlyEnd, Limits, LinkView, SeriesOrder, Trial, TrialEvent,
     TrialGrid, TrialKind, TrialPlan, TrialSeries, Until,

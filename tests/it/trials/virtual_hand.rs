@@ -13,7 +13,7 @@ use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
-use handscope::trials::series::Steered;
+use handscope::trials::series::Series;
 use handscope::trials::{
     Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
     Until,
@@ -57,14 +57,14 @@ impl VirtualHand {
         }
     }
 
-    /// Runs a series to its end. `meanwhile` may interfere after each reading.
-    pub(crate) fn run(
+    /// Runs trials to their end. `meanwhile` may interfere after each reading.
+    pub(crate) fn run_trials(
         &mut self,
         series: TrialSeries,
         mut meanwhile: impl FnMut(&mut SimHand, &mut TrialSeries),
     ) -> Run {
         let mut trials = Vec::new();
-        let (series, stopped) = self.steer(series, |hand, series| {
+        let (series, stopped) = self.run(series, |hand, series| {
             while let Some(trial) = series.finished() {
                 trials.push(trial);
             }
@@ -78,8 +78,8 @@ impl VirtualHand {
         }
     }
 
-    /// Runs what moves a hand to its end, and whether it ended in a stop.
-    pub(crate) fn steer<S: Steered>(
+    /// Runs a series to its end, and whether it ended in a stop.
+    pub(crate) fn run<S: Series>(
         &mut self,
         mut series: S,
         mut meanwhile: impl FnMut(&mut SimHand, &mut S),
@@ -102,7 +102,7 @@ impl VirtualHand {
         (series, stopped)
     }
 
-    fn read(&mut self, series: &mut impl Steered) {
+    fn read(&mut self, series: &mut impl Series) {
         self.now = self.now.plus(EACH);
         self.round += 1;
         let often = [Group::Angle, Group::Force, Group::Current, Group::Status];
@@ -157,7 +157,7 @@ impl VirtualHand {
     /// Searches.
     pub(crate) fn tune(&mut self, goal: &SearchGoal) -> Run {
         let search = SettingsSearch::new(goal.clone()).unwrap();
-        self.run(TrialSeries::search(search, EPOCH, self.now), |_, _| ())
+        self.run_trials(TrialSeries::search(search, EPOCH, self.now), |_, _| ())
     }
 
     pub(crate) fn search(&self, goal: &SearchGoal) -> TrialSeries {
@@ -205,7 +205,7 @@ impl VirtualHand {
             ..TrialPlan::default()
         };
         let series = TrialSeries::start(plan, EPOCH, self.now).unwrap();
-        let run = self.run(series, |_, _| ());
+        let run = self.run_trials(series, |_, _| ());
         assert_eq!(run.aborted, None);
         run.trials
     }

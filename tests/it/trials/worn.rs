@@ -7,7 +7,7 @@ use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
-use handscope::trials::series::Steered;
+use handscope::trials::series::Series;
 
 pub(crate) const JOINT: Dof = Dof::Middle;
 const TIP: Finger = Finger::Ring;
@@ -16,7 +16,7 @@ const TIP: Finger = Finger::Ring;
 pub(crate) fn checked(body: BodyParams, seed: u64, first: &[Check]) -> Vec<Check> {
     let first: Vec<_> = first.iter().map(|check| check.measured).collect();
     let mut hand = VirtualHand::new(body, seed, &Object::none());
-    let (checkup, stopped) = hand.steer(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
     assert_eq!((checkup.aborted(), stopped), (None, false));
     checkup.checks(&first, &first)
 }
