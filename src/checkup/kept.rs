@@ -48,13 +48,13 @@ pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
 /// Adds one to those of a file, whole or not at all.
 ///
 /// # Errors
-/// The system's.
-pub fn add(file: &Path, before: &[Kept], kept: Kept) -> io::Result<()> {
-    let first = before.first().cloned();
-    let later = before.iter().skip(1).cloned();
-    let skipped = before.len().saturating_sub(KEPT_MAX - 1);
-    let all = first.into_iter().chain(later.skip(skipped)).chain([kept]);
-    let lines: Result<Vec<String>, _> = all.map(|kept| serde_json::to_string(&kept)).collect();
+/// As [`read`], and the system's.
+pub fn add(file: &Path, kept: Kept) -> io::Result<()> {
+    let mut all = read(file)?;
+    all.push(kept);
+    let old = 1..all.len().saturating_sub(KEPT_MAX - 1).max(1);
+    all.drain(old);
+    let lines: Result<Vec<String>, _> = all.iter().map(serde_json::to_string).collect();
     replace_keeping_last(file, &(lines?.join("\n") + "\n"))
 }
 
@@ -62,14 +62,14 @@ pub fn add(file: &Path, before: &[Kept], kept: Kept) -> io::Result<()> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
-    use crate::checkup::subject::{Of, Subject};
+    use crate::checkup::subject::{Part, Subject};
     use crate::hand::{Dof, Finger};
 
     fn kept(nth: usize) -> Kept {
         let of = [
-            Of::Joint(Dof::ThumbBend),
-            Of::Fingertip(Finger::Ring),
-            Of::Hand,
+            Part::Joint(Dof::ThumbBend),
+            Part::Fingertip(Finger::Ring),
+            Part::Hand,
         ];
         let measured = of.map(|of| Measured {
             what: Subject::Backlash,
@@ -94,8 +94,7 @@ mod tests {
             file_of(folder.path(), &right)
         );
         for nth in 0..KEPT_MAX + 3 {
-            let before = read(&file).unwrap();
-            add(&file, &before, kept(nth)).unwrap();
+            add(&file, kept(nth)).unwrap();
         }
         let all = read(&file).unwrap();
         assert_eq!(all.len(), KEPT_MAX);

@@ -1,16 +1,22 @@
 //! What the readings of a check-up come to, as figures with units. Judges nothing.
 
 use crate::checkup::steps::{SPEEDS, Step, Way};
-use crate::checkup::subject::{Of, Subject};
+use crate::checkup::subject::{Part, Subject};
 use crate::hand::statistics::{count, mean, median, spread};
-use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger, Timed};
+use crate::hand::{
+    AngleReading, CurrentReading, Dof, Finger, ForceReading, Group, Groups, HandSample, Moment,
+    PerDof, PerFinger, PositionReading, Timed,
+};
+use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
-/// The angle of an open joint, and counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
-const OPEN: f64 = 1000.0;
+/// Counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
 const COUNTS: f64 = 2.0;
+/// The angle at which the positions of both ways are compared.
+const HALF_WAY: f64 = 500.0;
 /// The middle of a stroke, where a joint goes at its full speed.
-const MIDDLE: [f64; 2] = [0.25, 0.75];
+const MIDDLE: RangeInclusive<f64> = 0.25..=0.75;
 /// A channel of a fingertip is dead that never differs in so many readings.
 const TIP_READINGS: usize = 20;
 
@@ -20,7 +26,7 @@ pub struct Measured {
     /// What was measured.
     pub what: Subject,
     /// Of what.
-    pub of: Of,
+    pub of: Part,
     /// In the unit of the subject.
     pub value: Option<f64>,
 }
@@ -51,22 +57,25 @@ fn at_s<T>(read: &Timed<T>) -> f64 {
 impl Reading {
     /// What is new; `None` if nothing of the joints is.
     pub(crate) fn of(sample: &HandSample, fresh: Groups) -> Option<Self> {
-        let position = sample.position.filter(|_| fresh.contains(Group::Position));
-        let angle = sample.angle.filter(|_| fresh.contains(Group::Angle));
-        let force = sample.force.filter(|_| fresh.contains(Group::Force));
-        let current = sample.current.filter(|_| fresh.contains(Group::Current));
-        let times = [
-            position.as_ref().map(at_s),
-            angle.as_ref().map(at_s),
-            force.as_ref().map(at_s),
-            current.as_ref().map(at_s),
-        ];
+        fn raw<T: Copy>(read: Timed<PerDof<T>>, raw: fn(T) -> i16) -> (f64, PerDof<f64>) {
+            (at_s(&read), read.value.map(|own| raw(own).into()))
+        }
+        let new = |group| fresh.contains(group);
+        let position = sample.position.filter(|_| new(Group::Position));
+        let position = position.map(|read| raw(read, PositionReading::raw));
+        let angle = sample.angle.filter(|_| new(Group::Angle));
+        let angle = angle.map(|read| raw(read, AngleReading::raw));
+        let force = sample.force.filter(|_| new(Group::Force));
+        let force = force.map(|read| raw(read, ForceReading::raw));
+        let current = sample.current.filter(|_| new(Group::Current));
+        let current = current.map(|read| raw(read, CurrentReading::raw));
+        let all = [position, angle, force, current];
         Some(Self {
-            at_s: times.into_iter().flatten().next()?,
-            position: position.map(|own| own.value.map(|reading| reading.raw().into())),
-            angle: angle.map(|own| own.value.map(|reading| reading.raw().into())),
-            force: force.map(|own| own.value.map(|reading| reading.raw().into())),
-            current: current.map(|own| own.value.map(|reading| reading.raw().into())),
+            at_s: all.into_iter().flatten().map(|(at_s, _)| at_s).next()?,
+            position: position.map(|(_, six)| six),
+            angle: angle.map(|(_, six)| six),
+            force: force.map(|(_, six)| six),
+            current: current.map(|(_, six)| six),
         })
     }
 }
@@ -90,10 +99,9 @@ pub(crate) struct StepRecord {
     pub(crate) told: Moment,
     pub(crate) readings: Vec<Reading>,
     pub(crate) tips: Vec<TipReading>,
+    /// How warm the drives were when it was over, degrees; of a rest.
+    pub(crate) warmth: Option<PerDof<Option<u8>>>,
 }
-
-/// What the readings give of one quantity of one joint, with their times.
-type Line = Vec<(f64, f64)>;
 
 impl StepRecord {
     pub(crate) const fn new(step: Step, told: Moment) -> Self {
@@ -102,10 +110,12 @@ impl StepRecord {
             told,
             readings: Vec::new(),
             tips: Vec::new(),
+            warmth: None,
         }
     }
 
-    fn line(&self, dof: Dof, of: fn(&Reading) -> Option<PerDof<f64>>) -> Line {
+    /// One quantity of a joint from the command on; times as of the program's clock.
+    fn curve(&self, dof: Dof, of: fn(&Reading) -> Option<PerDof<f64>>) -> TimeSeries {
         let told = self.told.secs();
         let later = self.readings.iter().filter(|own| own.at_s >= told);
         later
@@ -115,45 +125,33 @@ impl StepRecord {
 
     /// What each force sensor says of nothing, g.
     pub(crate) fn zeros(&self) -> PerDof<Option<f64>> {
-        PerDof::from_fn(|dof| mean(&values(&self.line(dof, |own| own.force))))
+        PerDof::from_fn(|dof| mean(&values(&self.curve(dof, |own| own.force))))
     }
 
     fn stroke(&self, dof: Dof) -> Stroke {
-        let angle = self.line(dof, |own| own.angle);
+        let angle = self.curve(dof, |own| own.angle);
         // Angles are read often, positions seldom.
-        let way = angle
-            .iter()
-            .map(|(at, angle)| (*at, COUNTS * (OPEN - angle)));
-        let way: Line = way.collect();
-        let first = way.first().map(|(_, value)| *value);
-        let last = way.last().map(|(_, value)| *value);
-        let middle = first.zip(last).map(|(first, last)| {
-            let inside = |value: f64| {
-                let part = (value - first) / (last - first);
-                (MIDDLE[0]..=MIDDLE[1]).contains(&part)
-            };
-            let inside = way.iter().filter(|(_, value)| inside(*value));
-            inside.copied().collect::<Line>()
+        let ends = angle.points().first().zip(angle.points().last());
+        let part =
+            |at: &CurvePoint| ends.map(|(first, last)| (at.v - first.v) / (last.v - first.v));
+        let is_middle = |at: &CurvePoint| part(at).is_some_and(|part| MIDDLE.contains(&part));
+        let middle: Vec<CurvePoint> = angle.points().iter().copied().filter(is_middle).collect();
+        let fit = Fit::of(&middle);
+        let begins_s = fit
+            .zip(ends)
+            .map(|(fit, (first, _))| fit.at_s + (first.v - fit.value) / fit.slope);
+        let during = middle.first().zip(middle.last());
+        let current = during.map(|(from, to)| {
+            let current = self.curve(dof, |own| own.current);
+            current.values(from.t, to.t)
         });
-        let middle = middle.unwrap_or_default();
-        let fit = fit(&middle);
-        let dead_s = fit.zip(first).map(|(fit, first)| {
-            let begins = fit.at_s + (first - fit.value) / fit.slope;
-            begins - self.told.secs()
-        });
-        let times = middle.first().zip(middle.last());
-        let during = times.map(|((from, _), (to, _))| *from..=*to);
-        let current = self.line(dof, |own| own.current).into_iter();
-        let current =
-            current.filter(|(at, _)| during.as_ref().is_some_and(|during| during.contains(at)));
-        let current: Vec<f64> = current.map(|(_, value)| value).collect();
+        let position = self.curve(dof, |own| own.position);
         Stroke {
-            end: angle.last().map(|(_, value)| *value),
-            speed: fit.map(|fit| fit.slope.abs()),
-            dead_ms: dead_s.map(|dead| dead * 1000.0),
-            current: mean(&current),
-            half_way: crossing(&angle, OPEN / 2.0)
-                .and_then(|at| value_at(&self.line(dof, |own| own.position), at)),
+            end: ends.map(|(_, last)| last.v),
+            speed: fit.map(|fit| COUNTS * fit.slope.abs()),
+            dead_ms: begins_s.map(|begins| 1000.0 * (begins - self.told.secs())),
+            current: current.as_deref().and_then(mean),
+            half_way: crossing(&angle, HALF_WAY).and_then(|at| position.at(at)),
         }
     }
 
@@ -161,7 +159,7 @@ impl StepRecord {
     fn others(&self, moved: Dof) -> Option<f64> {
         let others = Dof::ALL.into_iter().filter(|dof| *dof != moved);
         let spans = others.map(|dof| {
-            let angles = values(&self.line(dof, |own| own.angle));
+            let angles = values(&self.curve(dof, |own| own.angle));
             let most = angles.iter().copied().reduce(f64::max)?;
             Some(most - angles.iter().copied().reduce(f64::min)?)
         });
@@ -184,11 +182,11 @@ struct Stroke {
     half_way: Option<f64>,
 }
 
-fn values(line: &Line) -> Vec<f64> {
-    line.iter().map(|(_, value)| *value).collect()
+fn values(curve: &TimeSeries) -> Vec<f64> {
+    curve.points().iter().map(|point| point.v).collect()
 }
 
-/// A straight line through points.
+/// The straight line nearest to points.
 #[derive(Debug, Clone, Copy)]
 struct Fit {
     at_s: f64,
@@ -196,39 +194,27 @@ struct Fit {
     slope: f64,
 }
 
-fn fit(line: &Line) -> Option<Fit> {
-    if line.len() < 3 {
-        return None;
+impl Fit {
+    fn of(points: &[CurvePoint]) -> Option<Self> {
+        if points.len() < 3 {
+            return None;
+        }
+        let at_s = mean(&points.iter().map(|point| point.t).collect::<Vec<_>>())?;
+        let value = mean(&points.iter().map(|point| point.v).collect::<Vec<_>>())?;
+        let away = |point: &CurvePoint| (point.t - at_s, point.v - value);
+        let across: f64 = points.iter().map(away).map(|(t, v)| t * v).sum();
+        let along: f64 = points.iter().map(away).map(|(t, _)| t * t).sum();
+        let slope = across / along;
+        (slope.is_finite() && slope != 0.0).then_some(Self { at_s, value, slope })
     }
-    let at_s = mean(&line.iter().map(|(at, _)| *at).collect::<Vec<_>>())?;
-    let value = mean(&values(line))?;
-    let across: f64 = line
-        .iter()
-        .map(|(at, own)| (at - at_s) * (own - value))
-        .sum();
-    let along: f64 = line.iter().map(|(at, _)| (at - at_s).powi(2)).sum();
-    let slope = across / along;
-    (slope.is_finite() && slope != 0.0).then_some(Fit { at_s, value, slope })
 }
 
-/// When a line crosses a level first.
-fn crossing(line: &Line, level: f64) -> Option<f64> {
-    line.windows(2).find_map(|pair| {
-        let [(from_s, from), (to_s, to)] = *pair else {
-            return None;
-        };
-        let is_between = (from - level) * (to - level) <= 0.0 && from != to;
-        is_between.then(|| from_s + (level - from) / (to - from) * (to_s - from_s))
-    })
-}
-
-fn value_at(line: &Line, at_s: f64) -> Option<f64> {
-    line.windows(2).find_map(|pair| {
-        let [(from_s, from), (to_s, to)] = *pair else {
-            return None;
-        };
-        let inside = (from_s..=to_s).contains(&at_s) && to_s > from_s;
-        inside.then(|| from + (at_s - from_s) / (to_s - from_s) * (to - from))
+/// When a curve crosses a level first, either way, on the line between its readings.
+fn crossing(curve: &TimeSeries, level: f64) -> Option<f64> {
+    curve.points().windows(2).find_map(|pair| {
+        let [from, to] = pair else { return None };
+        let is_between = (from.v - level) * (to.v - level) <= 0.0 && from.v != to.v;
+        is_between.then(|| from.t + (level - from.v) / (to.v - from.v) * (to.t - from.t))
     })
 }
 
@@ -249,6 +235,7 @@ struct Rest {
     zero_g: PerDof<Option<f64>>,
     noise_g: PerDof<Option<f64>>,
     tips: PerFinger<[Option<ChannelRest>; 8]>,
+    warmth: PerDof<Option<f64>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -311,7 +298,7 @@ struct BothWays {
 impl Rest {
     fn of(record: &StepRecord) -> Self {
         let noise = |dof| {
-            let forces = values(&record.line(dof, |own| own.force));
+            let forces = values(&record.curve(dof, |own| own.force));
             let degrees = count(&forces) - 1.0;
             (degrees >= 1.0).then(|| (spread(&forces) / degrees).sqrt())
         };
@@ -332,48 +319,44 @@ impl Rest {
             zero_g: record.zeros(),
             noise_g: PerDof::from_fn(noise),
             tips: PerFinger::from_fn(|finger| std::array::from_fn(|nth| channel(finger, nth))),
+            warmth: PerDof::from_fn(|dof| record.warmth?[dof].map(f64::from)),
         }
     }
 }
 
-/// All figures; the warmth is that at the beginning and at the end, degrees.
-pub(crate) fn figures(
-    figures: &Figures,
-    [before, after]: [Option<PerDof<Option<u8>>>; 2],
-) -> Vec<Measured> {
-    let mut all: Vec<Measured> = Vec::new();
-    for dof in Dof::ALL {
-        let warm = before.and_then(|all| all[dof]).map(f64::from);
-        let others = before.map(|all| {
-            let known = all.iter().filter_map(|(_, own)| own.map(f64::from));
-            known.collect::<Vec<_>>()
-        });
-        let warmer = warm.zip(others.as_deref().and_then(median));
-        let warmed = warm.zip(after.and_then(|all| all[dof]).map(f64::from));
-        let of = Of::Joint(dof);
-        all.extend(joint(figures, dof).map(|(what, value)| Measured { what, of, value }));
-        let heat = [
-            (
-                Subject::WarmerThanOthers,
-                warmer.map(|(own, middle)| own - middle),
-            ),
-            (
-                Subject::WarmedBy,
-                warmed.map(|(before, after)| after - before),
-            ),
-        ];
-        all.extend(heat.map(|(what, value)| Measured { what, of, value }));
-    }
-    for finger in Finger::ALL {
-        let of = Of::Fingertip(finger);
-        all.extend(fingertip(figures, finger).map(|(what, value)| Measured { what, of, value }));
-    }
-    all.push(Measured {
-        what: Subject::SlowerTogether,
-        of: Of::Hand,
-        value: slower_together(figures),
+/// All figures.
+pub(crate) fn measured(figures: &Figures) -> Vec<Measured> {
+    let joints = Dof::ALL.into_iter().flat_map(|dof| {
+        let all = joint(figures, dof).into_iter().chain(heat(figures, dof));
+        all.map(move |(what, value)| (what, Part::Joint(dof), value))
     });
-    all
+    let tips = Finger::ALL.into_iter().flat_map(|finger| {
+        let all = fingertip(figures, finger).into_iter();
+        all.map(move |(what, value)| (what, Part::Fingertip(finger), value))
+    });
+    let together = slower_together(figures);
+    let hand = [(Subject::SlowerTogether, Part::Hand, together)];
+    let all = joints.chain(tips).chain(hand);
+    all.map(|(what, of, value)| Measured { what, of, value })
+        .collect()
+}
+
+fn heat(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 2] {
+    let at = |nth: usize| figures.rests.get(nth).map(|rest| &rest.warmth);
+    let own = at(0).and_then(|all| all[dof]);
+    let all: Option<Vec<f64>> = at(0).map(|all| all.iter().filter_map(|(_, own)| *own).collect());
+    let middle = all.as_deref().and_then(median);
+    let later = at(1).and_then(|all| all[dof]);
+    [
+        (
+            Subject::WarmerThanOthers,
+            own.zip(middle).map(|(own, middle)| own - middle),
+        ),
+        (
+            Subject::WarmedBy,
+            own.zip(later).map(|(own, later)| later - own),
+        ),
+    ]
 }
 
 fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {

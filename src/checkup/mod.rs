@@ -12,4 +12,4 @@ pub mod subject;
 pub use crate::checkup::check::Check;
 pub use crate::checkup::measure::Measured;
 pub use crate::checkup::run::Checkup;
-pub use crate::checkup::subject::{Light, Of, Subject};
+pub use crate::checkup::subject::{Light, Part, Subject};

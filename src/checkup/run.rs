@@ -1,11 +1,11 @@
 //! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
 
 use crate::checkup::check::Check;
-use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, TipReading, figures};
+use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, TipReading, measured};
 use crate::checkup::steps::{Step, steps};
 use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
-    Target,
+    Target, TemperatureReading,
 };
 use crate::trials::Limits;
 use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
@@ -93,7 +93,6 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
-    warmth: [Option<PerDof<Option<u8>>>; 2],
     figures: Figures,
     is_over: bool,
     aborted: Option<Abort>,
@@ -109,7 +108,6 @@ impl Checkup {
             left,
             running: None,
             zero_g: PerDof::splat(None),
-            warmth: [None; 2],
             figures: Figures::default(),
             is_over: false,
             aborted: None,
@@ -132,7 +130,7 @@ impl Checkup {
 
     /// What was measured until now.
     pub fn measured(&self) -> Vec<Measured> {
-        figures(&self.figures, self.warmth)
+        measured(&self.figures)
     }
 
     /// What was measured until now, judged; `first` and `last` are of this hand's first and last check-up.
@@ -148,9 +146,8 @@ impl Checkup {
         SeriesOrder::Stop
     }
 
-    fn next(&mut self, sample: &HandSample, now: Moment) -> Option<SeriesOrder> {
+    fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
         let Some(step) = self.left.pop_front() else {
-            self.warmth[1] = warmth(sample);
             self.is_over = true;
             return None;
         };
@@ -212,11 +209,13 @@ impl Checkup {
     }
 
     fn close_step(&mut self, sample: &HandSample) {
-        let Some(running) = self.running.take() else {
+        let Some(mut running) = self.running.take() else {
             return;
         };
-        if running.record.step == Step::Rest && self.warmth[0].is_none() {
-            self.warmth[0] = warmth(sample);
+        if running.record.step == Step::Rest {
+            let temperature = sample.temperature.map(|read| read.value);
+            let known = |six: PerDof<TemperatureReading>| six.map(TemperatureReading::documented);
+            running.record.warmth = temperature.map(known);
             for (dof, zero) in running.record.zeros().iter() {
                 self.zero_g[dof] = zero.or(self.zero_g[dof]);
             }
@@ -295,7 +294,7 @@ impl Series for Checkup {
                     limit,
                 }));
             }
-            return self.next(sample, now);
+            return self.next(now);
         };
         let told = running.record.told;
         let is_over = match running.stage {
@@ -324,11 +323,6 @@ impl Series for Checkup {
             return Some(self.fail(Abort::Unreached { dof, target }));
         }
         self.close_step(sample);
-        self.next(sample, now)
+        self.next(now)
     }
-}
-
-fn warmth(sample: &HandSample) -> Option<PerDof<Option<u8>>> {
-    let temperature = sample.temperature?;
-    Some(temperature.value.map(|reading| reading.documented()))
 }

@@ -105,7 +105,7 @@ pub(crate) enum Command {
     Grip(GripArgs),
     /// Check an empty hand: strokes, backlash, friction, speed, forces, fingertips, supply
     #[command(
-        after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about a minute and a half. Each joint stops by itself 150 g above its zero; the hand is stopped at 300 g or 60 degrees. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' tells what each figure means, and what is kept of it.\n\nExit status: 0 nothing is to be done; 1 something is, or it ended early; 2 wrong usage."
+        after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about 75 seconds. Each joint stops by itself 150 g above its zero; the hand is stopped at 300 g or 60 degrees. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' tells what each figure means, and what is kept of it.\n\nExit status: 0 nothing is to be done; 1 something is, or it ended early; 2 wrong usage."
     )]
     Check(CheckArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script

@@ -61,12 +61,12 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::checkup::measure::Measured;
-    use crate::checkup::subject::{Of, Subject};
+    use crate::checkup::subject::{Part, Subject};
     use crate::hand::Dof;
 
     #[test]
     fn the_page_says_what_is_worn_what_is_not_known_and_that_it_is_partial() {
-        let of = Of::Joint(Dof::Index);
+        let of = Part::Joint(Dof::Index);
         let measured = |what, value| Measured { what, of, value };
         let checks = [
             measured(Subject::Backlash, Some(48.0)),
@@ -85,7 +85,7 @@ mod tests {
         };
         let page = html(&head, &checks).unwrap();
         for wanted in [
-            "<td class=\"act\">48</td><td>-8 to 14</td><td>4</td><td>-</td><td>look at the linkage",
+            "<td class=\"act\">48 counts</td><td>-8 to 14</td><td>4 counts</td><td>-</td><td>look at the linkage",
             "<td class=\"unknown\">-</td>",
             "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td><td></td>",
             "Partial: it ended early, ended by a person",

@@ -6,11 +6,11 @@ mod output;
 pub(crate) use args::CheckArgs;
 
 use crate::app::files::settings_file;
-use crate::checkup::Checkup;
 use crate::checkup::check::Check;
 use crate::checkup::kept::{self, Kept};
 use crate::checkup::report::{ReportHead, html, summary};
 use crate::checkup::subject::Light;
+use crate::checkup::{Checkup, Measured};
 use crate::cli::out::{Out, end, say};
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::stop_words;
@@ -25,22 +25,12 @@ use std::path::{Path, PathBuf};
 pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     if !args.arm {
         bail!(
-            "nothing was moved: a check-up bends and opens each joint of the hand at {} for a minute and a half; when the hand is empty and nothing is in its way, add --arm",
+            "nothing was moved: a check-up bends and opens each joint of the hand at {} for about 75 seconds; when the hand is empty and nothing is in its way, add --arm",
             args.hand
         );
     }
     let file = file(args)?;
-    let earlier = file.as_deref().map_or(Ok(Vec::new()), kept::read);
-    let earlier = earlier.with_context(|| {
-        let name = file.as_deref().unwrap_or(Path::new("")).display();
-        format!("the earlier check-ups of this hand in {name} cannot be read; move the file away, or name another folder with --folder")
-    })?;
-    if let Some(folder) = file.as_deref().and_then(Path::parent) {
-        store::create_folder(folder).with_context(|| {
-            let name = folder.display();
-            format!("check-ups cannot be kept in {name}; name another folder with --folder")
-        })?;
-    }
+    let earlier = earlier(file.as_deref())?;
     if let Some(folder) = &args.out {
         store::create_empty_folder(folder)
             .with_context(|| format!("cannot store the report in {}", folder.display()))?;
@@ -75,18 +65,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
         summary: summary(&checks),
     };
     if let (Some(file), None) = (&file, &head.aborted) {
-        let own = Kept {
-            at: head.at.clone(),
-            hand: head.hand.clone(),
-            figures: checkup.measured(),
-        };
-        // Another may have been added meanwhile.
-        if let Err(error) = kept::read(file).and_then(|before| kept::add(file, &before, own)) {
-            say(&format!(
-                "this check-up is not kept in {}: {error}",
-                file.display()
-            ));
-        }
+        keep(file, &head, checkup.measured());
     }
     out.result(
         args.json,
@@ -112,6 +91,36 @@ fn file(args: &CheckArgs) -> anyhow::Result<Option<PathBuf>> {
     let folder = args.folder.clone().or_else(beside);
     let folder = folder.context("no home folder for check-ups: name one with --folder")?;
     Ok(Some(kept::file_of(&folder, &args.hand)))
+}
+
+/// The earlier check-ups in a file, whose folder is made: nothing moves where a check-up could not be kept.
+fn earlier(file: Option<&Path>) -> anyhow::Result<Vec<Kept>> {
+    let Some(file) = file else {
+        return Ok(Vec::new());
+    };
+    let earlier = kept::read(file).with_context(|| {
+        let name = file.display();
+        format!("the earlier check-ups of this hand in {name} cannot be read; move the file away, or name another folder with --folder")
+    })?;
+    let folder = file.parent().unwrap_or(file);
+    store::create_folder(folder).with_context(|| {
+        let name = folder.display();
+        format!("check-ups cannot be kept in {name}; name another folder with --folder")
+    })?;
+    Ok(earlier)
+}
+
+/// Keeps a check-up that was done to its end. One that cannot be kept is told all the same.
+fn keep(file: &Path, head: &ReportHead, figures: Vec<Measured>) {
+    let own = Kept {
+        at: head.at.clone(),
+        hand: head.hand.clone(),
+        figures,
+    };
+    if let Err(error) = kept::add(file, own) {
+        let name = file.display();
+        say(&format!("this check-up is not kept in {name}: {error}"));
+    }
 }
 
 fn write(folder: &Path, head: &ReportHead, checks: &[Check]) -> anyhow::Result<()> {

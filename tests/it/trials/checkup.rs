@@ -3,7 +3,7 @@
 use crate::trials::virtual_hand::{VirtualHand, object};
 use crate::trials::worn::{JOINT, WEARS, checked, finds, told};
 use handscope::checkup::run::LIMITS;
-use handscope::checkup::{Checkup, Light, Of, Subject};
+use handscope::checkup::{Checkup, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Fault};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
@@ -49,7 +49,7 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
     body.joints[JOINT].friction_ma = 180.0;
     let later = told(&checked(body, 4, &first));
     let whats: Vec<_> = later.iter().map(|(what, of, _)| (*what, *of)).collect();
-    assert_eq!(whats, [(Subject::ClosingCurrent, Of::Joint(JOINT))]);
+    assert_eq!(whats, [(Subject::ClosingCurrent, Part::Joint(JOINT))]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! to be found at. Used by the tests and by the bench.
 
 use super::virtual_hand::VirtualHand;
-use handscope::checkup::{Check, Checkup, Light, Of, Subject};
+use handscope::checkup::{Check, Checkup, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
@@ -22,7 +22,7 @@ pub(crate) fn checked(body: BodyParams, seed: u64, first: &[Check]) -> Vec<Check
 }
 
 /// What is not as it should be.
-pub(crate) fn told(checks: &[Check]) -> Vec<(Subject, Of, Option<f64>)> {
+pub(crate) fn told(checks: &[Check]) -> Vec<(Subject, Part, Option<f64>)> {
     let told = checks.iter().filter(|check| check.light != Light::Fine);
     let told = told.map(|check| (check.measured.what, check.measured.of, check.measured.value));
     told.collect()
@@ -113,9 +113,9 @@ pub(crate) fn finds((_, wear, subject): Wear, seed: u64) -> bool {
     let mut body = random(seed);
     wear(&mut body);
     let of = match subject {
-        Subject::DeadChannels | Subject::ChannelDrift => Of::Fingertip(TIP),
-        Subject::SlowerTogether => Of::Hand,
-        _ => Of::Joint(JOINT),
+        Subject::DeadChannels | Subject::ChannelDrift => Part::Fingertip(TIP),
+        Subject::SlowerTogether => Part::Hand,
+        _ => Part::Joint(JOINT),
     };
     let told = told(&checked(body, seed, &[]));
     told.iter().any(|own| (own.0, own.1) == (subject, of))
