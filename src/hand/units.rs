@@ -132,6 +132,14 @@ impl Speed {
     pub const GENTLE: Self = Self(200);
     /// The slowest at which overshoot was measured ([`crate::hand::impact`]): a few grams.
     pub const SLOWEST_MEASURED: Self = Self(25);
+    /// Counts of ANGLE_ACT a second for each unit without load: half of the 3.04 of POS_ACT that were measured (manual 2.6.13
+    /// says 1.67).
+    pub const ANGLE_PER_UNIT: f64 = 1.52;
+
+    /// Counts of ANGLE_ACT a second without load; of a speed of 0 as of 1.
+    pub fn angle_per_s(self) -> f64 {
+        Self::ANGLE_PER_UNIT * f64::from(self.0.max(1))
+    }
 }
 
 /// What a joint is told to do. There is no default, and "leave alone" is said in words.

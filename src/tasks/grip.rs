@@ -25,8 +25,6 @@ const TICK: Duration = Duration::from_millis(5);
 const FRESH_FOR: Duration = Duration::from_millis(250);
 /// A part of the way is not judged before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
-/// Counts a second for each unit of speed, as measured without load.
-const COUNTS_PER_SPEED_S: f32 = 3.04;
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -139,9 +137,6 @@ pub async fn grip<H: TaskHand>(
         stop,
     }
 }
-
-/// Counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
-const COUNTS: f32 = 2.0;
 
 /// A part of the way.
 #[derive(Debug, Clone, Copy)]
@@ -260,8 +255,7 @@ fn legs(from: &PerDof<i16>, start: &GripStart) -> Vec<Leg> {
 
 /// How long a part of the way may take: the whole stroke at its speed, and some time to spare.
 fn limit(leg: &Leg) -> Duration {
-    let fastest = leg.speeds.as_array().iter().map(|speed| speed.get()).max();
-    let per_s = COUNTS_PER_SPEED_S * f32::from(fastest.unwrap_or(1).max(1));
-    let stroke = COUNTS * f32::from(Angle::MAX.get());
-    Duration::from_secs_f32(stroke / per_s) + SPARE
+    let fastest = leg.speeds.as_array().iter().max().copied();
+    let stroke = f64::from(Angle::MAX.get());
+    Duration::from_secs_f64(stroke / fastest.unwrap_or(Speed::MIN).angle_per_s()) + SPARE
 }

@@ -5,8 +5,6 @@ use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::runner::QUIET;
 use std::time::Duration;
 
-/// Counts of ANGLE_ACT a second for each unit of SPEED_SET.
-const COUNTS_PER_SPEED: f64 = 3.04;
 /// Dead times, reading the limits back, the stop, and what is recorded after the release.
 const BESIDES: Duration = Duration::from_millis(1500);
 
@@ -65,7 +63,7 @@ fn way_before(plan: &TrialPlan, until: Until, way: f64) -> f64 {
 }
 
 fn seconds(way: f64, speed: Speed) -> f64 {
-    way / (COUNTS_PER_SPEED * f64::from(speed.get().max(1)))
+    way / speed.angle_per_s()
 }
 
 #[cfg(test)]
@@ -79,7 +77,8 @@ mod tests {
         let mut plan = TrialPlan::default();
         let (count, slow) = series(&plan);
         assert_eq!(count, 1);
-        assert!((15.0..25.0).contains(&slow.as_secs_f64()), "{slow:?}");
+        // The whole stroke at speed 25 takes 24 s by the manual's law, 26 s as it was measured.
+        assert!((32.0..42.0).contains(&slow.as_secs_f64()), "{slow:?}");
         let fast_until = |until| Approach::TwoStage {
             fast: Speed::nearest(250),
             until,

@@ -21,8 +21,6 @@ const STILL_COUNTS: i16 = 2;
 const STILL_FOR: Duration = Duration::from_millis(200);
 /// One that stands still for this long has stopped, whatever it reports: at speed 1 a joint makes three counts in it.
 const STILL_ANYWAY: Duration = Duration::from_millis(1800);
-/// Counts of ANGLE_ACT a second for each unit of SPEED_SET, at least (half of the position's 3.04).
-const COUNTS_PER_SPEED: f64 = 1.5;
 /// Extra time allowed for closing: the dead time, the ramps, a slow wire.
 const CLOSE_SLACK: Duration = Duration::from_secs(4);
 /// Weight of gravity: newtons of a gram.
@@ -376,8 +374,8 @@ impl Runner {
 
     /// The longest that the whole way can take at the setting's speed.
     fn close_within(&self) -> Duration {
-        let speed = f64::from(self.setting.speed.get().max(1));
-        Duration::from_secs_f64(1000.0 / (COUNTS_PER_SPEED * speed)) + CLOSE_SLACK
+        let way = f64::from(Angle::MAX.get());
+        Duration::from_secs_f64(way / self.setting.speed.angle_per_s()) + CLOSE_SLACK
     }
 }
 

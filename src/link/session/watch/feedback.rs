@@ -17,8 +17,6 @@ const LOOKS_MIN: u32 = 5;
 const LOOKS_SUSPECT: u32 = 2;
 /// So many counts of ANGLE_ACT are a visible move: more than noise, and more than a joint may rest beside its target.
 const VISIBLE: f64 = 25.0;
-/// Counts of ANGLE_ACT a second for each unit of SPEED_SET: half of the position's 3.04, which was measured.
-const COUNTS_PER_SPEED: f64 = 1.52;
 /// From a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
 /// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
@@ -184,7 +182,7 @@ impl FeedbackWatch {
                 continue;
             };
             let lasts = end.min(now).since(begin.max(base.at)).as_secs_f64();
-            let most = f64::from(speed) * COUNTS_PER_SPEED * lasts;
+            let most = f64::from(speed) * Speed::ANGLE_PER_UNIT * lasts;
             angle += (f64::from(target) - angle).clamp(-most, most);
         }
         Some(angle)
