@@ -1,5 +1,6 @@
 //! A check-up by script: what it needs before anything moves, and a person who ends it.
 
+use crate::cli::refuses_unarmed;
 use crate::setup::process::{run, sim_on_link, sim_on_tcp, start};
 use handscope::checkup::kept::file_of;
 use nix::sys::signal::Signal;
@@ -13,18 +14,19 @@ fn nothing_moves_before_all_is_in_order() {
     std::fs::create_dir(&full).unwrap();
     std::fs::write(full.join("x"), "x").unwrap();
     let unreadable = file_of(folder.path(), &hand.parse().unwrap());
-    for (more, words) in [
-        (&[][..], "--arm"),
-        (&["--arm", "--out", full.to_str().unwrap()], "not empty"),
-    ] {
-        let ended = run(&[&["check", "--hand", &hand, "--folder", place], more].concat());
+    refuses_unarmed(&hand, &["check", "--hand", &hand, "--folder", place]);
+    let check = |more: &[&str]| {
+        let args = ["check", "--hand", &hand, "--folder", place, "--arm"];
+        let ended = run(&[&args[..], more].concat());
         assert_eq!(ended.code, Some(1), "{}", ended.err);
-        assert!(ended.err.contains(words), "{}", ended.err);
         assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
-    }
+        ended.err
+    };
+    let refused = check(&["--out", full.to_str().unwrap()]);
+    assert!(refused.contains("not empty"), "{refused}");
     std::fs::write(&unreadable, "no JSON\n").unwrap();
-    let ended = run(&["check", "--hand", &hand, "--folder", place, "--arm"]);
-    assert!(ended.err.contains("--folder"), "{}", ended.err);
+    let refused = check(&[]);
+    assert!(refused.contains("--folder"), "{refused}");
     let watched = run(&["watch", "--hand", &hand, "--json", "--for", "0.2"]).ok();
     assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
     let nobody = run(&[

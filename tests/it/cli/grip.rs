@@ -1,6 +1,7 @@
 //! `grip` as a person at a terminal has it: only with their word, refused where it makes no sense, ended by what the hand did or
 //! by Ctrl-C.
 
+use crate::cli::refuses_unarmed;
 use crate::setup::process::{run, sim_on_tcp, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
@@ -14,11 +15,7 @@ fn angles(hand: &str) -> Vec<i64> {
 #[test]
 fn without_a_persons_word_nothing_moves() {
     let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
-    let ended = run(&["grip", "--hand", &hand, "--gap", "30"]);
-    assert_eq!(ended.code, Some(1));
-    assert!(ended.err.contains("nothing was moved") && ended.err.contains("--arm"));
-    let watched = run(&["watch", "--hand", &hand, "--json", "--for", "0.2"]).ok();
-    assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
+    refuses_unarmed(&hand, &["grip", "--hand", &hand, "--gap", "30"]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 #[cfg(unix)]
 mod can;
+#[cfg(unix)]
 mod check;
 mod consent;
 #[cfg(unix)]
@@ -15,6 +16,7 @@ mod doors;
 mod exports;
 #[cfg(target_os = "linux")]
 mod follow;
+#[cfg(unix)]
 mod grip;
 mod inputs;
 #[cfg(unix)]
@@ -36,6 +38,7 @@ mod several;
 mod trial;
 #[cfg(unix)]
 mod tune;
+#[cfg(unix)]
 mod tune_close;
 mod usage;
 #[cfg(unix)]
@@ -43,3 +46,15 @@ mod web_page;
 mod wire;
 #[cfg(unix)]
 mod wires;
+
+/// A command that moves a hand is refused without `--arm` in one sentence, and nothing is written.
+#[cfg(unix)]
+fn refuses_unarmed(hand: &str, args: &[&str]) {
+    use crate::setup::process::run;
+    let ended = run(args);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.err.contains("nothing was moved") && ended.err.contains("--arm"));
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    let watched = run(&["watch", "--hand", hand, "--json", "--for", "0.2"]).ok();
+    assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
+}

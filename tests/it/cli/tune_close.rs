@@ -1,5 +1,6 @@
 //! `tune` as a person at a terminal has it: only with their word, refused where it makes no sense, ended by Ctrl-C.
 
+use crate::cli::refuses_unarmed;
 use crate::setup::process::{run, sim_on_tcp, start};
 use handscope::trials::session;
 use nix::sys::signal::Signal;
@@ -9,11 +10,7 @@ const WAY: [&str; 6] = ["--joint", "index", "--start", "600", "--limit", "500"];
 #[test]
 fn without_a_persons_word_nothing_moves() {
     let (_sim, hand) = sim_on_tcp(&["--scenario", "rigid"]);
-    let ended = run(&[&["tune", "--hand", &hand], &WAY[..]].concat());
-    assert_eq!(ended.code, Some(1));
-    assert!(ended.err.contains("nothing was moved") && ended.err.contains("--arm"));
-    let watched = run(&["watch", "--hand", &hand, "--json", "--for", "0.2"]).ok();
-    assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
+    refuses_unarmed(&hand, &[&["tune", "--hand", &hand], &WAY[..]].concat());
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! Sequences that wait for the grip: when they go on, when they try again, and what ends the wait. Judged by what was written to the hand.
 
+use crate::program::playing::{ENDINGS, stays_ended};
 use crate::program::playing::{library, phase};
 use crate::program::{ANGLE_SET, Bench, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
+use handscope::hand::Dof;
 use handscope::hand::grip::GripState;
-use handscope::hand::{Angle, Dof, Fault};
 use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, Millis, Retries, SequenceId, SequenceStep, UntilHolding};
@@ -146,46 +147,18 @@ async fn waiting(bench: &mut Bench) {
 
 #[tokio::test(start_paused = true)]
 async fn a_wait_moves_nothing_and_whatever_ends_a_sequence_ends_it() {
-    type Break = fn(&mut Bench);
-    let ways: [(Break, PlayEnd); 5] = [
-        (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
-        (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
-        (
-            |bench| {
-                bench
-                    .hand
-                    .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
-            },
-            PlayEnd::Fault,
-        ),
-        (|bench| bench.act(Action::Play(Play::End)), PlayEnd::Person),
-        (
-            |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
-            PlayEnd::TakenOver,
-        ),
-    ];
-    for (break_off, want) in ways {
+    for (break_off, want) in ENDINGS {
         let mut bench = Bench::live().await;
         waiting(&mut bench).await;
         bench.run(60_000).await;
         assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
         break_off(&mut bench);
-        bench.run(3000).await;
-        let Some(PlayPhase::Ended(end)) = phase(&bench) else {
-            panic!("{want:?}: {:?}", phase(&bench));
-        };
-        let by_fault = want == PlayEnd::Fault && end == PlayEnd::Disarmed;
-        assert!(end == want || by_fault, "{end:?} for {want:?}");
-        bench.act(Action::Arm);
-        bench.run(300).await;
-        bench.forget();
         // What it waited for does not bring it back.
-        bench
-            .hand
-            .with(|hand, _| hand.set_object(&Object::rigid(600.0)));
-        bench.act(Action::Play(Play::Resume));
-        bench.run(5000).await;
-        assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
+        let comes = |bench: &mut Bench| {
+            let object = Object::rigid(600.0);
+            bench.hand.with(|hand, _| hand.set_object(&object));
+        };
+        stays_ended(&mut bench, want, comes).await;
     }
 }
 

@@ -281,50 +281,60 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
     assert_eq!(bench.target(Dof::Ring), Some(bench.angle(Dof::Ring)));
 }
 
+/// What ends a sequence, and how that is told.
+pub(super) const ENDINGS: [(fn(&mut Bench), PlayEnd); 6] = [
+    (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
+    (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
+    (
+        |bench| {
+            bench
+                .hand
+                .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
+        },
+        PlayEnd::Fault,
+    ),
+    (|bench| bench.act(Action::Play(Play::End)), PlayEnd::Person),
+    (
+        |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
+        PlayEnd::TakenOver,
+    ),
+    (
+        |bench| bench.act(Action::Preset(Preset::Open)),
+        PlayEnd::TakenOver,
+    ),
+];
+
+/// A sequence is over in this way, and stays so: no arming later brings it back, nor what happens before it is asked to go on.
+pub(super) async fn stays_ended(
+    bench: &mut Bench,
+    want: PlayEnd,
+    happens: impl FnOnce(&mut Bench),
+) {
+    bench.run(3000).await;
+    let Some(PlayPhase::Ended(end)) = phase(bench) else {
+        panic!("{want:?}: {:?}", phase(bench));
+    };
+    let by_fault = want == PlayEnd::Fault && end == PlayEnd::Disarmed;
+    assert!(end == want || by_fault, "{end:?} for {want:?}");
+    bench.act(Action::Arm);
+    bench.run(300).await;
+    bench.forget();
+    happens(bench);
+    bench.act(Action::Play(Play::Resume));
+    bench.run(5000).await;
+    assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
+}
+
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
-    type Break = fn(&mut Bench);
-    let ways: [(Break, PlayEnd); 6] = [
-        (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
-        (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
-        (
-            |bench| {
-                bench
-                    .hand
-                    .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
-            },
-            PlayEnd::Fault,
-        ),
-        (|bench| bench.act(Action::Play(Play::End)), PlayEnd::Person),
-        (
-            |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
-            PlayEnd::TakenOver,
-        ),
-        (
-            |bench| bench.act(Action::Preset(Preset::Open)),
-            PlayEnd::TakenOver,
-        ),
-    ];
-    for (break_off, want) in ways {
+    for (break_off, want) in ENDINGS {
         let mut bench = Bench::armed().await;
         let (_, own) = library(&mut bench);
         bench.act(Action::Play(Play::Start(EntryId::Sequence(own))));
         bench.run(200).await;
         assert!(bench.hand().sequence.as_ref().unwrap().is_running());
         break_off(&mut bench);
-        bench.run(3000).await;
-        let Some(PlayPhase::Ended(end)) = phase(&bench) else {
-            panic!("{want:?}: {:?}", phase(&bench));
-        };
-        let by_fault = want == PlayEnd::Fault && end == PlayEnd::Disarmed;
-        assert!(end == want || by_fault, "{end:?} for {want:?}");
-        // Even an arming later does not bring it back.
-        bench.act(Action::Arm);
-        bench.run(300).await;
-        bench.forget();
-        bench.act(Action::Play(Play::Resume));
-        bench.run(5000).await;
-        assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
+        stays_ended(&mut bench, want, |_| ()).await;
     }
 }
 

@@ -230,7 +230,7 @@ fn an_armed_hand_starts_by_a_click() {
 #[test]
 fn a_plan_says_what_it_will_do_and_how_hard_it_may_hit() {
     let mut bench = on_block();
-    assert!(bench.shows("Trials: 1, at most about 20 s."));
+    assert!(bench.shows("Trials: 1, at most about 36 s."));
     enter(&mut bench, "Speeds to try", "25, 250");
     enter(&mut bench, "Force thresholds to try", "250, 500");
     enter(&mut bench, "times each", "3");
