@@ -282,7 +282,9 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
 }
 
 /// What ends a sequence, and how that is told.
-pub(super) const ENDINGS: [(fn(&mut Bench), PlayEnd); 6] = [
+pub(super) type Ending = (fn(&mut Bench), PlayEnd);
+
+pub(super) const ENDINGS: [Ending; 6] = [
     (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
     (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
     (
