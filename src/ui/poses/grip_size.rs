@@ -73,7 +73,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let is_armed = pane.state.hand().connection.is_armed();
     let refused = refusal(pane);
-    let id = Id::unique("gap in the drawer");
+    let id = Id::unique(("gap in the drawer", pane.state.hand().label.slot));
     let wish = ui
         .data(|data| data.get_temp::<f32>(id))
         .filter(|_| !is_armed);
@@ -96,12 +96,20 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     } else if wish.is_some() {
         aim::wish(ui, Gap::nearest(mm));
     }
-    let is_open = grip::is_open_for_pinch(pane.state.hand());
+    // Its room is kept: the slider stays where the pointer has it.
+    ui.scope(|ui| {
+        ui.set_min_height(theme::CONTROL);
+        opening_ui(ui, pane, is_armed);
+    });
+}
+
+/// Before a gap can be sent: that the hand is not armed, or the button that opens it.
+fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
+    let (look, hand) = (pane.look, pane.state.hand());
     if !is_armed {
         Label::note(look, poses::GAP_WISH).wrap().ui(ui);
-    } else if !is_open {
-        let locked = grip::locks_pinch(pane.state.hand());
-        let locked = locked.then(|| look.say(main::LOCKED));
+    } else if !grip::is_open_for_pinch(hand) {
+        let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
         let button = Button::said(look, poses::GAP_OPEN).disabled(pane.unready().or(locked));
         button.on_click(ui, pane, Action::Pinch(Gap::MAX));
     }

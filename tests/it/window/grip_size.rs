@@ -1,11 +1,12 @@
 //! Grips by size in the window: asked for on the drawn hand, sent while armed, and the size of what is held.
 
 use crate::setup::window::{ANGLE_SET, Bench, LARGE};
-use egui::Key;
+use egui::{Key, Role};
 use handscope::app::action::Action;
 use handscope::app::hands::grip::is_open_for_pinch;
 use handscope::hand::gap::Gap;
 use handscope::hand::{Dof, PerDof};
+use handscope::poses::Preset;
 use handscope::sim::{Contact, Object, Scenario, SimConfig};
 
 const BLOCK: &str = "Size of a block that is held, mm";
@@ -61,6 +62,19 @@ fn unarmed_the_gap_is_only_a_wish_on_the_drawn_hand() {
     bench.run(300);
     assert!(bench.shows("Not armed: the drawn hand shows where it would go."));
     assert_eq!(bench.writes().len(), writes, "nothing is sent");
+}
+
+#[test]
+fn the_slider_stays_where_it_is_when_the_hand_is_armed_and_when_it_is_open() {
+    let mut bench = free();
+    bench.click("Grip by size");
+    bench.run(100);
+    let unarmed = bench.rect(Role::Slider, "Gap, mm");
+    let mut bench = opened();
+    assert_eq!(bench.rect(Role::Slider, "Gap, mm"), unarmed);
+    bench.act(Action::Preset(Preset::Open));
+    bench.until(10_000, |bench| bench.shows("Open for the grip"));
+    assert_eq!(bench.rect(Role::Slider, "Gap, mm"), unarmed);
 }
 
 #[test]
