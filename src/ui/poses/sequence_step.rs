@@ -9,10 +9,13 @@ use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
-use egui::{Align, CursorIcon, Layout, Ui, UiBuilder, vec2};
+use egui::{Align, CursorIcon, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
 
-/// Height of a row.
-pub(crate) const ROW: f32 = 44.0;
+/// Height of a row: its pose and place, and below them its numbers.
+pub(crate) const ROW: f32 = theme::CONTROL + NUMBER.y + 2.0 * theme::STEP;
+/// Room of a number with its caption, and of the pose's picture.
+const NUMBER: Vec2 = vec2(66.0, 36.0);
+const PICTURE: f32 = 56.0;
 
 /// Asks for a change of this sequence.
 pub(crate) fn change(pane: &mut Pane<'_>, sequence: &Sequence, edit: SequenceEdit) {
@@ -46,16 +49,35 @@ pub(crate) fn step_ui(
         look.palette.sunken
     };
     ui.painter().rect_filled(place, theme::ROUND_SMALL, fill);
+    let (picture, rest) = place
+        .shrink(theme::STEP)
+        .split_left_right_at_x(place.left() + PICTURE);
+    let rest = rest.with_min_x(rest.left() + theme::GAP);
+    let (above, below) = rest.split_top_bottom_at_y(rest.top() + theme::CONTROL);
+    let mut line = |rect: Rect, layout: Layout| {
+        let mut line = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+        line.spacing_mut().item_spacing.x = theme::STEP;
+        line
+    };
+    let mut top = line(above, Layout::right_to_left(Align::Center));
+    let mut bottom = line(below, Layout::left_to_right(Align::Min));
+    let mut new = step.clone();
+    place_ui(&mut top, pane, sequence, at);
+    until_ui(&mut top, look, at, &mut new);
+    numbers_ui(&mut bottom, pane, at, &mut new);
+    if let Some(pose) = pane.state.poses.library.pose(step.pose) {
+        panel::sign_ui(ui, look, picture, &shares(&pose.angles));
+        kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &pose.name));
+    }
+    if new != *step {
+        change(pane, sequence, SequenceEdit::Change(at, new));
+    }
+}
+
+/// Buttons that put the step elsewhere, from right to left.
+fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
+    let look = pane.look;
     let number = (at + 1).to_string();
-    let right = Layout::right_to_left(Align::Center);
-    let mut ui = ui.new_child(
-        UiBuilder::new()
-            .max_rect(place.shrink(theme::STEP))
-            .layout(right),
-    );
-    let ui = &mut ui;
-    ui.spacing_mut().item_spacing.x = theme::STEP;
-    ui.set_min_height(ui.available_height());
     let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| SequenceEdit::Move(at, to));
     for (icon, caption, tip, edit) in [
         (
@@ -73,14 +95,6 @@ pub(crate) fn step_ui(
             change(pane, sequence, edit);
         }
     }
-    numbers_ui(ui, pane, sequence, (at, step));
-    if let Some(pose) = pane.state.poses.library.pose(step.pose) {
-        kit::left_ui(ui, |ui| {
-            let (_, picture) = ui.allocate_space(vec2(36.0, 36.0));
-            panel::sign_ui(ui, look, picture, &shares(&pose.angles));
-            handle_ui(ui, look, at, &pose.name);
-        });
-    }
 }
 
 /// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
@@ -95,23 +109,30 @@ fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
     response.on_hover_cursor(CursorIcon::Grab);
 }
 
-/// From right to left.
-fn numbers_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    sequence: &Sequence,
-    (at, step): (usize, &SequenceStep),
-) {
+/// What a number, or the button, of a step is called.
+fn named(look: Look, at: usize, caption: Text) -> String {
+    format!("{} {} {}", look.say(poses::STEP), at + 1, look.say(caption))
+}
+
+/// Whether it waits until the hand holds something.
+fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
+    let label = named(look, at, poses::UNTIL);
+    let waits = Button::said(look, poses::UNTIL).named(&label);
+    if waits.choice(step.until.is_some()).ui(ui, look).clicked() {
+        step.until = match step.until {
+            Some(_) => None,
+            None => Some(UntilHolding::FIRST),
+        };
+    }
+}
+
+fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceStep) {
     let look = pane.look;
-    let named = |caption: Text| {
-        let text = look.say(caption);
-        format!("{} {} {text}", look.say(poses::STEP), at + 1)
-    };
-    let number = |ui: &mut Ui, pane: &mut Pane<'_>, (caption, tip): (Text, Text), (now, max)| {
-        let label = named(caption);
+    let mut number = |(caption, tip): (Text, Text), (now, max)| {
+        let label = named(look, at, caption);
         let field = NumberField::new(&label, look.say(tip), 0.0..=max);
-        let (size, down) = (vec2(58.0, 36.0), Layout::top_down(Align::Min));
-        let typed = ui.allocate_ui_with_layout(size, down, |ui| {
+        let typed = ui.allocate_ui_with_layout(NUMBER, Layout::top_down(Align::Min), |ui| {
+            ui.set_min_width(NUMBER.x);
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
             Label::new(look.say(caption), look.palette.muted)
@@ -121,35 +142,23 @@ fn numbers_ui(
         });
         typed.inner
     };
-    let millis = |ui: &mut Ui, pane: &mut Pane<'_>, caption: Text, now: Millis| {
-        let of = (f64::from(now.get()), f64::from(Millis::MAX));
-        let typed = number(ui, pane, (caption, caption.tip()), of);
+    let now = (f64::from(step.speed.get()), 1000.0);
+    let speed = number((main::NAME_SPEED, poses::SPEED.tip()), now);
+    let speed = speed.and_then(|typed| Speed::new(typed).ok());
+    step.speed = speed.unwrap_or(step.speed);
+    let mut millis = |caption: Text, time: &mut Millis| {
+        let now = (f64::from(time.get()), f64::from(Millis::MAX));
+        let typed = number((caption, caption.tip()), now);
         let typed = typed.and_then(|typed| Millis::try_from(typed).ok());
-        typed.unwrap_or(now)
+        *time = typed.unwrap_or(*time);
     };
-    let mut new = step.clone();
-    if let Some(until) = &mut new.until {
-        let of = (until.retries.get().into(), Retries::MAX.into());
-        let typed = number(ui, pane, (poses::RETRIES, poses::RETRIES.tip()), of);
+    millis(poses::DWELL, &mut step.dwell);
+    millis(poses::LIMIT, &mut step.limit);
+    if let Some(until) = &mut step.until {
+        millis(poses::WITHIN, &mut until.within);
+        let now = (until.retries.get().into(), Retries::MAX.into());
+        let typed = number((poses::RETRIES, poses::RETRIES.tip()), now);
         let typed = typed.and_then(|typed| Retries::try_from(typed).ok());
         until.retries = typed.unwrap_or(until.retries);
-        until.within = millis(ui, pane, poses::WITHIN, until.within);
-    }
-    let label = named(poses::UNTIL);
-    let waits = Button::said(look, poses::UNTIL).named(&label);
-    if waits.choice(step.until.is_some()).ui(ui, look).clicked() {
-        new.until = match step.until {
-            Some(_) => None,
-            None => Some(UntilHolding::FIRST),
-        };
-    }
-    new.limit = millis(ui, pane, poses::LIMIT, step.limit);
-    new.dwell = millis(ui, pane, poses::DWELL, step.dwell);
-    let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number(ui, pane, (main::NAME_SPEED, poses::SPEED.tip()), now);
-    let speed = speed.and_then(|typed| Speed::new(typed).ok());
-    new.speed = speed.unwrap_or(step.speed);
-    if new != *step {
-        change(pane, sequence, SequenceEdit::Change(at, new));
     }
 }

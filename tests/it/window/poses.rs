@@ -1,7 +1,7 @@
 //! Claims about poses: kept, taken, played, read from files; and that none of it moves a hand unasked.
 
 use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, LARGE, Role, SPEED_SET, Write};
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, vec2};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Language;
@@ -318,6 +318,40 @@ fn steps_are_put_in_order_by_dragging_and_by_arrows() {
         "the last stays the last"
     );
     assert_eq!(bench.writes().len(), before);
+}
+
+#[test]
+fn all_of_a_step_that_waits_has_room_in_the_smallest_window() {
+    let mut bench = Bench::open(SimConfig::default(), vec2(1024.0, 640.0));
+    bench.wait(1000);
+    let mut bench = sequence_on(bench);
+    bench.click("Step 1 Until holding");
+    bench.run(60);
+    let parts = [
+        (Role::Button, "Step 1: Pose"),
+        (Role::Button, "Step 1 Until holding"),
+        (Role::Button, "Remove 1"),
+        (Role::TextInput, "Step 1 speed"),
+        (Role::TextInput, "Step 1 dwell, ms"),
+        (Role::TextInput, "Step 1 limit, ms"),
+        (Role::TextInput, "Step 1 within, ms"),
+        (Role::TextInput, "Step 1 retries"),
+    ];
+    let places = parts.map(|(role, name)| (name, bench.rect(role, name)));
+    for (at, (name, place)) in places.into_iter().enumerate() {
+        assert!(place.width() > 20.0, "{name}: {place}");
+        for (other, there) in places.into_iter().skip(at + 1) {
+            assert!(
+                !place.shrink(1.0).intersects(there.shrink(1.0)),
+                "{name} and {other}"
+            );
+        }
+    }
+    let removes = bench.rect(Role::Button, "Remove 1");
+    assert!(
+        removes.right() < 1024.0 && places[0].1.left() > 560.0,
+        "{places:?}"
+    );
 }
 
 #[test]
