@@ -28,13 +28,13 @@ pub(crate) struct GripArgs {
     #[arg(long, value_name = "KIND", default_value = "pinch", value_parser = kind)]
     pub(crate) kind: GripKind,
     /// Millimetres between the pads to close to, 3 to 120; what stands between them stops the hand earlier
-    #[arg(long, value_name = "MM", value_parser = gap)]
+    #[arg(long, value_name = "MM", value_parser = gap, allow_negative_numbers = true)]
     pub(crate) gap: Gap,
     /// Speed of the faster joint, 1 to 1000
-    #[arg(long, value_name = "SPEED", default_value = "200", value_parser = moving_speed)]
+    #[arg(long, value_name = "SPEED", default_value = "200", value_parser = moving_speed, allow_negative_numbers = true)]
     pub(crate) speed: Speed,
     /// Force threshold in g, 0 to 2000
-    #[arg(long, value_name = "GRAMS", default_value = "500", value_parser = rated_force)]
+    #[arg(long, value_name = "GRAMS", default_value = "500", value_parser = rated_force, allow_negative_numbers = true)]
     pub(crate) force: Force,
     /// Print one JSON object
     #[arg(long)]
