@@ -170,6 +170,8 @@ impl Action {
                 | TrialAction::Forget(_)
                 | TrialAction::ConfirmForget
                 | TrialAction::CancelForget
+                | TrialAction::ForgetMap
+                | TrialAction::ExportMap
                 | TrialAction::Open(_)
                 | TrialAction::Save(..),
             )

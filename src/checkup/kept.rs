@@ -24,14 +24,7 @@ pub struct Kept {
 
 /// The file of the hand at an endpoint, told by place and id.
 pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
-    let (place, id) = hand.place_and_id();
-    let plain = |letter: char| match letter {
-        letter if letter.is_ascii_alphanumeric() || letter == '.' => letter.to_string(),
-        // Each place has a name of its own.
-        letter => format!("_{:x}", u32::from(letter)),
-    };
-    let place: String = place.chars().map(plain).collect();
-    folder.join(format!("{place}-id{id}.jsonl"))
+    folder.join(format!("{}.jsonl", hand.file_stem()))
 }
 
 /// The check-ups in a file, oldest first; none where there is no file.

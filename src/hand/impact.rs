@@ -86,7 +86,7 @@ pub fn rough_from_threshold(speed: Speed) -> Option<Force> {
 }
 
 /// The first number up to `most` that holds, for what holds from some number on.
-fn first(most: i16, holds: impl Fn(i16) -> bool) -> Option<i16> {
+pub(crate) fn first(most: i16, holds: impl Fn(i16) -> bool) -> Option<i16> {
     let (mut low, mut high) = (0, most);
     if !holds(high) {
         return None;

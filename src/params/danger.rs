@@ -1,12 +1,13 @@
 //! What could hurt once a hand wakes up with it: fast and strong defaults, by the measured overshoot. Forbids nothing.
 
-use crate::hand::impact::{HIGHEST_G, NOTABLE_G, overshoot_g};
+use crate::hand::impact::{HIGHEST_G, NOTABLE_G};
+use crate::hand::overshoot::{Expected, MeasuredOn, OvershootMap, Stages};
 use crate::hand::{Dof, Force};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 
 /// A joint whose defaults the user should know of before they are written or saved.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Danger {
     /// The joint.
     pub dof: Dof,
@@ -14,19 +15,19 @@ pub struct Danger {
     pub speed: i32,
     /// Its force threshold after power-up, grams.
     pub force_g: i32,
-    /// The peak above the threshold on a rigid block, grams, as measured on one hand of the family.
-    pub overshoot_g: f64,
+    /// The peak above the threshold on something rigid, and on which hand that was measured.
+    pub expected: Expected,
 }
 
 impl Danger {
     /// What the finger presses at the peak, grams.
     pub fn peak_g(&self) -> f64 {
-        f64::from(self.force_g) + self.overshoot_g
+        f64::from(self.force_g) + self.expected.over_g
     }
 
     /// True if no threshold as high was measured: the figure is that of the highest.
     pub fn is_beyond_measured(&self) -> bool {
-        f64::from(self.force_g) > HIGHEST_G
+        f64::from(self.force_g) > HIGHEST_G && self.expected.on == MeasuredOn::AnotherHand
     }
 
     /// True if already the threshold is above the rated grip.
@@ -35,24 +36,25 @@ impl Danger {
     }
 }
 
-/// The dangerous joints that would hit harder with `after` than with `before`: these need a confirmation.
-pub fn worse(before: &Params, after: &Params) -> Vec<Danger> {
-    let peak = |params: &Params, dof| joint(params, dof).map(|joint| joint.peak_g());
+/// The dangerous joints that would hit harder with `after` than with `before`, by what was measured of the hand: these need a
+/// confirmation.
+pub fn worse(before: &Params, after: &Params, map: &OvershootMap) -> Vec<Danger> {
+    let peak = |params: &Params, dof| joint(params, dof, map).map(|joint| joint.peak_g());
     let rises =
         |danger: &Danger| peak(before, danger.dof).is_none_or(|before| danger.peak_g() > before);
-    dangers(after).into_iter().filter(rises).collect()
+    dangers(after, map).into_iter().filter(rises).collect()
 }
 
 /// The dangerous joints among these parameters. A joint of which one of the two values is not known is not judged.
-pub fn dangers(params: &Params) -> Vec<Danger> {
+pub fn dangers(params: &Params, map: &OvershootMap) -> Vec<Danger> {
     let joints = Dof::ALL.into_iter();
     joints
-        .filter_map(|dof| joint(params, dof))
-        .filter(|joint| joint.overshoot_g >= NOTABLE_G || joint.is_above_rated())
+        .filter_map(|dof| joint(params, dof, map))
+        .filter(|joint| joint.expected.over_g >= NOTABLE_G || joint.is_above_rated())
         .collect()
 }
 
-fn joint(params: &Params, dof: Dof) -> Option<Danger> {
+fn joint(params: &Params, dof: Dof, map: &OvershootMap) -> Option<Danger> {
     let number = |id| match params.get(id) {
         Some(Value::Number(number)) => Some(number),
         _ => None,
@@ -63,13 +65,15 @@ fn joint(params: &Params, dof: Dof) -> Option<Danger> {
         dof,
         speed,
         force_g,
-        overshoot_g: overshoot_g(f64::from(speed), f64::from(force_g)),
+        expected: map.expected(dof, Stages::One, speed.into(), force_g.into()),
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hand::Speed;
+    use crate::hand::overshoot::{CloseKind, Stiffness};
 
     #[test]
     fn fast_and_strong_defaults_are_told_and_gentle_ones_are_not() {
@@ -84,13 +88,43 @@ mod tests {
         ] {
             let mut params = Params::default();
             params.put(ParamId::DefaultSpeed(Dof::Index), Value::Number(speed));
-            assert!(dangers(&params).is_empty(), "one value alone is not judged");
+            assert!(
+                dangers(&params, &OvershootMap::default()).is_empty(),
+                "one value alone is not judged"
+            );
             params.put(ParamId::DefaultForce(Dof::Index), Value::Number(force));
-            let dangers = dangers(&params);
+            let dangers = dangers(&params, &OvershootMap::default());
             assert_eq!(dangers.len(), usize::from(told), "{speed} {force}");
             assert!(dangers.iter().all(|danger| danger.dof == Dof::Index));
         }
     }
+
+    #[test]
+    fn what_this_hand_measured_replaces_the_other_hand() {
+        let mut params = Params::default();
+        params.put(ParamId::DefaultSpeed(Dof::Index), Value::Number(500));
+        params.put(ParamId::DefaultForce(Dof::Index), Value::Number(500));
+        let of_another = dangers(&params, &OvershootMap::default());
+        assert_eq!(of_another[0].expected.on, MeasuredOn::AnotherHand);
+        let mut map = OvershootMap::default();
+        let kind = CloseKind {
+            dof: Dof::Index,
+            stages: Stages::One,
+            speed: Speed::nearest(500),
+            threshold: Force::GENTLE,
+            stiffness: Stiffness::Rigid,
+        };
+        map.add(kind, 90.0, "2026-11-26");
+        assert_eq!(dangers(&params, &map), []);
+        map.add(kind, 700.0, "2026-11-26");
+        let told = dangers(&params, &map);
+        assert_eq!((told[0].expected.over_g, told[0].peak_g()), (700.0, 1200.0));
+        assert!(matches!(
+            told[0].expected.on,
+            MeasuredOn::ThisHand { closes: 2, .. }
+        ));
+    }
+
     #[test]
     fn only_what_hits_harder_than_before_has_to_be_meant() {
         let joint = |speed, force| {
@@ -108,7 +142,7 @@ mod tests {
             (joint(25, 500), joint(200, 500), false),
         ] {
             assert_eq!(
-                !worse(&before, &after).is_empty(),
+                !worse(&before, &after, &OvershootMap::default()).is_empty(),
                 told,
                 "{before:?} {after:?}"
             );

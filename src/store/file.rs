@@ -60,6 +60,21 @@ pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
     create_file(path)?.write_all(bytes)
 }
 
+/// Adds to the end of a file that only its person can read, all at once: others may add at the same time.
+///
+/// # Errors
+/// What the system says; then some of it may be there.
+pub fn append_private(path: &Path, text: &str) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    let mut options = OpenOptions::new();
+    options.append(true).create(true);
+    #[cfg(unix)]
+    options.mode(0o600);
+    options.open(path)?.write_all(text.as_bytes())
+}
+
 /// Writes a file so that at any moment either the old or the new one is there, whole.
 ///
 /// # Errors

@@ -8,8 +8,8 @@ pub mod saver;
 pub mod toml_file;
 
 pub use crate::store::file::{
-    create_empty_folder, create_folder, last_of, read_text, replace, replace_keeping_last,
-    set_aside, write_private,
+    append_private, create_empty_folder, create_folder, last_of, read_text, replace,
+    replace_keeping_last, set_aside, write_private,
 };
 pub use crate::store::job::{BackgroundJob, on_thread};
 pub use crate::store::saver::Saver;

@@ -1,6 +1,7 @@
 //! Writing rows that a hand keeps: read first, then each group written at rest and read back.
 
 use crate::hand::Setting;
+use crate::hand::overshoot::OvershootMap;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::changes::{self, RowOutcome, RowVerdict, WritePlan};
@@ -12,6 +13,7 @@ use crate::tasks::hand::{REACHED_WITHIN, TaskHand, answers, once_at_rest};
 use crate::tasks::save::back_up;
 use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What is to be written, and how.
 #[derive(Debug, Clone)]
@@ -24,6 +26,8 @@ pub struct Apply {
     pub backups: Option<Backups>,
     /// What follows if not every row was applied.
     pub otherwise: Otherwise,
+    /// What trials measured of the hand.
+    pub overshoot: Arc<OvershootMap>,
 }
 
 /// What follows if not every row was applied.
@@ -74,7 +78,7 @@ pub async fn apply<H: TaskHand>(
     let before = rows.with(is_needed)?;
     let plan = changes::plan_writes(&task.wanted, &before);
     let risks = Risks {
-        dangers: worse(&before, &before.with(&plan.rows)),
+        dangers: worse(&before, &before.with(&plan.rows), &task.overshoot),
         places: plan.rows.only(ParamId::is_place),
     };
     task.consent.check(&risks)?;

@@ -1,6 +1,7 @@
 //! SAVE: the hand's parameters into its flash, with a backup first and notes of what went out and what came of it
 //! (manual 2.6.4).
 
+use crate::hand::overshoot::OvershootMap;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
 use crate::params::danger::worse;
@@ -13,6 +14,7 @@ use crate::tasks::hand::{TaskHand, once_at_rest};
 use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 use tokio::time::sleep;
 
@@ -28,6 +30,8 @@ pub struct Save {
     pub before: Params,
     /// What the user agreed to.
     pub consent: Consent,
+    /// What trials measured of the hand.
+    pub overshoot: Arc<OvershootMap>,
 }
 
 /// Outcome of a SAVE, with the backup made before it.
@@ -55,7 +59,7 @@ pub async fn save<H: TaskHand>(
     let took = |span, bytes: &[u8]| tell(ParamStep::Read(span, bytes.to_vec()));
     let params = read::rows(hand, took).await.with(|_| true)?;
     let risks = Risks {
-        dangers: worse(&task.before, &params),
+        dangers: worse(&task.before, &params, &task.overshoot),
         ..Risks::default()
     };
     task.consent.check(&risks)?;

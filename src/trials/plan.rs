@@ -1,6 +1,6 @@
 //! What a series of grasp trials is to do: one type for window, command line and files. Checked once; runs nothing.
 
-use crate::hand::impact::{overshoot_g, two_stage_overshoot_g};
+use crate::hand::overshoot::{Expected, OvershootMap, Stages};
 use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -609,19 +609,20 @@ impl TrialPlan {
         Dof::ALL.into_iter().find(|dof| moves(dof) && locked[*dof])
     }
 
-    /// What the user should expect at most above the threshold on a rigid object, g, and the setting it is of.
-    pub fn expected(&self) -> Option<(TrialSetting, f64)> {
-        let peak = |setting: TrialSetting| {
+    /// What the user should expect at most above the threshold on a rigid object, and the setting it is of.
+    pub fn expected(&self, map: &OvershootMap) -> Option<(TrialSetting, Expected)> {
+        let stages = match self.approach {
+            Approach::OneStage => Stages::One,
+            Approach::TwoStage { .. } => Stages::Two,
+        };
+        let of = |setting: TrialSetting, dof| {
             let (speed, force) = (setting.speed.get().into(), setting.force.get().into());
-            match self.approach {
-                Approach::OneStage => overshoot_g(speed, force),
-                Approach::TwoStage { .. } => two_stage_overshoot_g(speed, force),
-            }
+            (setting, map.expected(dof, stages, speed, force))
         };
         let settings = self.grid.settings().into_iter();
         settings
-            .map(|setting| (setting, peak(setting)))
-            .max_by(|(_, a), (_, b)| a.total_cmp(b))
+            .flat_map(|setting| self.joints().map(move |dof| of(setting, dof)))
+            .max_by(|(_, a), (_, b)| a.over_g.total_cmp(&b.over_g))
     }
 
     /// Whether a first, slow trial has to find the contact.
@@ -783,7 +784,8 @@ mod tests {
     fn the_first_plan_of_all_can_be_run_and_is_gentle() {
         let plan = TrialPlan::default();
         assert_eq!(plan.check(), Ok(()));
-        assert!(plan.expected().is_some_and(|(_, peak)| peak < 100.0));
+        let expected = plan.expected(&OvershootMap::default());
+        assert!(expected.is_some_and(|(_, expected)| expected.over_g < 100.0));
     }
 
     #[test]

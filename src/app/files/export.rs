@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::env::day_folder;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
+use crate::hand::overshoot::OvershootMap;
 use crate::history::Table;
 use crate::link::Traffic;
 use crate::link::traffic::frame::Frame;
@@ -13,6 +14,7 @@ use crate::params::file::ParamsFile;
 use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
 use crate::store::{BackgroundJob, on_thread, write_private};
+use crate::trials::hand_map;
 use std::sync::Arc;
 
 /// The form of an exported list of frames.
@@ -39,6 +41,8 @@ pub enum Export {
     Poses(PoseLibrary),
     /// What a hand keeps, as it was read.
     Params(Box<ParamsFile>),
+    /// What trials measured of a hand.
+    Overshoot(Arc<OvershootMap>),
 }
 
 impl Export {
@@ -52,6 +56,7 @@ impl Export {
             Self::Picture(_) => "handscope-plots.png",
             Self::Poses(_) => pose_file::FILE_NAME,
             Self::Params(_) => params::file::FILE_NAME,
+            Self::Overshoot(_) => "handscope-overshoot.csv",
         }
     }
 
@@ -63,6 +68,7 @@ impl Export {
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
             Self::Params(file) => file.params.iter().count(),
+            Self::Overshoot(map) => map.kinds().len(),
         }
     }
 
@@ -73,6 +79,7 @@ impl Export {
             Self::Picture(bytes) => bytes.clone(),
             Self::Poses(library) => pose_file::text(library)?.into_bytes(),
             Self::Params(file) => file.to_toml().into_bytes(),
+            Self::Overshoot(map) => hand_map::csv(map).into_bytes(),
         })
     }
 }

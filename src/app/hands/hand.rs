@@ -16,7 +16,7 @@ use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
 use crate::app::trials::work::start_refusal;
-use crate::app::trials::{SeriesPlan, SeriesRun, StartRefusal};
+use crate::app::trials::{HandMap, SeriesPlan, SeriesRun, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
@@ -55,6 +55,8 @@ pub struct Hand {
     pub series: Option<SeriesRun>,
     /// The plan that begins once the arming that was asked for with it holds, and when that was.
     pub series_asked: Option<(SeriesPlan, Moment)>,
+    /// What trials measured of it.
+    pub overshoot: HandMap,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
@@ -178,6 +180,7 @@ impl Hand {
             leaving: before.leaving,
             procedures: before.procedures,
             measured: before.measured,
+            overshoot: before.overshoot,
             controls: if is_moved {
                 before.controls.at_next_connection()
             } else {

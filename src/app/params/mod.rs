@@ -10,3 +10,4 @@ pub(crate) mod work;
 pub use crate::app::params::action::ParamAction;
 pub use crate::app::params::refusal::{ParamRefusal, rest_refusal};
 pub use crate::app::params::state::ParamsState;
+pub(crate) use crate::app::params::work::ParamsHand;

@@ -6,6 +6,7 @@ use crate::app::params::compared::Compared;
 use crate::app::params::refusal::{ParamRefusal, rest_refusal};
 use crate::app::params::running::{FilesRead, ParamsEnd};
 use crate::app::readings::Freshness;
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Moment, Span};
 use crate::link::{LinkStatus, RequestError};
 use crate::params::backups::{Backup, Backups, Known};
@@ -256,10 +257,10 @@ impl ParamsState {
     }
 
     /// The joints that would wake up hitting harder than before, or harder at once.
-    pub(crate) fn save_dangers(&self) -> Vec<Danger> {
+    pub(crate) fn save_dangers(&self, overshoot: &OvershootMap) -> Vec<Danger> {
         let (live, after) = (self.live_params(), self.to_save());
-        let mut all = worse(&self.before_changes(&live), &after);
-        for danger in worse(&live, &after) {
+        let mut all = worse(&self.before_changes(&live), &after, overshoot);
+        for danger in worse(&live, &after, overshoot) {
             if !all.contains(&danger) {
                 all.push(danger);
             }

@@ -10,6 +10,7 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::app::params::running::{FilesRead, ParamsEnd};
 use crate::app::params::state::{Doing, ParamsState, SaveEnd, WriteQuestion, WriteRequest};
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Dof, HandSample, Moment};
 use crate::link::{LinkHandle, LinkStatus};
 use crate::params::backups::{Backups, Known, folder_beside};
@@ -25,6 +26,7 @@ use crate::tasks::save::{Save, SaveReport, save};
 use crate::tasks::{Consent, ParamStep, TaskError};
 use crate::transport::Endpoint;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Speed and force in force are read all the time; older ones are not copied.
@@ -34,7 +36,26 @@ const COPY_WITHIN: Duration = Duration::from_secs(5);
 #[derive(Clone, Copy)]
 struct HandContext<'a> {
     connection: &'a Connection,
+    overshoot: &'a Arc<OvershootMap>,
     env: &'a Env,
+}
+
+/// What is known of the hand whose parameters they are.
+#[derive(Clone, Copy)]
+pub(crate) struct ParamsHand<'a>(
+    pub(crate) &'a Connection,
+    /// What trials measured of it.
+    pub(crate) &'a Arc<OvershootMap>,
+);
+
+impl<'a> ParamsHand<'a> {
+    const fn with(self, env: &'a Env) -> HandContext<'a> {
+        HandContext {
+            connection: self.0,
+            overshoot: self.1,
+            env,
+        }
+    }
 }
 
 impl ParamsState {
@@ -42,15 +63,12 @@ impl ParamsState {
     pub(crate) fn act(
         &mut self,
         action: ParamAction,
-        connection: &Connection,
+        of: ParamsHand<'_>,
         sample: &HandSample,
         ctx: &Ctx<'_>,
     ) {
-        let link = &connection.status;
-        let hand = HandContext {
-            connection,
-            env: ctx.env,
-        };
+        let link = &of.0.status;
+        let hand = of.with(ctx.env);
         match action {
             ParamAction::Read if self.read_refusal(link).is_some() => {}
             ParamAction::Read => self.read_rows(hand),
@@ -63,12 +81,12 @@ impl ParamsState {
                 self.apply_rows(undo, Vec::new(), hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(self.staged.clone()),
+            ParamAction::Save => self.ask_save(self.staged.clone(), of.1),
             ParamAction::SaveWith(values) => {
                 if self.save_refusal_with(&values, link).is_none() {
                     let before = self.staged.clone();
                     self.stage_all(&values);
-                    self.ask_save(before);
+                    self.ask_save(before, of.1);
                 }
             }
             ParamAction::Agree if self.write_refusal(link).is_some() => {}
@@ -135,9 +153,9 @@ impl ParamsState {
     }
 
     /// Reads the rows because somebody looks at them, if it is due.
-    pub(crate) fn look_at(&mut self, connection: &Connection, env: &Env, now: Moment) {
-        if self.look(now) && self.read_refusal(&connection.status).is_none() {
-            self.read_rows(HandContext { connection, env });
+    pub(crate) fn look_at(&mut self, of: ParamsHand<'_>, env: &Env, now: Moment) {
+        if self.look(now) && self.read_refusal(&of.0.status).is_none() {
+            self.read_rows(of.with(env));
         }
     }
 
@@ -145,14 +163,14 @@ impl ParamsState {
     fn start<F>(
         &mut self,
         doing: Doing,
-        HandContext { connection, env }: HandContext<'_>,
+        hand: HandContext<'_>,
         task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
     ) where
         F: Future<Output = ParamsEnd> + Send + 'static,
     {
-        if let Some(link) = connection.link().cloned() {
+        if let Some(link) = hand.connection.link().cloned() {
             self.begin(doing);
-            self.task = Some(Running::start(env, |steps| task(link, steps)));
+            self.task = Some(Running::start(hand.env, |steps| task(link, steps)));
         }
     }
 
@@ -169,6 +187,7 @@ impl ParamsState {
             consent: Consent::To(agreed),
             backups: None,
             otherwise: Otherwise::Stay,
+            overshoot: Arc::clone(hand.overshoot),
         };
         self.start(Doing::Applying, hand, |link, steps| async move {
             let end = apply(&link, &task, |step| steps.tell(step)).await;
@@ -177,10 +196,10 @@ impl ParamsState {
     }
 
     /// Shows what a SAVE would change.
-    fn ask_save(&mut self, staged_before: Params) {
+    fn ask_save(&mut self, staged_before: Params, overshoot: &OvershootMap) {
         self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
-            dangers: self.save_dangers(),
+            dangers: self.save_dangers(overshoot),
             staged_before,
         });
     }
@@ -193,6 +212,7 @@ impl ParamsState {
             backups,
             before: self.before_changes(&Params::default()),
             consent: Consent::To(agreed),
+            overshoot: Arc::clone(hand.overshoot),
         };
         self.start(Doing::BackingUp, hand, |link, steps| async move {
             ParamsEnd::Saved(save(&link, &task, |step| steps.tell(step)).await)
@@ -208,7 +228,8 @@ impl ParamsState {
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
-    pub(crate) fn tick(&mut self, connection: &Connection, ctx: &mut Ctx<'_>) {
+    pub(crate) fn tick(&mut self, of: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
+        let connection = of.0;
         let (link, now) = (&connection.status, ctx.now);
         self.take_task(now);
         if !self.is_busy()
@@ -216,15 +237,9 @@ impl ParamsState {
             && self.question.is_none()
         {
             if self.is_applied() && self.save_refusal(link).is_none() {
-                self.save(
-                    agreed,
-                    HandContext {
-                        connection,
-                        env: ctx.env,
-                    },
-                )
+                self.save(agreed, of.with(ctx.env));
             } else {
-                self.save = Some((SaveEnd::NotApplied, now))
+                self.save = Some((SaveEnd::NotApplied, now));
             }
         }
         if let Some(read) = BackgroundJob::take_from(&mut self.listing) {

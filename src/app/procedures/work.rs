@@ -11,6 +11,7 @@ use crate::app::procedures::procedure::{
 use crate::app::procedures::reach::{Asking, GoRequest, decided};
 use crate::app::settings::Settings;
 use crate::hand::HandSample;
+use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkStatus;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
@@ -183,11 +184,20 @@ impl Procedures {
         self.requested.as_mut()?.try_recv().ok()
     }
 
+    /// Looks at the readings while a calibration asks whether the hand is ready for it.
+    pub(crate) fn watch(&mut self, sample: &HandSample) {
+        if let Some(Procedure::Calibrate(card)) = &mut self.card
+            && card.stage == ProcedureStage::Asking
+        {
+            card.checks.watch(sample);
+        }
+    }
+
     /// Takes in what the task under the card told. True once it is over.
     pub(crate) fn take_news(
         &mut self,
-        sample: &HandSample,
         params: &mut ParamsState,
+        overshoot: &OvershootMap,
         settings: &mut Settings,
     ) -> bool {
         match &mut self.card {
@@ -196,7 +206,8 @@ impl Procedures {
                 let is_over = card.stage.take_news(&mut card.run, |step, at| {
                     match step {
                         PlaceStep::BackedUp(path, held) => {
-                            card.dangers = worse(&params.before_changes(held), held);
+                            let before = params.before_changes(held);
+                            card.dangers = worse(&before, held, overshoot);
                             card.backup = Some(path.clone());
                         }
                         PlaceStep::Writing(_) => params.lost_at = Some(at),
@@ -222,12 +233,7 @@ impl Procedures {
                 }
                 true
             }),
-            Some(Procedure::Calibrate(card)) => {
-                if card.stage == ProcedureStage::Asking {
-                    card.checks.watch(sample);
-                }
-                card.stage.take_news(&mut card.run, |_, _| true)
-            }
+            Some(Procedure::Calibrate(card)) => card.stage.take_news(&mut card.run, |_, _| true),
         }
     }
 

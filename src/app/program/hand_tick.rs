@@ -4,6 +4,7 @@ use crate::app::ctx::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
+use crate::app::params::ParamsHand;
 use crate::app::poses::PoseState;
 use crate::app::procedures::Procedure;
 use crate::app::program::inputs;
@@ -51,9 +52,11 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
         hand.disarm(ctx.now);
         ctx.tell(NoticeKind::IdleDisarmed);
     }
-    hand.params.tick(&hand.connection, ctx);
+    let of = ParamsHand(&hand.connection, &hand.overshoot.map);
+    hand.params.tick(of, ctx);
     start_asked(hand, shared.trials, ctx);
     tick_series(hand, shared.trials, ctx);
+    hand.overshoot.tick(hand.connection.endpoint.as_ref(), ctx);
     tick_procedure(hand, shared.settings, ctx);
     if let Some(link) = hand.connection.link() {
         link.read_first(shared.settings.read_first);
@@ -132,6 +135,7 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     let Some(run) = &mut hand.series else { return };
     let news = run.news(trials);
     let epoch = run.epoch;
+    hand.overshoot.add(news.measured);
     for (at, words) in news.begun {
         record_event(hand, at, EventKind::Trial, words);
     }
@@ -147,10 +151,9 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
 
 /// Takes in what the task under the card told, and goes where it has to look.
 fn tick_procedure(hand: &mut Hand, settings: &mut Settings, ctx: &mut Ctx<'_>) {
-    let sample = hand.readings.sample;
-    let is_over = hand
-        .procedures
-        .take_news(&sample, &mut hand.params, settings);
+    hand.procedures.watch(&hand.readings.sample);
+    let map = &hand.overshoot.map;
+    let is_over = hand.procedures.take_news(&mut hand.params, map, settings);
     if let Some(request) = hand.procedures.wants_link() {
         if hand.connection.endpoint.as_ref() != Some(&request.place) {
             hand.go(Some(request.place), ctx);

@@ -5,7 +5,7 @@ use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
-use crate::app::params::ParamAction;
+use crate::app::params::{ParamAction, ParamsHand};
 use crate::app::program::hand_tick::start_series;
 use crate::app::program::hands;
 use crate::app::state::State;
@@ -17,6 +17,7 @@ use crate::store::calendar::{since_1970, stamp};
 use crate::store::{BackgroundJob, on_thread};
 use crate::transport::{PortFound, ports};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Jobs under way, one of a kind at a time.
 #[derive(Default)]
@@ -75,8 +76,8 @@ impl Jobs {
     pub(super) fn param_action(&mut self, action: ParamAction, state: &mut State, env: &Env) {
         if action != ParamAction::Dump {
             hands::with_shown(state, env, |hand, _, ctx| {
-                let sample = hand.readings.sample;
-                hand.params.act(action, &hand.connection, &sample, ctx);
+                let of = ParamsHand(&hand.connection, &hand.overshoot.map);
+                hand.params.act(action, of, &hand.readings.sample, ctx);
             });
             return;
         }
@@ -124,6 +125,11 @@ impl Jobs {
                 let session = trials.session(id);
                 let save = |session| files::save(session, criterion, env);
                 self.sessions = session.and_then(save);
+            }
+            TrialAction::ForgetMap => state.hand_mut().overshoot.forget(),
+            TrialAction::ExportMap => {
+                let map = Arc::clone(&state.hand().overshoot.map);
+                self.export(Export::Overshoot(map), env);
             }
             action => trials.act(action, settings),
         }

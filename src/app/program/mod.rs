@@ -25,6 +25,7 @@ use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::hands::hand::REST_WITHIN;
 use crate::app::notices::{NoticeKind, RequestKind};
+use crate::app::params::ParamsHand;
 use crate::app::program::closing::Closing;
 use crate::app::program::exhibit::ExhibitWork;
 use crate::app::program::hand_actions::each;
@@ -360,7 +361,8 @@ impl App {
             return;
         }
         let hand = self.state.hands.shown_mut();
-        hand.params.look_at(&hand.connection, &self.env, now);
+        let of = ParamsHand(&hand.connection, &hand.overshoot.map);
+        hand.params.look_at(of, &self.env, now);
     }
 
     /// Whether something was tried, and reading what the hand keeps comes between nothing and the hand.

@@ -7,6 +7,7 @@ pub mod comparison;
 pub(crate) mod comparison_tests;
 pub(crate) mod files;
 pub mod form;
+pub mod hand_map;
 pub mod lines;
 pub mod run;
 pub mod state;
@@ -16,6 +17,7 @@ pub use crate::app::trials::action::TrialAction;
 pub use crate::app::trials::comparison::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, SessionDifference,
 };
+pub use crate::app::trials::hand_map::HandMap;
 pub use crate::app::trials::lines::{JointLines, TrialQuantity};
 pub use crate::app::trials::run::SeriesRun;
 pub use crate::app::trials::state::{

@@ -14,6 +14,7 @@ use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{self, SeriesStart, SeriesStep};
+use crate::trials::hand_map::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;
@@ -62,6 +63,8 @@ impl TrialsState {
             TrialAction::Goal(goal) => self.goal = *goal,
             TrialAction::Start(_)
             | TrialAction::ArmAndStart(_)
+            | TrialAction::ForgetMap
+            | TrialAction::ExportMap
             | TrialAction::Open(_)
             | TrialAction::Save(..) => {}
         }
@@ -128,6 +131,8 @@ pub(crate) struct SeriesHand<'a> {
 pub(crate) struct SeriesNews {
     /// Trials that began, in words.
     pub(crate) begun: Vec<(Moment, String)>,
+    /// What the trials measured that are over.
+    pub(crate) measured: Vec<MeasuredClose>,
     /// Set once it is over.
     pub(crate) end: Option<NoticeKind>,
 }
@@ -234,7 +239,10 @@ impl SeriesRun {
                     }
                     self.view = view;
                 }
-                SeriesStep::Trial(trial) => trials.add_trial(self.session, *trial),
+                SeriesStep::Trial(trial) => {
+                    news.measured.extend(closes_of(&trial));
+                    trials.add_trial(self.session, *trial);
+                }
             }
         }
         news.end = end.map(|end| {

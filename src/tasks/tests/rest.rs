@@ -49,6 +49,7 @@ async fn rest_that_is_unknown_refuses_apply_save_reset_and_calibration() {
     let hand = unknown();
     let before = hand.holds(ParamId::DefaultSpeed(Dof::Index));
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted: wanted(),
         consent: Consent::Given,
         backups: None,
@@ -60,6 +61,7 @@ async fn rest_that_is_unknown_refuses_apply_save_reset_and_calibration() {
 
     let (_folder, backups) = files();
     let task = Save {
+        overshoot: std::sync::Arc::default(),
         backups: backups.clone(),
         before: Params::default(),
         consent: Consent::Given,
@@ -85,6 +87,7 @@ async fn rest_that_is_unknown_refuses_apply_save_reset_and_calibration() {
 async fn what_is_refused_for_rest_is_asked_again_for_eight_seconds_and_then_given_up() {
     let hand = unknown();
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted: wanted(),
         consent: Consent::Given,
         backups: None,
@@ -117,6 +120,7 @@ async fn an_armed_hand_is_not_asked_again() {
     let mut wanted = wanted();
     wanted.put(ParamId::DefaultForce(Dof::Index), Value::Number(50));
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted,
         consent: Consent::Given,
         backups: None,

@@ -30,6 +30,7 @@ fn reads() -> Vec<Asked> {
 
 async fn applied(hand: &FakeHand, wanted: Params) -> Result<Applied, TaskError> {
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted,
         consent: Consent::To(Vec::new()),
         backups: None,
@@ -212,6 +213,7 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     let joints: Vec<_> = risks.dangers.iter().map(|danger| danger.dof).collect();
     assert_eq!(joints, [Dof::Index]);
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted,
         consent: Consent::To(risks.dangers),
         backups: None,
@@ -234,6 +236,7 @@ async fn what_cannot_be_applied_whole_is_put_back_where_that_is_wanted() {
     wanted.put(ParamId::DefaultForce(Dof::Index), Value::Number(50));
     hand.script(nth(2, IS_KEEP, Fate::Verdict(Verdict::Differs)));
     let task = Apply {
+        overshoot: std::sync::Arc::default(),
         wanted,
         consent: Consent::Given,
         backups: None,
@@ -255,6 +258,7 @@ async fn saved(
     backups: Backups,
 ) -> (Result<SaveReport, TaskError>, Vec<ParamStep>) {
     let task = Save {
+        overshoot: std::sync::Arc::default(),
         backups,
         before: Params::default(),
         consent: Consent::To(Vec::new()),

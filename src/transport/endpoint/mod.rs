@@ -141,6 +141,17 @@ impl Endpoint {
         }
     }
 
+    /// The same as a file name that no other hand has, without its ending.
+    pub fn file_stem(&self) -> String {
+        let (place, id) = self.place_and_id();
+        let plain = |letter: char| match letter {
+            letter if letter.is_ascii_alphanumeric() || letter == '.' => letter.to_string(),
+            letter => format!("_{:x}", u32::from(letter)),
+        };
+        let place: String = place.chars().map(plain).collect();
+        format!("{place}-id{id}")
+    }
+
     /// True if the hand is on a CAN bus.
     pub const fn is_can(&self) -> bool {
         matches!(

@@ -40,6 +40,8 @@ pub struct CloseFacts {
     pub noise_g: f64,
     /// g for each unit of ANGLE_ACT, at rest; `None` where it gave too little to tell.
     pub stiffness: Option<f64>,
+    /// What it is at least, where it gave too little to tell.
+    pub stiffness_at_least: Option<f64>,
     /// Slips while it was held; `None` if touch told too little.
     pub slips: Option<usize>,
     /// Longest time between two readings of the force, s.
@@ -64,8 +66,11 @@ impl CloseFacts {
         });
         let pressed = joint.contact_angle.zip(resting);
         let pressed = pressed.map(|(contact, resting)| contact - resting);
-        let stiffness = joint.steady_force_g.zip(pressed);
-        let stiffness = stiffness.filter(|(_, pressed)| *pressed >= PRESSED_LEAST);
+        let pressed = joint.steady_force_g.zip(pressed);
+        let (told, untold): (Option<_>, Option<_>) = match pressed {
+            Some((_, pressed)) if pressed < PRESSED_LEAST => (None, joint.steady_force_g),
+            told => (told, None),
+        };
         Self {
             dof: joint.dof,
             is_dead: joint.dead_drive,
@@ -82,7 +87,8 @@ impl CloseFacts {
             is_clipped: joint.clipped == Some(true),
             steady_g: joint.steady_force_g,
             noise_g: joint.noise_g.unwrap_or_default(),
-            stiffness: stiffness.map(|(steady, pressed)| steady / pressed),
+            stiffness: told.map(|(steady, pressed)| steady / pressed),
+            stiffness_at_least: untold.map(|steady| steady / PRESSED_LEAST),
             slips: joint.slip_count,
             longest_gap_s: joint.longest_gap_s,
         }

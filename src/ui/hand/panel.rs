@@ -1,6 +1,7 @@
 //! The drawn hand in the window: what the state says goes into the picture, and the finger that was chosen comes out.
 
 use crate::app::action::Action;
+use crate::app::hand::Activity;
 use crate::app::hands::Hand;
 use crate::app::readings::Freshness;
 use crate::hand::heat::{HOT, WARM};
@@ -66,6 +67,10 @@ impl HandPanel {
             return None;
         }
         let clicked = response.clicked();
+        // What is dragged must be seen.
+        if response.is_pointer_button_down_on() {
+            return None;
+        }
         response.on_hover_text(used.joint.map_or_else(
             || look.tip(panels::HAND_PICTURE).to_owned(),
             |dof| said(pane, dof),
@@ -127,10 +132,13 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
         let raw = angle?.value[dof].documented()?;
         Some(f32::from(raw) / 1000.0)
     });
+    // What this window does not send joint by joint stands in the hand's own register.
+    let told = matches!(state.activity(), Activity::Series | Activity::Following(_));
+    let register = state.readings.sample.angle_set.filter(|_| told);
     let target = PerDof::from_fn(|dof| {
-        let target = state.controls.joints[dof]
-            .target
-            .filter(|_| state.connection.is_armed())?;
+        let sent = || state.controls.joints[dof].target;
+        let target = register.map_or_else(sent, |held| held.value[dof]?.angle());
+        let target = target.filter(|_| told || state.connection.is_armed())?;
         Some(f32::from(target.get()) / 1000.0)
     });
     let is_live = state.connection.is_live();

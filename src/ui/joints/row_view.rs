@@ -1,15 +1,16 @@
 //! One joint's row: name, status, lock, and below them its tracks and readings.
 
 use crate::app::action::Action;
-use crate::app::settings::Language;
-use crate::hand::{Dof, Force, Speed, impact};
+use crate::hand::impact::NOTABLE_G;
+use crate::hand::overshoot::Stages;
+use crate::hand::{Dof, Force, Speed};
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
-use crate::ui::text::{main, notices};
+use crate::ui::text::{main, notices, tune};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -168,31 +169,25 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
 fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
-    let joint = pane.state.hand().controls.joints[row.dof];
-    let set = joint.speed.zip(joint.force);
-    let is_rough = |(speed, force): &(Speed, Force)| {
-        impact::rough_from_speed(*force).is_some_and(|rough| *speed >= rough)
-    };
-    let Some((speed, force)) = set.filter(is_rough) else {
+    let (hand, look) = (pane.state.hand(), pane.look);
+    let joint = hand.controls.joints[row.dof];
+    let Some((speed, force)) = joint.speed.zip(joint.force) else {
         return;
     };
-    if pane.state.hand().series.is_some() {
+    let (speed, force) = (speed.get(), force.get());
+    let map = &hand.overshoot.map;
+    let expected = map.expected(row.dof, Stages::One, speed.into(), force.into());
+    if expected.over_g < NOTABLE_G || hand.series.is_some() {
         return;
     }
     let response = kit::warning_ui(ui, pane.look.palette.warn);
     let name = row.named(pane, main::NAME_IMPACT);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let (speed, force) = (speed.get(), force.get());
-    let peak = impact::overshoot_g(speed.into(), force.into());
-    let measured = match pane.look.language {
-        Language::En => format!(
-            "At speed {speed} a threshold of {force} g was exceeded by about {peak:.0} g on a rigid object."
-        ),
-        Language::Zh => format!(
-            "速度 {speed}、阈值 {force} g 时，抓取刚性物体的实测峰值超出阈值约 {peak:.0} g。"
-        ),
-    };
-    response.on_hover_text(format!("{measured}\n{}", pane.look.say(main::IMPACT_TIP)));
+    let peak_g = format!("{:.0}", expected.over_g);
+    let exceeded = look.fill(main::IMPACT, &[&speed, &force, &peak_g]);
+    let measured = tune::measured_on(look, &expected.on);
+    let tip = look.say(main::IMPACT_TIP);
+    response.on_hover_text(format!("{exceeded}\n{measured}\n{tip}"));
 }
 
 fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
-use crate::hand::{Angle, Dof, Force, PerDof, Speed, impact};
+use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::ui::hand::aim;
 use crate::ui::joints::row::{JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
@@ -136,7 +136,9 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
         let live = if over { look.palette.warn } else { row.color };
         track.color = look.value(freshness, live);
-        let rough = joint.speed.and_then(impact::rough_from_threshold);
+        let rough = joint.speed;
+        let map = &hand.overshoot.map;
+        let rough = rough.and_then(|speed| map.rough_from_threshold(row.dof, speed));
         track.rough_from = rough.map(Force::get);
         track.peak = hand.readings.peaks.get(row.dof).map(|(grams, _)| grams);
     }
@@ -164,7 +166,10 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     let value = value_of(row, joints.map(|joint| joint.speed.map(Speed::get)));
     let value = value.filter(|_| runs.is_none());
     let others = PerDof::from_fn(|dof| hand.held_otherwise(dof).speed.map(Speed::get));
-    let rough = row.and_then(|row| impact::rough_from_speed(joints[row.dof].force?));
+    let rough = row.and_then(|row| {
+        let threshold = joints[row.dof].force?;
+        hand.overshoot.map.rough_from_speed(row.dof, threshold)
+    });
     let name = named(pane, row, main::NAME_SPEED);
     let setting = TrackRow {
         caption: main::SPEED,

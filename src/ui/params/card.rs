@@ -6,6 +6,7 @@ use crate::app::params::action::ParamAction;
 use crate::app::params::state::{WriteQuestion, WriteRequest};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
+use crate::hand::overshoot::MeasuredOn;
 use crate::params::danger::Danger;
 use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::table::value_text;
@@ -77,12 +78,14 @@ fn changes(state: &State, look: Look, card: Card) -> Card {
 pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
     let hard = dangers
         .iter()
-        .filter(|danger| danger.overshoot_g >= NOTABLE_G);
-    let slowly = hard.map(|danger| overshoot_g(SLOWEST, f64::from(danger.force_g)));
-    let slowly = slowly.reduce(f64::max);
-    if slowly.is_some() {
+        .filter(|danger| danger.expected.over_g >= NOTABLE_G);
+    if hard.clone().next().is_some() {
         card = card.warning(device::DANGER_LATE);
     }
+    let is_of_another = |danger: &&Danger| danger.expected.on == MeasuredOn::AnotherHand;
+    let slowly = hard.filter(is_of_another);
+    let slowly = slowly.map(|danger| overshoot_g(SLOWEST, f64::from(danger.force_g)));
+    let slowly = slowly.reduce(f64::max);
     let strong = dangers.iter().filter(|danger| danger.is_above_rated());
     let strong: Vec<&str> = strong
         .map(|danger| look.say(words::dof(danger.dof)))
@@ -97,7 +100,18 @@ pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
         device::DANGER_OVER,
         tune::COLUMN_PEAK,
     ]);
-    card = dangers.iter().fold(card, row).note(device::DANGER_MEASURED);
+    card = dangers.iter().fold(card, row);
+    card = dangers.iter().fold(card, |card, danger| {
+        if is_of_another(&danger) {
+            return card;
+        }
+        let name = look.say(words::dof(danger.dof));
+        let measured = tune::measured_on(look, &danger.expected.on);
+        card.note(format!("{name}: {measured}"))
+    });
+    if dangers.iter().any(|danger| is_of_another(&danger)) {
+        card = card.note(device::DANGER_MEASURED);
+    }
     if dangers.iter().any(|danger| danger.is_beyond_measured()) {
         card = card.note(device::DANGER_BEYOND);
     }
@@ -111,7 +125,7 @@ fn row(card: Card, danger: &Danger) -> Card {
     let cells = [
         danger.speed.to_string(),
         danger.force_g.to_string(),
-        format!("+{:.0}", danger.overshoot_g),
+        format!("+{:.0}", danger.expected.over_g),
         format!("{:.0}", danger.peak_g()),
     ];
     card.row(words::dof(danger.dof), cells)

@@ -103,7 +103,8 @@ texts! {
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
     LOCK_TIP: "Locks the joint: it is left alone by Open and by its slider.", "锁定：“张开”与滑块都不再移动该自由度。";
     UNLOCK_TIP: "Locked: left alone by Open and by its slider. Press to unlock.", "已锁定：“张开”与滑块都不会移动该自由度。按下可解锁。";
-    IMPACT_TIP: "Impact zone: the threshold stops the drive, it does not limit the force of a fast finger.\nMeasured on a sister hand. Slow down to 25 before contact to stay within 100 g. The slanted part of each track is this zone.", "冲击区：阈值只让驱动器停止，不能限制快速手指的冲击力。\n数据取自同系列型号实测。接触前降到速度 25，可控制在 100 g 以内。滑轨上的斜线段即为此区。";
+    IMPACT: "At speed {} a threshold of {} g was exceeded by about {} g on a rigid object.", "速度 {}、阈值 {} g 时，抓取刚性物体的实测峰值超出阈值约 {} g。";
+    IMPACT_TIP: "Impact zone: the threshold stops the drive, it does not limit the force of a fast finger.\nSlow down to 25 before contact to stay within 100 g. The slanted part of each track is this zone.", "冲击区：阈值只让驱动器停止，不能限制快速手指的冲击力。\n接触前降到速度 25，可控制在 100 g 以内。滑轨上的斜线段即为此区。";
     EVERY: "All", "全部";
     EACH: "Force and speed of each joint", "各自由度的力阈值与速度", "Shows or hides the force threshold and the speed of each joint.", "显示或隐藏各自由度的力阈值与速度。";
     LINK_FINGERS: "Link", "联动", "The four fingers move together: each goes as far as the one you move. The thumb stays apart.", "四指联动：拖动一指，其余三指移动相同的量。大拇指不受影响。";

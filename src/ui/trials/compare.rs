@@ -16,6 +16,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::{self, TableView};
+use crate::ui::trials::hand_map::HandMapView;
 use crate::ui::trials::tune_live::{self, LiveChart};
 use egui::{Align2, Panel, ScrollArea, Sense, Ui, vec2};
 
@@ -39,6 +40,9 @@ pub(crate) struct ResultsView {
     /// The trial that stands out.
     strong: Option<TrialKey>,
     best: BestView,
+    /// Whether what was measured of this hand is shown in place of trials.
+    is_of_hand: bool,
+    map: HandMapView,
 }
 
 impl ResultsView {
@@ -57,11 +61,18 @@ impl ResultsView {
             ui.horizontal(|ui| {
                 fold_ui(ui, pane);
                 kit::head_ui(ui, look, look.say(tune::RESULTS), |ui| {
-                    if let Some(session) = focus {
+                    if let Some(session) = focus.filter(|_| !self.is_of_hand) {
                         self.files_ui(ui, pane, session);
                     }
+                    kit::left_ui(ui, |ui| {
+                        let all = [(false, tune::MAP_TRIALS), (true, tune::MAP_SHOW)];
+                        kit::pick_ui(ui, look, (&mut self.is_of_hand, tune::MAP_WHICH), all);
+                    });
                 });
             });
+            if self.is_of_hand {
+                return self.map.ui(ui, pane);
+            }
             if let Some(refused) = &trials.refused {
                 kit::say_ui(ui, &notices::notice(look, refused), look.palette.warn);
             }

@@ -89,7 +89,8 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
         words = format!("{words} {}", look.say(tune::WILL_PROBE));
     }
     kit::say_ui(ui, &words, palette.text);
-    if let Some((setting, peak)) = plan.expected() {
+    if let Some((setting, expected)) = plan.expected(&pane.state.hand().overshoot.map) {
+        let peak = expected.over_g;
         let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
         let parts: [&dyn std::fmt::Display; 3] = [&peak_g, &setting.speed.get(), &force];
         let color = if peak >= NOTABLE_G {
@@ -98,6 +99,7 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
             palette.muted
         };
         let label = kit::say_ui(ui, &look.fill(tune::EXPECT, &parts), color);
-        label.on_hover_text(look.tip(tune::EXPECT));
+        let measured = tune::measured_on(look, &expected.on);
+        label.on_hover_text(format!("{}\n{measured}", look.tip(tune::EXPECT)));
     }
 }

@@ -9,7 +9,7 @@ use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{tune, words};
 use crate::ui::theme;
-use crate::ui::trials::plot::LEAST_S;
+use crate::ui::trials::compare_curves::LEAST_S;
 use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
 
 /// The plot of one trial.

@@ -78,6 +78,7 @@ async fn one_lost_reply_makes_neither_apply_nor_save_fail() {
             let mut wanted = Params::default();
             wanted.put(INDEX, Value::Number(speed));
             let task = Apply {
+                overshoot: std::sync::Arc::default(),
                 wanted,
                 consent: Consent::Given,
                 backups: Some(backups.clone()),
@@ -88,6 +89,7 @@ async fn one_lost_reply_makes_neither_apply_nor_save_fail() {
             assert!(applied.is_whole(), "{wire} after {ms} ms: {applied:?}");
             sleep(Duration::from_secs(5)).await;
             let task = Save {
+                overshoot: std::sync::Arc::default(),
                 backups: backups.clone(),
                 before: applied.before,
                 consent: Consent::Given,

@@ -7,6 +7,7 @@ use nix::unistd::Pid;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -37,8 +38,14 @@ impl Ended {
     }
 }
 
+/// The program as for a user of its own, of whom nothing is kept yet.
 pub(crate) fn handscope() -> Command {
+    static USERS: AtomicU32 = AtomicU32::new(0);
+    let user = USERS.fetch_add(1, Ordering::Relaxed);
+    let home = format!("home-{}-{user}", std::process::id());
     let mut command = Command::new(env!("CARGO_BIN_EXE_handscope"));
+    command.env("HOME", Path::new(env!("CARGO_TARGET_TMPDIR")).join(home));
+    command.env_remove("XDG_CONFIG_HOME");
     // Without a display, unless a test gives it one.
     for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(display);

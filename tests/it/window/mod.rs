@@ -13,6 +13,7 @@ mod keys;
 mod layout;
 mod mirror;
 mod motion;
+mod overshoot;
 mod plots;
 mod poses;
 mod recordings;

@@ -5,6 +5,7 @@ pub(crate) mod search;
 use crate::app::trials::SessionDifference;
 use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
+use crate::hand::overshoot::{MeasuredOn, Stiffness};
 use crate::hand::{Dof, Fault};
 use crate::trials::Stage;
 use crate::trials::plan::PlanField;
@@ -140,6 +141,32 @@ texts! {
     PROMOTE: "Make it the default", "设为默认", "Stages speed and threshold of the best as those after power-up, for the joints tried, and shows the card that saves them. Nothing is written before its yes.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，并显示保存卡片；确认前不写入。";
     BEST_SIGN: "Best setting", "最佳设置";
     BEST_OVER: "At most {} g over the threshold", "最多超出力阈值 {} g";
+    MEASURED_HERE: "Measured on this hand in {} closes, the last on {}.", "由此手的 {} 次闭合测得，最近一次 {}。";
+    MEASURED_ELSEWHERE: "Measured on another hand of the family.", "在同系列另一只手上测得。";
+    MAP_SHOW: "This hand", "此手", "What trials and searches measured of this hand: how far its closes went past their thresholds. The warnings use it.", "试验与搜索对此手的实测：闭合时超出力阈值多少。警告据此给出。";
+    MAP_TRIALS: "Trials", "试验", "The trials of now and of files.", "本次与文件中的试验。";
+    MAP_WHICH: "What is shown", "显示内容";
+    MAP_EMPTY: "Nothing measured of this hand yet", "尚无此手的实测数据";
+    MAP_EMPTY_BODY: "Until then warnings of hard contacts use what was measured on another hand of the family. Each trial and each search on this hand adds to it, and it is kept.", "在此之前，冲击警告采用同系列另一只手的数据。此手的每次试验与搜索都会加入并保留。";
+    MAP_NAME: "Overshoot of this hand over speed", "此手超出量与速度的关系";
+    MAP_AXES: "Across: speed. Up: most above the threshold, g.", "横轴：速度。纵轴：超出阈值的最大值 g。";
+    MAP_OTHER: "another hand, threshold {} g, rigid", "另一只手，阈值 {} g，刚性物体";
+    MAP_POINT: "{} closes: at most {} g over the threshold, {} on average; the last on {}.", "{} 次闭合：最多超出阈值 {} g，平均 {}；最近 {}。";
+    MAP_ALL: "All joints", "全部自由度";
+    MAP_PICK: "Shows this joint alone.", "只显示该自由度。";
+    MAP_EXPORT: "Export", "导出", "Saves it as a table for spreadsheets.", "保存为表格文件。";
+    MAP_FORGET: "Forget", "清除", "Asks whether to forget all that was measured of this hand.", "询问是否清除此手的全部实测数据。";
+    MAP_FORGET_SURE: "Forget all of it", "确定清除", "Warnings use another hand's figures then.", "之后警告采用另一只手的数据。";
+    MAP_FORGET_NOT: "Keep it", "保留";
+    MAP_TWO: "fast first", "先快后慢";
+    MAP_JOINT: "Joint", "自由度";
+    MAP_SPEED: "Speed", "速度", "At the contact.", "接触时的速度。";
+    MAP_THRESHOLD: "Threshold", "阈值";
+    MAP_OBJECT: "Object", "物体", "By what it gave: soft below 5 g for each unit of the angle, rigid from 20.", "按其变形：每角度单位低于 5 g 为软，20 g 起为硬。";
+    MAP_CLOSES: "Closes", "次数";
+    MAP_MOST: "Most over", "最多超出";
+    MAP_MEAN: "Mean over", "平均超出";
+    MAP_LAST: "Last", "最近";
     TRIED_ON: "Tried on another hand: {}", "在另一只手上试验：{}";
     NO_CONTACT_DRAWN: "{} without contact, not drawn", "{} 条无接触，未显示";
     JOINT_NAME: "{} takes part", "{}参与试验";
@@ -171,6 +198,14 @@ texts! {
     ALONE: "{} alone: the sessions differ in {}", "仅统计{}，各轮差异：{}", "Figures of such sessions cannot be compared, so map and best setting are of the selected session.", "存在差异的试验不能合并统计，超出量图与最佳设置只针对所选的轮次。";
     TOGETHER: "Over all sessions shown", "统计所有显示的轮次";
     STATE: "{}: saved", "{}的保存状态";
+
+    /// How stiff an object was.
+    fn stiffness(Stiffness) {
+        Stiffness::Soft => "soft", "软";
+        Stiffness::Firm => "firm", "中等";
+        Stiffness::Rigid => "rigid", "硬";
+        Stiffness::Unknown => "not told", "未知";
+    }
 
     /// What the hand does in a series.
     fn stage(Stage) {
@@ -294,5 +329,13 @@ pub(crate) fn list_error(look: Look, error: ListError) -> String {
         ListError::NotInRange { most } => look.fill(LIST_RANGE, &[&most]),
         ListError::TooLong => look.say(LIST_LONG).into(),
         ListError::Empty => look.say(LIST_EMPTY).into(),
+    }
+}
+
+/// On which hand a figure was measured.
+pub(crate) fn measured_on(look: Look, on: &MeasuredOn) -> String {
+    match on {
+        MeasuredOn::AnotherHand => look.say(MEASURED_ELSEWHERE).to_owned(),
+        MeasuredOn::ThisHand { closes, last } => look.fill(MEASURED_HERE, &[closes, last]),
     }
 }

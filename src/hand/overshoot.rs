@@ -1,0 +1,438 @@
+//! How far one hand runs past its force thresholds, as its own closes showed: it replaces what was measured on another hand of
+//! the family. Counts closes by what was set and by how stiff the object was; guesses nothing beyond what was tried.
+
+use crate::hand::impact::{self, NOTABLE_G};
+use crate::hand::{Dof, Force, Speed};
+use serde::{Deserialize, Serialize};
+
+/// Kinds of closes that are kept; the oldest make room.
+pub const KINDS_MAX: usize = 2000;
+/// What was measured up to a speed tells of speeds this much faster.
+const SPEED_FACTOR: f64 = 1.1;
+
+/// How stiff an object was under a finger that pressed it, in g for each unit of ANGLE_ACT.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stiffness {
+    /// Less than 5: foam, a soft ball.
+    Soft,
+    /// 5 to 20: rubber, a full carton.
+    Firm,
+    /// 20 or more: wood, metal. The published rigid block gave 25.
+    Rigid,
+    /// Nothing held that could tell.
+    Unknown,
+}
+
+impl Stiffness {
+    /// All of them, the softest first.
+    pub const ALL: [Self; 4] = [Self::Soft, Self::Firm, Self::Rigid, Self::Unknown];
+
+    /// What so many g for each unit of ANGLE_ACT are.
+    pub fn of(g_per_angle: Option<f64>) -> Self {
+        match g_per_angle {
+            Some(g) if g >= 20.0 => Self::Rigid,
+            Some(g) if g >= 5.0 => Self::Firm,
+            Some(_) => Self::Soft,
+            None => Self::Unknown,
+        }
+    }
+
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Soft => "soft",
+            Self::Firm => "firm",
+            Self::Rigid => "rigid",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// How a close came near.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stages {
+    /// At its speed all the way.
+    One,
+    /// Fast, then at its speed before the contact.
+    Two,
+}
+
+/// What closes have in common that are counted together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct CloseKind {
+    /// The joint that closed.
+    #[serde(rename = "joint")]
+    pub dof: Dof,
+    /// How it came near.
+    pub stages: Stages,
+    /// SPEED_SET at the contact.
+    pub speed: Speed,
+    /// FORCE_SET, g.
+    #[serde(rename = "force_threshold_g")]
+    pub threshold: Force,
+    /// What it closed on.
+    pub stiffness: Stiffness,
+}
+
+/// What closes of one kind came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredCloses {
+    #[serde(flatten)]
+    /// What they have in common.
+    pub kind: CloseKind,
+    /// How many.
+    pub closes: u32,
+    /// The highest peak above the threshold, g.
+    pub most_over_g: f64,
+    /// The mean of the peaks above the threshold, g.
+    pub mean_over_g: f64,
+    /// The day of the first, such as `2026-11-26`.
+    pub first: String,
+    /// The day of the last.
+    pub last: String,
+}
+
+/// On which hand a figure was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MeasuredOn {
+    /// On this one, in so many closes, the last of them on this day.
+    ThisHand {
+        /// Closes of the speeds and thresholds that it rests on.
+        closes: u32,
+        /// Such as `2026-11-26`.
+        last: String,
+    },
+    /// On another of the family: this one was not tried there.
+    AnotherHand,
+}
+
+/// What is to be expected above a threshold at a contact with something rigid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// g above the threshold at the peak: of this hand the highest that was seen, of another the median.
+    pub over_g: f64,
+    /// What it rests on.
+    pub on: MeasuredOn,
+}
+
+/// What one hand's closes measured.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OvershootMap(Vec<MeasuredCloses>);
+
+impl OvershootMap {
+    /// Of what was kept. Kinds that stand twice are counted together.
+    pub fn of(kept: impl IntoIterator<Item = MeasuredCloses>) -> Self {
+        let mut map = Self::default();
+        kept.into_iter().for_each(|own| map.merge(own));
+        map
+    }
+
+    /// What was measured, by kind.
+    pub fn kinds(&self) -> &[MeasuredCloses] {
+        &self.0
+    }
+
+    /// True if nothing was measured.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// All closes that it rests on.
+    pub fn closes(&self) -> u32 {
+        self.0.iter().map(|own| own.closes).sum()
+    }
+
+    /// Takes one close that went so far past its threshold, g, on a day.
+    pub fn add(&mut self, kind: CloseKind, over_g: f64, day: &str) {
+        self.merge(MeasuredCloses {
+            kind,
+            closes: 1,
+            most_over_g: over_g,
+            mean_over_g: over_g,
+            first: day.into(),
+            last: day.into(),
+        });
+    }
+
+    fn merge(&mut self, new: MeasuredCloses) {
+        if new.closes == 0 || !new.most_over_g.is_finite() || !new.mean_over_g.is_finite() {
+            return;
+        }
+        let Some(own) = self.0.iter_mut().find(|own| own.kind == new.kind) else {
+            if self.0.len() >= KINDS_MAX
+                && let Some(oldest) =
+                    (0..self.0.len()).min_by(|a, b| self.0[*a].last.cmp(&self.0[*b].last))
+            {
+                self.0.remove(oldest);
+            }
+            return self.0.push(new);
+        };
+        let closes = own.closes.saturating_add(new.closes);
+        let share = f64::from(new.closes) / f64::from(closes);
+        own.mean_over_g += (new.mean_over_g - own.mean_over_g) * share;
+        own.most_over_g = own.most_over_g.max(new.most_over_g);
+        own.closes = closes;
+        if new.first < own.first {
+            own.first = new.first;
+        }
+        if new.last > own.last {
+            own.last = new.last;
+        }
+    }
+
+    /// What to expect of a joint that meets something rigid at a speed, units of SPEED_SET, with a threshold in g. Softer objects
+    /// that this hand closed on make it more, never less.
+    pub fn expected(&self, dof: Dof, stages: Stages, speed: f64, threshold_g: f64) -> Expected {
+        let published = match stages {
+            Stages::One => impact::overshoot_g(speed, threshold_g),
+            Stages::Two => impact::two_stage_overshoot_g(speed, threshold_g),
+        };
+        let near = || self.near(dof, stages, threshold_g);
+        let is_rigid = |own: &&MeasuredCloses| own.kind.stiffness == Stiffness::Rigid;
+        let rigid = Grown::at(near().filter(is_rigid), speed);
+        let own = match rigid {
+            Some(rigid) if rigid.is_within => Some(rigid),
+            _ => Grown::at(near(), speed).filter(|any| any.over_g > published),
+        };
+        match own {
+            Some(own) => Expected {
+                over_g: own.over_g,
+                on: MeasuredOn::ThisHand {
+                    closes: own.closes,
+                    last: own.last,
+                },
+            },
+            None => Expected {
+                over_g: published,
+                on: MeasuredOn::AnotherHand,
+            },
+        }
+    }
+
+    /// The smallest speed at which a contact on something rigid goes [`NOTABLE_G`] past this threshold, if any does.
+    pub fn rough_from_speed(&self, dof: Dof, threshold: Force) -> Option<Speed> {
+        let threshold_g = f64::from(threshold.get());
+        if self.near(dof, Stages::One, threshold_g).next().is_none() {
+            return impact::rough_from_speed(threshold);
+        }
+        let is_rough = |speed: i16| {
+            let expected = self.expected(dof, Stages::One, speed.into(), threshold_g);
+            expected.over_g >= NOTABLE_G
+        };
+        impact::first(Speed::MAX.get(), is_rough).and_then(|speed| Speed::new(speed).ok())
+    }
+
+    /// The smallest threshold that a contact on something rigid at this speed goes [`NOTABLE_G`] past, if any is.
+    pub fn rough_from_threshold(&self, dof: Dof, speed: Speed) -> Option<Force> {
+        let published = impact::rough_from_threshold(speed);
+        let own = self.0.iter().map(|own| own.kind);
+        let own = own.filter(|kind| kind.dof == dof && kind.stages == Stages::One);
+        // What is expected changes where another threshold's closes begin or cease to tell.
+        let edges = own.flat_map(|kind| {
+            let at = i64::from(kind.threshold.get());
+            [(at * 2 + 2) / 3, at * 3 / 2 + 1].map(Force::nearest)
+        });
+        edges
+            .chain(published)
+            .filter(|threshold| {
+                let (speed, threshold_g) = (speed.get().into(), threshold.get().into());
+                let expected = self.expected(dof, Stages::One, speed, threshold_g);
+                expected.over_g >= NOTABLE_G
+            })
+            .min()
+    }
+
+    /// What was measured of a joint at thresholds that tell of this one: two thirds of it to half as much again.
+    fn near(
+        &self,
+        dof: Dof,
+        stages: Stages,
+        threshold_g: f64,
+    ) -> impl Iterator<Item = &MeasuredCloses> {
+        let is_near = move |own: &&MeasuredCloses| {
+            let at = f64::from(own.kind.threshold.get());
+            own.kind.dof == dof
+                && own.kind.stages == stages
+                && threshold_g * 3.0 >= at * 2.0
+                && threshold_g * 2.0 <= at * 3.0
+        };
+        self.0.iter().filter(is_near)
+    }
+}
+
+/// How peaks of a joint grew with the speed: linear between the speeds that were tried, from nothing at rest, and never less at a
+/// higher speed.
+struct Grown {
+    over_g: f64,
+    /// Whether speeds as high were tried.
+    is_within: bool,
+    closes: u32,
+    last: String,
+}
+
+impl Grown {
+    /// At a speed; above the highest that was tried it is what it was there. `None` of no closes.
+    fn at<'a>(closes: impl Iterator<Item = &'a MeasuredCloses>, speed: f64) -> Option<Self> {
+        let mut closes: Vec<&MeasuredCloses> = closes.collect();
+        // Of one speed the highest first.
+        closes.sort_by(|a, b| {
+            let by_speed = a.kind.speed.cmp(&b.kind.speed);
+            by_speed.then(b.most_over_g.total_cmp(&a.most_over_g))
+        });
+        let fastest = f64::from(closes.last()?.kind.speed.get());
+        let (mut low, mut over_g) = ((0.0, 0.0), None);
+        for own in &closes {
+            let high = (f64::from(own.kind.speed.get()), own.most_over_g.max(low.1));
+            if speed <= high.0 && over_g.is_none() {
+                let part = (speed - low.0) / (high.0 - low.0).max(f64::EPSILON);
+                over_g = Some(low.1 + (high.1 - low.1) * part);
+            }
+            low = high;
+        }
+        Some(Self {
+            over_g: over_g.unwrap_or(low.1),
+            is_within: speed <= fastest * SPEED_FACTOR,
+            closes: closes.iter().map(|own| own.closes).sum(),
+            last: closes.iter().map(|own| own.last.as_str()).max()?.into(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind(speed: i16, threshold: i16, stiffness: Stiffness) -> CloseKind {
+        CloseKind {
+            dof: Dof::Index,
+            stages: Stages::One,
+            speed: Speed::new(speed).unwrap(),
+            threshold: Force::new(threshold).unwrap(),
+            stiffness,
+        }
+    }
+
+    fn map(closes: &[(i16, i16, Stiffness, f64)]) -> OvershootMap {
+        let mut map = OvershootMap::default();
+        for (speed, threshold, stiffness, over) in closes {
+            map.add(kind(*speed, *threshold, *stiffness), *over, "2026-11-20");
+        }
+        map
+    }
+
+    fn expected(map: &OvershootMap, speed: f64, threshold: f64) -> (f64, bool) {
+        let expected = map.expected(Dof::Index, Stages::One, speed, threshold);
+        (expected.over_g, expected.on != MeasuredOn::AnotherHand)
+    }
+
+    #[test]
+    fn closes_of_a_kind_are_counted_together_with_their_days() {
+        let mut map = map(&[(100, 500, Stiffness::Rigid, 40.0)]);
+        map.add(kind(100, 500, Stiffness::Rigid), 70.0, "2026-11-26");
+        map.add(kind(100, 500, Stiffness::Rigid), 10.0, "2026-11-02");
+        map.add(kind(100, 500, Stiffness::Soft), f64::NAN, "2026-11-02");
+        let [own] = map.kinds() else {
+            panic!("{map:?}")
+        };
+        assert_eq!(
+            (own.closes, own.most_over_g, own.mean_over_g),
+            (3, 70.0, 40.0)
+        );
+        assert_eq!(
+            (own.first.as_str(), own.last.as_str()),
+            ("2026-11-02", "2026-11-26")
+        );
+        assert_eq!(OvershootMap::of(map.kinds().to_vec()), map);
+        let twice = OvershootMap::of([map.kinds(), map.kinds()].concat());
+        assert_eq!((twice.kinds().len(), twice.closes()), (1, 6));
+    }
+
+    #[test]
+    fn this_hand_replaces_the_other_only_where_it_was_tried_on_something_rigid() {
+        let published = |speed, threshold| impact::overshoot_g(speed, threshold);
+        let none = OvershootMap::default();
+        assert_eq!(
+            expected(&none, 250.0, 500.0),
+            (published(250.0, 500.0), false)
+        );
+        let own = map(&[
+            (25, 500, Stiffness::Rigid, 10.0),
+            (200, 500, Stiffness::Rigid, 80.0),
+        ]);
+        assert_eq!(expected(&own, 200.0, 500.0), (80.0, true));
+        assert_eq!(expected(&own, 12.5, 500.0), (5.0, true));
+        assert_eq!(expected(&own, 112.5, 700.0), (45.0, true));
+        assert_eq!(
+            expected(&own, 220.0, 340.0),
+            (80.0, true),
+            "a little faster"
+        );
+        assert_eq!(
+            expected(&own, 250.0, 500.0),
+            (published(250.0, 500.0), false)
+        );
+        assert_eq!(
+            expected(&own, 200.0, 800.0),
+            (published(200.0, 800.0), false)
+        );
+        let two = own.expected(Dof::Index, Stages::Two, 25.0, 500.0);
+        assert_eq!(two.on, MeasuredOn::AnotherHand);
+        let thumb = own.expected(Dof::ThumbBend, Stages::One, 25.0, 500.0);
+        assert_eq!(thumb.on, MeasuredOn::AnotherHand);
+    }
+
+    #[test]
+    fn a_softer_object_makes_a_warning_sharper_and_never_milder() {
+        let mild = map(&[(250, 500, Stiffness::Soft, 20.0)]);
+        assert_eq!(expected(&mild, 250.0, 500.0).1, false);
+        let wild = map(&[(250, 500, Stiffness::Firm, 1500.0)]);
+        assert_eq!(expected(&wild, 250.0, 500.0), (1500.0, true));
+        assert!(expected(&wild, 600.0, 500.0).0 >= 1500.0);
+    }
+
+    #[test]
+    fn the_first_rough_speed_and_threshold_are_where_the_expected_is() {
+        let all = [
+            map(&[]),
+            map(&[(1000, 500, Stiffness::Rigid, 300.0)]),
+            map(&[(100, 500, Stiffness::Rigid, 900.0)]),
+            map(&[
+                (250, 200, Stiffness::Firm, 700.0),
+                (40, 1000, Stiffness::Rigid, 90.0),
+            ]),
+        ];
+        for map in &all {
+            for threshold in [100, 250, 400, 500, 700, 1200, 3000] {
+                let threshold_g = f64::from(threshold);
+                let rough = map.rough_from_speed(Dof::Index, Force::new(threshold).unwrap());
+                let found = (0..=1000_i16)
+                    .find(|speed| expected(map, f64::from(*speed), threshold_g).0 >= NOTABLE_G);
+                assert_eq!(rough.map(Speed::get), found, "{map:?} {threshold}");
+            }
+            for speed in [25, 100, 150, 250, 500, 1000] {
+                let rough = map.rough_from_threshold(Dof::Index, Speed::new(speed).unwrap());
+                let found = (0..=3000_i16).find(|threshold| {
+                    expected(map, f64::from(speed), f64::from(*threshold)).0 >= NOTABLE_G
+                });
+                assert_eq!(rough.map(Force::get), found, "{map:?} {speed}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_more_kinds_are_kept_than_there_is_room_for() {
+        let mut map = OvershootMap::default();
+        for nth in 0..2100_i16 {
+            let day = format!("2026-{:04}", nth);
+            map.add(
+                kind(nth % 1000, nth / 1000 + 100, Stiffness::Rigid),
+                1.0,
+                &day,
+            );
+        }
+        assert_eq!(map.kinds().len(), KINDS_MAX);
+        assert_eq!(map.kinds()[0].first, "2026-0100");
+    }
+}
