@@ -13,6 +13,7 @@
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
 //! | 1 | [`record`] | what happened at a hand, as typed values; session files, one for each hour, written by a thread of its own and read back; the formats of others |
 //! | 1 | [`store`] | files, and the calendar that their names use |
+//! | 1 | [`model`] | the hand as a model for others: URDF, MJCF, a table of joints |
 //! | 2 | [`history`] | records made cheap to draw; the one decimation of lines |
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; finding hands; what went over the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
@@ -66,6 +67,7 @@ pub mod history;
 pub mod inputs;
 pub mod link;
 pub mod manual;
+pub mod model;
 pub mod params;
 pub mod poses;
 pub mod record;

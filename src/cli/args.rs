@@ -7,6 +7,9 @@ use crate::cli::help::{self, HelpArgs};
 use crate::cli::hold::HoldArgs;
 use crate::cli::inputs::follow::FollowArgs;
 use crate::cli::inputs::show::InputsArgs;
+use crate::cli::model::ModelArgs;
+use crate::cli::overshoot::OvershootArgs;
+use crate::cli::packaging::{CompletionsArgs, ManArgs};
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
@@ -98,6 +101,24 @@ pub(crate) enum Command {
         after_help = "Examples:\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --arm\n  handscope tune --hand tcp:192.168.11.210 --joint index,thumb_bend --pose thumb_rotate=300 --limit 300 --hold 150 --arm --out egg\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --closes 22 --distribution-free --arm --json\n\nThis moves the hand, and only with --arm: put the object in its place, and keep everything else out of its way. Two slow closes find the object, then each is faster as far as what was measured allows, then one setting is closed again and again: about twenty closes in two minutes. Each close is a trial as of 'handscope trial', with the same limits. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. 'handscope help tune' tells what the result means.\n\nExit status: 0 a setting was confirmed; 1 ended early, or none could be; 2 wrong usage."
     )]
     Tune(TuneArgs),
+    /// Show what trials measured of a hand: how far its fingers went past their thresholds
+    #[command(
+        after_help = "Examples:\n  handscope overshoot --hand rs485:/dev/ttyUSB0\n  handscope overshoot --hand tcp:192.168.11.210 --out overshoot.csv\n  handscope overshoot --hand rs485:/dev/ttyUSB0 --forget\n\nNo hand is asked. Each close of 'handscope trial', 'handscope tune' and the window's Tune that its threshold stopped is counted by joint, speed, threshold and stiffness of the object. The warnings of hard contacts use it in place of what was measured on another hand."
+    )]
+    Overshoot(OvershootArgs),
+    /// Write the hand as a model for simulators and viewers: URDF, MJCF, and a table of joints
+    #[command(
+        after_help = "Examples:\n  handscope model --urdf --out model\n  handscope model --urdf --mjcf --side left --out model\n\nNo hand is asked. The table tells for each joint its name, its drive, its place in the registers, and how counts and radians go together. 'handscope help dds' tells what the files hold."
+    )]
+    Model(ModelArgs),
+    /// Print what lets a shell complete commands and options: bash, zsh, fish, ...
+    #[command(
+        after_help = "Examples:\n  handscope completions bash > ~/.local/share/bash-completion/completions/handscope\n  handscope completions fish > ~/.config/fish/completions/handscope.fish\n\nThe package brings them along; this is for a program that was built from source."
+    )]
+    Completions(CompletionsArgs),
+    /// Write the manual pages, for packages
+    #[command(hide = true)]
+    Man(ManArgs),
     /// Close thumb and index to a gap in mm, or on what stands between them
     #[command(
         after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size is told by the model. Ctrl-C stops the hand. 'handscope help grip' tells more.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."

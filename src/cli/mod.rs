@@ -9,7 +9,10 @@ mod hold;
 mod inputs;
 mod interrupt;
 mod listen;
+mod model;
 mod out;
+mod overshoot;
+mod packaging;
 mod params;
 mod parse;
 mod quirks;
@@ -104,6 +107,10 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Check(args) => wait_for(check::run(&mut out, &args)),
         Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
+        Command::Overshoot(args) => overshoot::run(&mut out, &args),
+        Command::Model(args) => model::run(&mut out, &args),
+        Command::Completions(args) => packaging::completions(&mut out, &args),
+        Command::Man(args) => packaging::man(&mut out, &args),
         Command::Grip(args) => wait_for(grip::run(&mut out, &args)),
         Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),

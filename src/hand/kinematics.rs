@@ -134,6 +134,31 @@ const JOINTS: [SegmentJoint; 12] = [
     joint(Thumb3, [21.903, 12.816, -0.30], [0.0; 3], 0.8024 * 0.9487),
 ];
 
+/// How a segment hangs on the one before it, of the right hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointPlace {
+    /// What it hangs on.
+    pub parent: Segment,
+    /// Where, in the frame of that, mm.
+    pub at_mm: [f32; 3],
+    /// How it stands there when the hand is open: roll, pitch and yaw, radians.
+    pub turned: [f32; 3],
+    /// How far it turns about its z axis for each radian of its drive; the drive's own joint has 1 or -1.
+    pub ratio: f32,
+}
+
+/// How a segment hangs on the one before it; nothing of the palm.
+pub fn joint_place(segment: Segment) -> Option<JointPlace> {
+    let at = (segment as usize).checked_sub(1)?;
+    let own = JOINTS.get(at)?;
+    Some(JointPlace {
+        parent: own.parent,
+        at_mm: own.at,
+        turned: own.turned,
+        ratio: own.ratio,
+    })
+}
+
 /// The joints' names in the order of [`Segment::ALL`], after the hand's side: `right_little_1_joint`.
 #[rustfmt::skip]
 const JOINT_NAMES: [&str; 12] = [

@@ -4,6 +4,7 @@
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
 use crate::link::{Clock, LinkEntries, LinkHandle};
+use crate::model::urdf::urdf;
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
 use crate::record::file::format::encode::EntryEncoder;
@@ -166,6 +167,8 @@ struct Writers {
     joints: DdsWriter,
     touch: [DdsWriter; Finger::ALL.len()],
     grip: DdsWriter,
+    /// Keeps the model for those that come later.
+    _model: DdsWriter,
 }
 
 impl Writers {
@@ -176,7 +179,14 @@ impl Writers {
         };
         let [little, ring, middle, index, thumb] =
             Finger::ALL.map(|finger| node.writer(&ros_topic(Topic::Touch(finger))));
+        let model = node.lasting_writer(&DdsTopic {
+            name: "rt/robot_description".into(),
+            type_name: "std_msgs::msg::dds_::String_".into(),
+        })?;
+        // Kept for those that come; nobody reads it yet who could be too slow.
+        let _kept = model.send(cdr::encode(&urdf(side)));
         Ok(Self {
+            _model: model,
             state: node.writer(&DdsTopic {
                 name: format!("rt/inspire_hand/state/{letter}"),
                 type_name: "inspire::inspire_hand_state".into(),

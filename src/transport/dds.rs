@@ -141,8 +141,20 @@ impl DdsNode {
     /// # Errors
     /// [`DdsError::Library`].
     pub fn writer(&self, topic: &DdsTopic) -> Result<DdsWriter, DdsError> {
+        self.writer_that(Durability::Volatile, topic)
+    }
+
+    /// The same; whoever comes later gets the last message, too.
+    ///
+    /// # Errors
+    /// [`DdsError::Library`].
+    pub fn lasting_writer(&self, topic: &DdsTopic) -> Result<DdsWriter, DdsError> {
+        self.writer_that(Durability::TransientLocal, topic)
+    }
+
+    fn writer_that(&self, lasts: Durability, topic: &DdsTopic) -> Result<DdsWriter, DdsError> {
         let reliably = QosPolicyBuilder::new()
-            .durability(Durability::Volatile)
+            .durability(lasts)
             .history(History::KeepLast { depth: 1 })
             .reliability(Reliability::Reliable {
                 // What cannot go out at once is too late.

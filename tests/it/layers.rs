@@ -8,7 +8,7 @@ use std::path::Path;
 /// The modules of each floor, from the lowest up.
 const FLOORS: [&[&str]; 11] = [
     &["hand", "manual", "system"],
-    &["codec", "transport", "record", "store"],
+    &["codec", "transport", "record", "store", "model"],
     &["history"],
     &["link", "sim", "params", "poses", "trials"],
     &["exhibit", "share", "inputs", "checkup"],

@@ -53,6 +53,7 @@ async fn rows(
         wanted,
         consent: args.consent(),
         backups: Some(args.common.backups()?),
+        overshoot: reach::overshoot(&args.common.hand),
         otherwise: if args.partial {
             Otherwise::Stay
         } else {

@@ -33,6 +33,7 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
         backups,
         before: known.saved.map(|file| file.params).unwrap_or_default(),
         consent: Consent::Given,
+        overshoot: reach::overshoot(&common.hand),
     };
     let told = |step| match step {
         ParamStep::Meant(risks) => words::warn(&risks),

@@ -1,12 +1,16 @@
 //! How a command about parameters reaches the hand: one link at a time, and where it may be next.
 
+use crate::app::files::settings_file;
 use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::hand::overshoot::OvershootMap;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::tasks::Reach;
 use crate::tasks::hand::answers;
 use crate::tasks::place::Decisions;
 use crate::transport::Endpoint;
+use crate::trials::hand_map;
 use std::future::ready;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -48,4 +52,12 @@ pub(crate) fn said_yes() -> Decisions {
         keeps: Box::pin(ready(true)),
         saves: Box::pin(ready(false)),
     }
+}
+
+/// What trials measured of a hand, by which its warnings go. Where that cannot be read they go by another hand.
+pub(crate) fn overshoot(hand: &Endpoint) -> Arc<OvershootMap> {
+    let file =
+        settings_file::default_path().and_then(|settings| hand_map::file_of(&settings, hand));
+    let map = file.and_then(|file| hand_map::read(&file).ok());
+    Arc::new(map.unwrap_or_default())
 }

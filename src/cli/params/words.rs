@@ -1,6 +1,7 @@
 //! Rows, dangers and results in sentences, tables and JSON, as the commands about parameters share them. Pure.
 
 use crate::cli::out::{Out, ReaderGone, say};
+use crate::hand::overshoot::MeasuredOn;
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile};
@@ -74,9 +75,17 @@ fn danger(danger: &Danger) -> String {
     } else {
         ""
     };
+    let measured = match &danger.expected.on {
+        MeasuredOn::AnotherHand => {
+            "on a rigid block, such a finger of another hand was measured to press".into()
+        }
+        MeasuredOn::ThisHand { closes, last } => {
+            format!("this finger was measured in {closes} closes, the last on {last}, to press")
+        }
+    };
     format!(
-        "{joint} would start with speed {speed} and a force threshold of {force} g{strong}; on a rigid block, such a finger was measured to press {:.0} g beyond its threshold",
-        danger.overshoot_g
+        "{joint} would start with speed {speed} and a force threshold of {force} g{strong}; {measured} {:.0} g beyond its threshold",
+        danger.expected.over_g
     )
 }
 

@@ -1,19 +1,22 @@
 //! The trials that are over: shown, and written where that is asked. The files are written on a thread of their own: a slow disk
 //! must not make the hand's feedback old.
 
-use crate::cli::out::Out;
+use crate::app::files::settings_file;
+use crate::cli::out::{Out, say};
 use crate::cli::trial::output::{trial_json, trial_lines};
+use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::SeriesStep;
 use crate::transport::Endpoint;
+use crate::trials::hand_map::{self, MeasuredClose, closes_of};
 use crate::trials::session::SessionHead;
 use crate::trials::session_writer::TrialSessionWriter;
 use crate::trials::{Abort, Criterion, EarlyEnd, Trial, TrialPlan, TrialSummary};
 use anyhow::{Context as _, anyhow};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 
@@ -36,6 +39,9 @@ pub(crate) struct TrialResults<'a> {
     json: bool,
     writer: Option<Writer>,
     trials: Vec<TrialSummary>,
+    /// What trials measured of the hand is added to this file, by threads that may wait.
+    map: Option<PathBuf>,
+    adding: Vec<JoinHandle<io::Result<OvershootMap>>>,
     total: usize,
     /// What could not be shown or written first.
     error: Option<anyhow::Error>,
@@ -74,6 +80,9 @@ impl<'a> TrialResults<'a> {
             json: wanted.json,
             writer: wanted.folder.map(started).transpose()?,
             trials: Vec::new(),
+            map: settings_file::default_path()
+                .and_then(|settings| hand_map::file_of(&settings, hand)),
+            adding: Vec::new(),
             total: 0,
             error: None,
         })
@@ -99,6 +108,7 @@ impl<'a> TrialResults<'a> {
             trial.summary.samples = Some(trial.summary.samples_file());
         }
         let summary = trial.summary.clone();
+        self.keep(closes_of(&trial));
         let written = self.writer.as_ref().map_or(Ok(()), |(to, _)| {
             to.try_send(trial).map_err(|_gone| {
                 anyhow!("the trials cannot be written as fast as they come, or at all")
@@ -110,12 +120,29 @@ impl<'a> TrialResults<'a> {
         shown.and_then(|()| self.out.flush()).and(written)
     }
 
+    /// Adds what a trial measured to what is known of the hand.
+    fn keep(&mut self, closes: Vec<MeasuredClose>) {
+        if let Some(file) = self.map.clone().filter(|_| !closes.is_empty()) {
+            let add = move || hand_map::add(&file, &closes, &day(since_1970()));
+            self.adding.push(std::thread::spawn(add));
+        }
+    }
+
     /// Waits until all is written, and gives the trials. `note` is what the session came to, for its file.
     pub(crate) fn close(
         self,
         aborted: Option<Abort>,
         note: Option<(&str, toml::Table)>,
     ) -> anyhow::Result<Vec<TrialSummary>> {
+        for added in self.adding {
+            let file = self.map.as_deref().unwrap_or(Path::new(""));
+            if let Ok(Err(error)) = added.join() {
+                say(&format!(
+                    "warning: what was measured of this hand is not kept in {}: {error}",
+                    file.display()
+                ));
+            }
+        }
         let written = self.writer.map_or(Ok(()), |(trials, thread)| {
             drop(trials);
             let ended = thread.join();
