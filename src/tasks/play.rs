@@ -1,8 +1,11 @@
 //! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. Whoever else moves
 //! the hand ends it.
 
+use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
-use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Target,
+};
 use crate::link::{Clock, Lease, LinkStatus};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
@@ -165,13 +168,23 @@ impl<H: TaskHand> Playing<'_, H> {
             let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
             Some(target.unwrap_or_else(|| angles[dof].raw()))
         });
+        let cue = self.player.cue();
+        let (force, thresholds) = cue.map_or((Force::MIN, None), |cue| (cue.force, cue.thresholds));
+        if cue.is_some_and(|cue| cue.gap.is_some())
+            && Gap::JOINTS.map(|dof| self.locked[dof]).contains(&true)
+        {
+            self.player.end(PlayEnd::Locked);
+            self.hold_here(tell);
+            return;
+        }
         let now = self.clock.now();
         let grip = self.grip.known(status.is_believed(), now);
-        if let Some(cue) = self.player.tick(now, &seen, &grip.grasp) {
+        if let Some(part) = self.player.tick(now, &seen, &grip.grasp) {
+            self.grip.judge_by(thresholds.unwrap_or_default());
             let mut setpoints = Setpoints::none(self.epoch);
-            for (dof, to) in self.free(&cue.targets) {
-                setpoints.speed[dof] = Some(cue.speed);
-                setpoints.force[dof] = Some(cue.force);
+            for (dof, to) in self.free(&part.targets) {
+                setpoints.speed[dof] = Some(part.speeds[dof]);
+                setpoints.force[dof] = Some(force);
                 setpoints.angle[dof] = Some(Target::Go(to));
             }
             self.send(setpoints, tell);

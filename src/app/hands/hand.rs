@@ -435,6 +435,7 @@ impl Hand {
         let Some(open) = &mut self.connection.open else {
             return false;
         };
+        let thresholds = plan.cues.iter().map(|cue| cue.thresholds).collect();
         let start = PlayStart {
             plan,
             pace,
@@ -455,6 +456,7 @@ impl Hand {
             view: PlayView::first(now),
             commands: Some(commands),
             task: Some(task),
+            thresholds,
         });
         true
     }

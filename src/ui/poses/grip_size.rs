@@ -6,6 +6,7 @@ use crate::hand::Angle;
 use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
 use crate::ui::hand::{aim, figures};
 use crate::ui::kit::{Button, Label, NumberField, Pane};
+use crate::ui::text::errors::no_gap;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
 use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
@@ -13,13 +14,13 @@ use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
 /// Width of the drawer.
 const DRAWER: f32 = 420.0;
 
-/// What a kind is called, and why it has no gap, if it has none.
-const fn words(kind: GripKind) -> (Text, Option<Text>) {
+/// What a kind is called.
+pub(crate) const fn kind_words(kind: GripKind) -> Text {
     match kind {
-        GripKind::Pinch => (poses::KIND_PINCH, None),
-        GripKind::ThreeFingers => (poses::KIND_THREE, Some(poses::NO_GAP_THREE)),
-        GripKind::AllFingers => (poses::KIND_ALL, Some(poses::NO_GAP_ALL)),
-        GripKind::Around => (poses::KIND_AROUND, Some(poses::NO_GAP_AROUND)),
+        GripKind::Pinch => poses::KIND_PINCH,
+        GripKind::ThreeFingers => poses::KIND_THREE,
+        GripKind::AllFingers => poses::KIND_ALL,
+        GripKind::Around => poses::KIND_AROUND,
     }
 }
 
@@ -41,11 +42,10 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.horizontal(|ui| {
         for kind in GripKind::ALL {
-            let (name, no_gap) = words(kind);
-            let button = Button::said(look, name).choice(kind.offered().is_ok());
-            button
-                .disabled(no_gap.map(|why| look.say(why)))
-                .ui(ui, look);
+            let offered = kind.offered();
+            let button = Button::said(look, kind_words(kind)).choice(offered.is_ok());
+            let no_gap = offered.err().map(|why| look.say(no_gap(why)));
+            button.disabled(no_gap).ui(ui, look);
         }
     });
 }

@@ -141,6 +141,7 @@ impl Stage {
             let _sent = offers.try_send(Offer {
                 at: self.clock.now(),
                 aims: PerDof::splat(Some(Angle::nearest(aim))),
+                gap: None,
                 limits: OfferLimits::NONE,
                 held: None,
                 mark: Some(aim.unsigned_abs().into()),
