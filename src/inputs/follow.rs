@@ -112,7 +112,7 @@ pub struct Follow {
     /// Where each joint was sent, finer than counts; `None` enters from where the joint is.
     targets: PerDof<Option<f32>>,
     sent: PerDof<Option<Angle>>,
-    /// Thumb and index were on the path to the gap that is wanted, and stay on it.
+    /// Thumb and index were open for the gap that is wanted, and go to it by their path.
     is_pinching: bool,
     stepped: Moment,
     asked_to_arm: Option<Moment>,
@@ -291,13 +291,13 @@ impl Follow {
         }
     }
 
-    /// Thumb and index together along the path on which their pads meet, once they are on it. Where one of them is not known,
+    /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known,
     /// nothing goes on.
     fn step_to_gap(&mut self, gap: Gap, pose: &PerDof<Option<Angle>>, reach: Reach) {
-        let Some(is_on_path) = pinch::is_on_path(pose) else {
+        let Some(is_open) = pinch::is_open(pose) else {
             return;
         };
-        if !self.is_pinching && is_on_path {
+        if !self.is_pinching && is_open {
             self.is_pinching = true;
             for dof in Gap::JOINTS {
                 self.targets[dof] = None;

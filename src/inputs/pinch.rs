@@ -1,6 +1,7 @@
-//! The next small step of a hand that is to go to a gap: to the path on which the pads of thumb and index meet, then along it.
+//! The next small step of a hand that is to go to a gap: open first, until thumb and index cannot meet, then to the path on
+//! which their pads do and along it.
 
-use crate::hand::gap::{Gap, gap_on_path, pad_distance};
+use crate::hand::gap::{Gap, is_open_for_pinch, pad_distance};
 use crate::hand::{Angle, Dof, PerDof};
 use crate::poses::way::{Targets, way};
 
@@ -10,7 +11,7 @@ const NEAR: f32 = 1.5;
 /// Where the joints go next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum PinchStep {
-    /// Off the path still: these joints, each by itself.
+    /// Thumb and index could meet still: these joints, each by itself.
     Open(Targets),
     /// Along the path: thumb and index together, in a straight line to here; the others by themselves.
     Along(PerDof<Angle>),
@@ -25,12 +26,12 @@ pub(super) struct Reach {
     pub(super) lead: f32,
 }
 
-/// Whether thumb and index are on the path where they are; `None` where that is not known.
-pub(super) fn is_on_path(pose: &Targets) -> Option<bool> {
-    Some(gap_on_path(&pinching(pose)?).is_some())
+/// Whether thumb and index can go to any gap from where they are; `None` where that is not known.
+pub(super) fn is_open(pose: &Targets) -> Option<bool> {
+    Some(is_open_for_pinch(&pinching(pose)?))
 }
 
-/// The way to the path, from where the joints are; its first part.
+/// The way to where they can, from where the joints are; its first part.
 pub(super) fn opening(pose: &Targets) -> PinchStep {
     let from = pose.map(|at| at.map(Angle::get));
     let open = way(&from, &Gap::MAX.angles().map(Some));

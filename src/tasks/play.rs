@@ -3,9 +3,7 @@
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
-use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Target,
-};
+use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, Lease, LinkStatus};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
@@ -168,19 +166,17 @@ impl<H: TaskHand> Playing<'_, H> {
             let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
             Some(target.unwrap_or_else(|| angles[dof].raw()))
         });
-        let cue = self.player.cue();
-        let (force, thresholds) = cue.map_or((Force::MIN, None), |cue| (cue.force, cue.thresholds));
-        if cue.is_some_and(|cue| cue.gap.is_some())
-            && Gap::JOINTS.map(|dof| self.locked[dof]).contains(&true)
-        {
+        let now = self.clock.now();
+        let grip = self.grip.known(status.is_believed(), now);
+        let part = self.player.tick(now, &seen, &grip.grasp);
+        if self.lacks_a_joint() {
             self.player.end(PlayEnd::Locked);
             self.hold_here(tell);
             return;
         }
-        let now = self.clock.now();
-        let grip = self.grip.known(status.is_believed(), now);
-        if let Some(part) = self.player.tick(now, &seen, &grip.grasp) {
-            self.grip.judge_by(thresholds.unwrap_or_default());
+        if let Some((part, cue)) = part.zip(self.player.cue()) {
+            self.grip.judge_by(cue.thresholds.unwrap_or_default());
+            let force = cue.force;
             let mut setpoints = Setpoints::none(self.epoch);
             for (dof, to) in self.free(&part.targets) {
                 setpoints.speed[dof] = Some(part.speeds[dof]);
@@ -192,6 +188,13 @@ impl<H: TaskHand> Playing<'_, H> {
         if matches!(self.player.view().phase, PlayPhase::Dwelling { .. }) {
             self.react(tell);
         }
+    }
+
+    /// A grip by size is asked for, and a joint that pinches is locked.
+    fn lacks_a_joint(&self) -> bool {
+        let is_grip = self.player.cue().is_some_and(|cue| cue.gap.is_some());
+        let lacks = Gap::JOINTS.into_iter().any(|dof| self.locked[dof]);
+        is_grip && lacks && !self.player.is_over()
     }
 
     /// Sends the fingers whose tip was touched or let go.

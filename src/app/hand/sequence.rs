@@ -34,8 +34,12 @@ impl SequenceRun {
 
     /// What the grip is told by, as long as its step is what was asked for.
     pub(crate) fn thresholds(&self) -> GripThresholds {
+        let is_asked = match self.view.phase {
+            PlayPhase::Ended(end) => end == PlayEnd::Finished,
+            _ => true,
+        };
         let own = self.thresholds.get(self.view.at).copied().flatten();
-        own.unwrap_or_default()
+        own.filter(|_| is_asked).unwrap_or_default()
     }
 
     pub(crate) fn command(&self, command: PlayCommand) {

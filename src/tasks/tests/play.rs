@@ -150,6 +150,28 @@ async fn a_grip_by_size_without_one_of_its_joints_ends_and_stays() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn each_step_is_sent_with_its_own_speed_and_force() {
+    let other = Cue {
+        speed: Speed::nearest(120),
+        force: Force::nearest(300),
+        ..cue(200)
+    };
+    let free = PerDof::splat(false);
+    let bench = Bench::start_with(vec![cue(700), other], PlayMode::Through, free);
+    sleep(Duration::from_millis(1)).await;
+    bench.at(700, 20).await;
+    let of = |all: &Setpoints| {
+        let dof = Dof::Index;
+        (
+            all.speed[dof].map(Speed::get),
+            all.force[dof].map(Force::get),
+        )
+    };
+    let sent: Vec<_> = bench.moves().iter().map(of).collect();
+    assert_eq!(sent, [(Some(350), Some(900)), (Some(120), Some(300))]);
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_sequence_goes_from_pose_to_pose_and_ends() {
     let locked = PerDof::from_fn(|dof| dof == Dof::ThumbBend);
     let bench = Bench::start(PlayMode::Through, locked);

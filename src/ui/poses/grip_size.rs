@@ -4,8 +4,10 @@ use crate::app::action::Action;
 use crate::app::hands::grip;
 use crate::hand::Angle;
 use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
+use crate::poses::edit::LibraryEdit;
+use crate::poses::library::LibraryPose;
 use crate::ui::hand::{aim, figures};
-use crate::ui::kit::{Button, Label, NumberField, Pane};
+use crate::ui::kit::{Button, Label, Look, NumberField, Pane};
 use crate::ui::text::errors::no_gap;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
@@ -101,6 +103,17 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.set_min_height(theme::CONTROL);
         opening_ui(ui, pane, is_armed);
     });
+    let keep = Button::said(look, poses::GAP_KEEP);
+    let pose = Action::Library(LibraryEdit::Add(vec![pose(look, Gap::nearest(mm))]));
+    keep.on_click(ui, pane, pose);
+}
+
+/// A pose by size with this gap, gentle.
+fn pose(look: Look, gap: Gap) -> LibraryPose {
+    let mut pose = LibraryPose::at(gap.angles());
+    pose.name = look.fill(poses::GAP_POSE, &[&gap.mm()]);
+    pose.set_gap(Some(gap));
+    pose
 }
 
 /// Before a gap can be sent: that the hand is not armed, or the button that opens it.

@@ -32,6 +32,8 @@ texts! {
     GAP: "Gap, mm", "间距 mm", "Between the pads of thumb and index, by the model of the hand.", "拇指与食指指腹之间的距离，按手的模型计算。";
     GAP_WISH: "Not armed: the drawn hand shows where it would go.", "未使能：仅在图上显示将到达的位置。";
     GAP_OPEN: "Open for the grip", "先张开", "Opens thumb and index to 120 mm. From there they go to any gap without meeting.", "把拇指与食指张开到 120 mm，之后可到任意间距而不相碰。";
+    GAP_KEEP: "Keep as pose", "存为姿态", "Adds a pose by size with this gap. Nothing is sent.", "以此间距添加一个按尺寸的姿态，不发送任何内容。";
+    GAP_POSE: "Pinch {} mm", "捏 {} mm";
     GAP_CLOSED: "Open for the grip first: from here thumb and index could meet.", "请先张开：从当前位置出发，拇指与食指可能相碰。";
     HELD_SIZE: "Held", "夹持尺寸", "The distance of the pads while thumb and index alone hold something. Two blocks of known size correct it for this hand.", "仅拇指与食指夹住物体时指腹之间的距离。用两个已知尺寸的块可为此手校准。";
     HELD_NONE: "nothing between thumb and index", "拇指与食指之间没有物体";

@@ -65,6 +65,12 @@ fn unarmed_the_gap_is_only_a_wish_on_the_drawn_hand() {
     bench.drag("Gap, mm", 0.9, 0.3);
     bench.run(300);
     assert!(bench.shows("Not armed: the drawn hand shows where it would go."));
+    bench.click("Keep as pose");
+    bench.run(100);
+    let pose = &bench.state().poses.library.poses[0];
+    let mm = pose.gap.unwrap().mm();
+    assert!((20.0..80.0).contains(&mm), "{mm}");
+    assert_eq!(pose.name, format!("Pinch {mm} mm"));
     assert_eq!(bench.writes().len(), writes, "nothing is sent");
 }
 
