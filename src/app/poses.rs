@@ -2,7 +2,7 @@
 
 use crate::app::notices::NoticeKind;
 use crate::inputs::pad::PadMap;
-use crate::inputs::pad::input::PadPoses;
+use crate::inputs::pad::input::{PadAim, PadPoses};
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use crate::poses::library::{
     EntryId, EntryKey, EntryNames, LibraryPose, PoseId, PoseLibrary, Reaction, ReactionId,
@@ -101,7 +101,7 @@ impl PoseState {
         let all: Vec<&LibraryPose> = self.poses(hidden).collect();
         let named = map.poses().filter_map(|name| {
             let pose = all.iter().find(|pose| pose.name == name)?;
-            Some((name.to_owned(), pose.targets()))
+            Some((name.to_owned(), PadAim::of(pose)))
         });
         named.collect()
     }

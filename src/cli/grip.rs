@@ -1,12 +1,13 @@
 //! `grip`: a grip by size on any hand. It moves the hand, so it requires `--arm`.
 
+use crate::app::files::settings_file;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{force, hand, speed};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::stop_words;
 use crate::hand::PerDof;
-use crate::hand::gap::{Gap, GripKind};
+use crate::hand::gap::{Gap, GripKind, HeldSize, SizeBlocks};
 use crate::hand::{Force, Speed};
 use crate::link::ArmRequest;
 use crate::poses::player::PlayEnd;
@@ -87,8 +88,10 @@ pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
         );
     }
     let report = drive(args).await?;
-    let done = outcome(args, &report);
-    out.result(args.json, &object(args, &report), done.as_ref().ok())?;
+    let blocks = blocks(&args.hand);
+    let done = outcome(args, &report, &blocks);
+    let object = object(args, &report, &blocks);
+    out.result(args.json, &object, done.as_ref().ok())?;
     out.flush()?;
     match done {
         Ok(_told) => Ok(()),
@@ -119,17 +122,30 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
     Ok(report)
 }
 
+/// The blocks that the window measured with this hand, if its settings are there. They are only read.
+fn blocks(hand: &Endpoint) -> SizeBlocks {
+    let known = settings_file::default_path().and_then(|path| settings_file::peek(&path));
+    known.map_or_else(SizeBlocks::default, |known| known.size_blocks(Some(hand)))
+}
+
 /// The size of what is held, in words.
-fn held(report: &GripReport) -> String {
-    match report.gap_mm {
-        Some(mm) => format!("about {mm:.0} mm between the pads, by the model"),
+fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
+    match report.gap_mm.map(|gap_mm| blocks.size(gap_mm)) {
+        Some(HeldSize { mm, is_measured }) => {
+            let by = if is_measured {
+                "measured"
+            } else {
+                "by the model"
+            };
+            format!("about {mm:.0} mm between the pads, {by}")
+        }
         None => "how far the pads are apart is not known".into(),
     }
 }
 
 /// What came of it in one sentence; `Err` for what fails.
-fn outcome(args: &GripArgs, report: &GripReport) -> Result<String, String> {
-    let (asked, held) = (args.gap.mm(), held(report));
+fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<String, String> {
+    let (asked, held) = (args.gap.mm(), held(report, blocks));
     match report.end {
         GripEnd::Held => Ok(format!("holds something: {held}")),
         GripEnd::Reached => Ok(format!("at {asked} mm and holds nothing: {held}")),
@@ -142,6 +158,9 @@ fn outcome(args: &GripArgs, report: &GripReport) -> Result<String, String> {
         ),
         GripEnd::Late => Err("the hand did not get there in time".into()),
         GripEnd::Person => Err("ended by a person".into()),
+        GripEnd::OtherWrote => Err(
+            "another controller wrote angles or speeds to the hand: let one of them move it".into(),
+        ),
         GripEnd::Broken(why) => Err(match report.disarmed {
             Some(disarmed) => format!("{}: {disarmed}", broken(why)),
             None => broken(why).into(),
@@ -154,9 +173,11 @@ const fn broken(why: PlayEnd) -> &'static str {
         PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
         PlayEnd::LinkLost => session::STOP_LOST,
         PlayEnd::TakenOver => "another moves the hand now",
-        PlayEnd::Finished | PlayEnd::Person | PlayEnd::NotHolding(_) | PlayEnd::Disarmed => {
-            "the hand was disarmed meanwhile"
-        }
+        PlayEnd::Finished
+        | PlayEnd::Person
+        | PlayEnd::NotHolding(_)
+        | PlayEnd::Locked
+        | PlayEnd::Disarmed => "the hand was disarmed meanwhile",
     }
 }
 
@@ -168,17 +189,23 @@ const fn end_name(end: GripEnd) -> &'static str {
         GripEnd::NotOpened => "not_opened",
         GripEnd::Late => "late",
         GripEnd::Person => "person",
+        GripEnd::OtherWrote => "taken_over",
         GripEnd::Broken(PlayEnd::Fault) => "fault",
         GripEnd::Broken(PlayEnd::LinkLost) => "link_lost",
         GripEnd::Broken(PlayEnd::TakenOver) => "taken_over",
         GripEnd::Broken(
-            PlayEnd::Finished | PlayEnd::Person | PlayEnd::NotHolding(_) | PlayEnd::Disarmed,
+            PlayEnd::Finished
+            | PlayEnd::Person
+            | PlayEnd::NotHolding(_)
+            | PlayEnd::Locked
+            | PlayEnd::Disarmed,
         ) => "disarmed",
     }
 }
 
 /// The result: `{"grip": {…}}`. What is not known is null.
-fn object(args: &GripArgs, report: &GripReport) -> Value {
+fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
+    let size = report.gap_mm.map(|gap_mm| blocks.size(gap_mm));
     let confirmed = report
         .stop
         .map(|stop| matches!(stop, Stop::Confirmed { .. }));
@@ -188,6 +215,8 @@ fn object(args: &GripArgs, report: &GripReport) -> Value {
         "asked_mm": args.gap.mm(),
         "end": end_name(report.end),
         "gap_mm": report.gap_mm,
+        "size_mm": size.map(|size| size.mm),
+        "size_by": size.map(|size| if size.is_measured { "blocks" } else { "model" }),
         "state": report.grip.grasp.state,
         "stop_confirmed": confirmed,
     }})

@@ -139,7 +139,7 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "version = \"1\"",
         2,
         "version",
-        "expected i64",
+        "is not a whole number",
     ),
     (
         "\"Touch\"",
@@ -162,9 +162,15 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "poses.toml\"\nposes = \"x\"",
         7,
         "poses",
-        "duplicate key",
+        "this key stands here twice",
     ),
-    ("tiles = ", "tilse = ", 8, "tilse", "unknown field `tilse`"),
+    (
+        "tiles = ",
+        "tilse = ",
+        8,
+        "tilse",
+        "there is no such key here",
+    ),
     (
         "\"Fist\", ",
         "",
@@ -297,7 +303,7 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "rest = 30",
         17,
         "rest",
-        "unknown field `rest`",
+        "there is no such key here",
     ),
 ];
 
@@ -334,7 +340,7 @@ fn a_wrong_file_is_refused_with_line_field_and_one_sentence() {
     let none = FILE.lines().filter(|line| !line.starts_with("tiles"));
     let error = error(&none.collect::<Vec<_>>().join("\n"));
     assert_eq!(error.field.as_deref(), Some("tiles"));
-    assert_eq!(error.to_string(), "line 1, `tiles`: missing field `tiles`");
+    assert_eq!(error.to_string(), "line 1, `tiles`: it is missing: add it");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::hand::dof::Dof;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// A number outside the range that the manual prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -139,6 +140,11 @@ impl Speed {
     /// Counts of ANGLE_ACT a second without load; of a speed of 0 as of 1.
     pub fn angle_per_s(self) -> f64 {
         Self::ANGLE_PER_UNIT * f64::from(self.0.max(1))
+    }
+
+    /// Time of the whole stroke without load.
+    pub fn stroke(self) -> Duration {
+        Duration::from_secs_f64(f64::from(Angle::MAX.0) / self.angle_per_s())
     }
 }
 

@@ -1,8 +1,10 @@
 //! How a hand follows a source: from where it is, never far ahead and never fast, and not at all once the source is silent,
 //! frozen or let go. Pure: offers, poses and time in, orders out.
 
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::offer::Offer;
+use crate::inputs::pinch::{self, PinchStep, Reach};
 use crate::record::LinkState;
 use std::time::Duration;
 
@@ -110,6 +112,8 @@ pub struct Follow {
     /// Where each joint was sent, finer than counts; `None` enters from where the joint is.
     targets: PerDof<Option<f32>>,
     sent: PerDof<Option<Angle>>,
+    /// Thumb and index were open for the gap that is wanted, and go to it by their path.
+    is_pinching: bool,
     stepped: Moment,
     asked_to_arm: Option<Moment>,
 }
@@ -125,6 +129,7 @@ impl Follow {
             same_since: now,
             targets: PerDof::splat(None),
             sent: PerDof::splat(None),
+            is_pinching: false,
             stepped: now,
             asked_to_arm: None,
         }
@@ -197,19 +202,20 @@ impl Follow {
         }
         let is_frozen = offer.mark.is_some()
             && now.since(self.same_since) >= FROZEN_AFTER
-            && is_away_from_ends(&offer.aims);
+            && is_away_from_ends(&offer);
         self.phase = if is_frozen {
             FollowPhase::Frozen
         } else {
             FollowPhase::Following
         };
-        self.step(&offer.aims, &seen.pose, now)
+        self.step(&offer, &seen.pose, now)
     }
 
     /// From where the joints are, whatever they were told before.
     fn enter(&mut self) {
         self.targets = PerDof::splat(None);
         self.sent = PerDof::splat(None);
+        self.is_pinching = false;
     }
 
     /// Stops what may move; what is held again begins anew.
@@ -235,15 +241,39 @@ impl Follow {
 
     fn step(
         &mut self,
-        aims: &PerDof<Option<Angle>>,
+        offer: &Offer,
         pose: &PerDof<Option<Angle>>,
         now: Moment,
     ) -> Option<FollowOrder> {
         let elapsed = now
             .since(std::mem::replace(&mut self.stepped, now))
             .min(STEP_LONGEST);
-        let reach = f32::from(self.limits.rate) * elapsed.as_secs_f32();
-        let lead = f32::from(self.limits.lead);
+        let reach = Reach {
+            step: f32::from(self.limits.rate) * elapsed.as_secs_f32(),
+            lead: f32::from(self.limits.lead),
+        };
+        match offer.gap {
+            Some(gap) => self.step_to_gap(gap, pose, reach),
+            None => {
+                self.is_pinching = false;
+                self.step_each(&offer.aims, pose, reach);
+            }
+        }
+        let targets = PerDof::from_fn(|dof| {
+            let target = self.targets[dof].filter(|_| pose[dof].is_some())?;
+            #[expect(clippy::cast_possible_truncation, reason = "rounded, and in range")]
+            Some(Angle::nearest(target.round() as i64))
+        });
+        self.send(targets)
+    }
+
+    /// Each joint by itself.
+    fn step_each(
+        &mut self,
+        aims: &PerDof<Option<Angle>>,
+        pose: &PerDof<Option<Angle>>,
+        reach: Reach,
+    ) {
         for dof in Dof::ALL {
             let Some((aim, at)) = aims[dof].zip(pose[dof]) else {
                 // One that is not known is sent nowhere; one that is not aimed at is left alone.
@@ -254,17 +284,50 @@ impl Follow {
             self.targets[dof] = Some(match self.targets[dof] {
                 None => at,
                 Some(from) => {
-                    let to = aim.clamp(at - lead, at + lead);
-                    from + (to - from).clamp(-reach, reach)
+                    let to = aim.clamp(at - reach.lead, at + reach.lead);
+                    from + (to - from).clamp(-reach.step, reach.step)
                 }
             });
         }
-        let targets = PerDof::from_fn(|dof| {
-            let target = self.targets[dof].filter(|_| pose[dof].is_some())?;
-            #[expect(clippy::cast_possible_truncation, reason = "rounded, and in range")]
-            Some(Angle::nearest(target.round() as i64))
-        });
-        self.send(targets)
+    }
+
+    /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known,
+    /// nothing goes on.
+    fn step_to_gap(&mut self, gap: Gap, pose: &PerDof<Option<Angle>>, reach: Reach) {
+        let Some(is_open) = pinch::is_open(pose) else {
+            return;
+        };
+        if !self.is_pinching && is_open {
+            self.is_pinching = true;
+            for dof in Gap::JOINTS {
+                self.targets[dof] = None;
+            }
+        }
+        let at = pose.map(|at| f32::from(at.unwrap_or(Angle::MAX).get()));
+        let sent = PerDof::from_fn(|dof| self.targets[dof].unwrap_or(at[dof]));
+        let step = if self.is_pinching {
+            pinch::along(&sent, gap)
+        } else {
+            pinch::opening(pose)
+        };
+        match step {
+            PinchStep::Open(aims) => self.step_each(&aims, pose, reach),
+            PinchStep::Along(to) => {
+                // As each joint by itself: what begins begins where the joint is.
+                let begins = Gap::JOINTS
+                    .into_iter()
+                    .any(|dof| self.targets[dof].is_none());
+                let share = match begins {
+                    true => 0.0,
+                    false => pinch::share(&sent, &to, &at, reach),
+                };
+                self.step_each(&to.map(Some), pose, reach);
+                for dof in Gap::JOINTS {
+                    let way = f32::from(to[dof].get()) - sent[dof];
+                    self.targets[dof] = Some(sent[dof] + share * way);
+                }
+            }
+        }
     }
 
     /// Sends what is news to the joints.
@@ -279,7 +342,12 @@ impl Follow {
 }
 
 /// A hand that is told to be wide open or a fist may rightly be told so for long.
-fn is_away_from_ends(aims: &PerDof<Option<Angle>>) -> bool {
-    let mut aims = aims.iter().filter_map(|(_, aim)| *aim);
-    aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)
+fn is_away_from_ends(offer: &Offer) -> bool {
+    match offer.gap {
+        Some(gap) => gap != Gap::MIN && gap != Gap::MAX,
+        None => {
+            let mut aims = offer.aims.iter().filter_map(|(_, aim)| *aim);
+            aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)
+        }
+    }
 }

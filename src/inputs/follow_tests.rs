@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
 
+use crate::hand::gap::{Gap, gap_on_path, pad_distance};
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::follow::{
     ENDS_AFTER, FROZEN_AFTER, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
@@ -31,6 +32,7 @@ fn offer(when: u64, angle: i16) -> Offer {
     Offer {
         at: ms(when),
         aims: PerDof::splat(Some(Angle::nearest(angle))),
+        gap: None,
         limits: OfferLimits::NONE,
         held: None,
         mark: Some(angle.unsigned_abs().into()),
@@ -58,6 +60,107 @@ fn the_first_target_is_the_actual_pose_and_the_next_are_within_rate_and_lead() {
         let _sent = follow.tick(at(800), ms(160 + n * 10));
     }
     assert_eq!(follow.sent()[Dof::Index], Some(Angle::nearest(700)), "lead");
+}
+
+/// Follows a gap from these angles with a hand that is where it is told 50 ms later; all places of the hand on the way.
+fn to_gap(mm: f32, from: PerDof<i16>, limits: FollowLimits) -> Vec<PerDof<i16>> {
+    let gap = Gap::nearest(mm);
+    let mut follow = Follow::new(limits, ms(0));
+    let mut told = vec![from; 6];
+    let mut places = Vec::new();
+    for n in 0..1500 {
+        let now = ms(n * 10);
+        follow.offer(Offer {
+            gap: Some(gap),
+            aims: gap.angles().map(Some),
+            mark: None,
+            ..offer(n * 10, 0)
+        });
+        let hand = told[told.len() - 6];
+        places.push(hand);
+        let seen = FollowInput {
+            pose: hand.map(|at| Some(Angle::nearest(at))),
+            ..at(0)
+        };
+        let mut next = told[told.len() - 1];
+        match follow.tick(seen, now) {
+            Some(FollowOrder::Aim(aims)) => {
+                for (dof, to) in aims.iter() {
+                    if let Some(to) = to {
+                        let lead = i16::try_from(limits.lead).unwrap();
+                        assert!(to.get().abs_diff(hand[dof]) <= limits.lead + 1, "{lead}");
+                        next[dof] = to.get();
+                    }
+                }
+            }
+            other => assert_eq!(other, None),
+        }
+        told.push(next);
+    }
+    places
+}
+
+#[test]
+fn a_gap_is_gone_to_along_the_path_within_rate_and_lead_from_wherever_the_hand_is() {
+    let limits = FollowLimits::default();
+    for (from, is_open) in [
+        (PerDof::splat(1000), false),
+        (PerDof::splat(0), false),
+        (PerDof::new([0, 0, 0, 300, 100, 0]), false),
+        (Gap::MAX.angles().map(Angle::get), true),
+        (Gap::nearest(20.0).angles().map(Angle::get), true),
+    ] {
+        for mm in [3.0, 30.0, 100.0] {
+            let places = to_gap(mm, from, limits);
+            let counts = |place: &PerDof<i16>| place.map(f32::from);
+            let last = gap_on_path(&counts(&places[places.len() - 1]));
+            assert!((last.unwrap() - mm).abs() < 0.6, "{from:?} {mm}: {last:?}");
+            let on_path = |place: &PerDof<i16>| gap_on_path(&counts(place)).is_some();
+            let first = places.iter().position(on_path).unwrap();
+            assert_eq!(first == 0, is_open, "{from:?}");
+            assert!(places[first..].iter().all(on_path), "{from:?} {mm}");
+            let off = |place: &PerDof<i16>| {
+                let near = Gap::nearest(pad_distance(&counts(place))).angles();
+                let off = Gap::JOINTS.map(|dof| near[dof].get().abs_diff(place[dof]));
+                off.into_iter().max().unwrap()
+            };
+            let settled = &places[(first + 60).min(places.len() - 1)..];
+            let most = settled.iter().map(off).max().unwrap();
+            assert!(most <= 12, "{from:?} {mm}: {most} counts off the path");
+        }
+    }
+}
+
+#[test]
+fn what_stops_the_index_stops_the_thumb_on_the_path_too() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    let (gap, block) = (Gap::nearest(10.0), Gap::nearest(60.0).angles());
+    let mut last = PerDof::splat(1000);
+    for n in 0..500 {
+        follow.offer(Offer {
+            gap: Some(gap),
+            aims: gap.angles().map(Some),
+            mark: None,
+            ..offer(n * 10, 0)
+        });
+        let mut pose = last;
+        // The index is held where the block is; the thumb goes where it is told.
+        pose[Dof::Index] = pose[Dof::Index].max(block[Dof::Index].get());
+        pose[Dof::ThumbRotate] = 0;
+        let seen = FollowInput {
+            pose: pose.map(|at| Some(Angle::nearest(at))),
+            ..at(0)
+        };
+        if let Some(FollowOrder::Aim(aims)) = follow.tick(seen, ms(n * 10)) {
+            for (dof, to) in aims.iter() {
+                last[dof] = to.map_or(last[dof], Angle::get);
+            }
+        }
+    }
+    let ahead = block[Dof::Index].get() - last[Dof::Index];
+    assert!((95..=101).contains(&ahead), "lead {ahead}");
+    let beyond = block[Dof::ThumbBend].get() - last[Dof::ThumbBend];
+    assert!((0..=210).contains(&beyond), "the thumb went on by {beyond}");
 }
 
 #[test]
@@ -207,13 +310,16 @@ fn next_offer(now: Moment, before: Option<Offer>, rng: &mut Rng) -> Option<Offer
     if let Some(before) = before.filter(|_| rng.f32() < 0.5) {
         return Some(Offer { at: now, ..before });
     }
+    let gap = (rng.f32() < 0.3).then(|| Gap::nearest(130.0 * rng.f32()));
+    let each = PerDof::from_fn(|_| {
+        let aim = Angle::nearest(rng.i16(0..=1000));
+        (rng.f32() >= 0.1).then_some(aim)
+    });
     Some(Offer {
         at: now,
+        gap,
         limits: OfferLimits::NONE,
-        aims: PerDof::from_fn(|_| {
-            let aim = Angle::nearest(rng.i16(0..=1000));
-            (rng.f32() >= 0.1).then_some(aim)
-        }),
+        aims: gap.map_or(each, |gap| gap.angles().map(Some)),
         held: match rng.u8(0..4) {
             0 => Some(false),
             1 => Some(true),

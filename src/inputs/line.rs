@@ -1,6 +1,8 @@
-//! Lines of JSON that ask a hand to go somewhere: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open (`handscope help stream`).
+//! Lines of JSON that ask a hand to go somewhere: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open, or `{"seq":1,"grip_mm":30}`
+//! (`handscope help stream`).
 //! What is wrong is refused whole and counted, never bent into range.
 
+use crate::hand::gap::Gap;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, PerDof};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -17,6 +19,8 @@ pub struct StreamLine {
     pub seq: Option<u64>,
     /// Where the joints should go.
     pub aims: PerDof<Option<Angle>>,
+    /// The gap that these are the angles of, where one is asked for in place of them.
+    pub gap: Option<Gap>,
     /// Whether the sender's dead-man is held, if it has one.
     pub held: Option<bool>,
     /// The hand is to be stopped.
@@ -48,6 +52,12 @@ pub enum LineFault {
     /// A value that is not from 0 to 1.
     #[error("a value is not from 0 (bent) to 1 (open)")]
     Range,
+    /// A gap that the path of thumb and index does not have.
+    #[error("grip_mm is not from {} to {} mm", Gap::MIN.mm(), Gap::MAX.mm())]
+    Gap,
+    /// A gap and values.
+    #[error("grip_mm stands beside six values: send one of them")]
+    Both,
     /// Its number is not above the one before.
     #[error("late or doubled: its seq is not above the one before")]
     Late,
@@ -72,6 +82,8 @@ impl LineFault {
             Self::OtherSide => "other_side",
             Self::Length => "length",
             Self::Range => "range",
+            Self::Gap => "gap",
+            Self::Both => "both",
             Self::Late => "late",
             Self::OtherSender => "other_sender",
         }
@@ -84,6 +96,7 @@ struct Raw {
     seq: Option<u64>,
     left: Option<Vec<Option<f64>>>,
     right: Option<Vec<Option<f64>>>,
+    grip_mm: Option<f64>,
     held: Option<bool>,
     #[serde(default)]
     stop: bool,
@@ -102,17 +115,22 @@ impl StreamLine {
         if raw.v.is_some_and(|version| version != LINE_VERSION) {
             return Err(LineFault::Version);
         }
+        if raw.grip_mm.is_some() && (raw.left.is_some() || raw.right.is_some()) {
+            return Err(LineFault::Both);
+        }
+        let gap = raw.grip_mm.map(gap).transpose()?;
         let values = match side {
             Side::Left => raw.left,
             Side::Right => raw.right,
         };
         // A stop needs no targets.
         let values = match values {
-            None if raw.stop => vec![None; Dof::ALL.len()],
+            None if raw.stop || gap.is_some() => vec![None; Dof::ALL.len()],
             values => values.ok_or(LineFault::OtherSide)?,
         };
         let mut aims = PerDof::splat(None);
         let mut hasher = DefaultHasher::new();
+        raw.grip_mm.map(f64::to_bits).hash(&mut hasher);
         if values.len() != Dof::ALL.len() {
             return Err(LineFault::Length);
         }
@@ -122,7 +140,8 @@ impl StreamLine {
         }
         Ok(Self {
             seq: raw.seq,
-            aims,
+            aims: gap.map_or(aims, |gap| gap.angles().map(Some)),
+            gap,
             held: raw.held,
             stop: raw.stop,
             mark: hasher.finish(),
@@ -135,6 +154,14 @@ pub(crate) fn begins_message(line: &[u8]) -> bool {
     line.trim_ascii_start()
         .first()
         .is_none_or(|byte| *byte == b'{')
+}
+
+fn gap(mm: f64) -> Result<Gap, LineFault> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the range is checked after it"
+    )]
+    Gap::new(mm as f32).map_err(|_out| LineFault::Gap)
 }
 
 fn angle(share: f64) -> Result<Angle, LineFault> {
@@ -190,6 +217,14 @@ mod tests {
             (r#"{"left":[0,0,0,0,0,0]}"#, LineFault::OtherSide),
             (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, LineFault::Version),
             (r#"{"right":"fist"}"#, LineFault::Malformed),
+            (r#"{"grip_mm":2.9}"#, LineFault::Gap),
+            (r#"{"grip_mm":120.1}"#, LineFault::Gap),
+            (r#"{"grip_mm":-30}"#, LineFault::Gap),
+            (r#"{"grip_mm":NaN}"#, LineFault::NotFinite),
+            (r#"{"grip_mm":"30"}"#, LineFault::Malformed),
+            (r#"{"grip_mm":30,"right":[0,0,0,0,0,0]}"#, LineFault::Both),
+            (r#"{"grip_mm":30,"left":[0,0,0,0,0,0]}"#, LineFault::Both),
+            (r#"{"grip_mm":null}"#, LineFault::OtherSide),
             ("[0,0,0,0,0,0]", LineFault::Malformed),
             ("POST /NaN HTTP/1.1", LineFault::Malformed),
             ("", LineFault::Malformed),
@@ -201,6 +236,20 @@ mod tests {
             "y".repeat(LINE_MAX)
         );
         assert_eq!(parse(&long), Err(LineFault::TooLong));
+    }
+
+    #[test]
+    fn a_gap_stands_in_place_of_values_for_either_side() {
+        for side in [Side::Left, Side::Right] {
+            let line = StreamLine::parse(br#"{"v":1,"seq":3,"grip_mm":30.5}"#, side).unwrap();
+            let gap = Gap::new(30.5).unwrap();
+            assert_eq!(line.gap, Some(gap));
+            assert_eq!(line.aims, gap.angles().map(Some));
+        }
+        let mark = |line: &str| parse(line).unwrap().mark;
+        assert_ne!(mark(r#"{"grip_mm":30}"#), mark(r#"{"grip_mm":30.01}"#));
+        assert_eq!(mark(r#"{"grip_mm":30}"#), mark(r#"{"grip_mm":30.0}"#));
+        assert_eq!(parse(r#"{"right":[1,1,1,1,1,1]}"#).unwrap().gap, None);
     }
 
     #[test]

@@ -130,6 +130,7 @@ fn offer(sample: &HandSample, scale: MirrorScale) -> Option<Offer> {
     aims.iter().any(|(_, aim)| aim.is_some()).then_some(Offer {
         at: angle.received,
         aims,
+        gap: None,
         limits: OfferLimits::NONE,
         held: None,
         // A hand at rest rightly says the same for long: that it answered is what proves that it is there.

@@ -9,6 +9,7 @@ pub mod line;
 pub mod mirror;
 pub mod offer;
 pub mod pad;
+mod pinch;
 pub mod stream;
 
 pub use offer::{Offer, OfferLimits};

@@ -1,5 +1,6 @@
 //! What a source asks of a hand at a moment, and the way from a source to whoever follows it.
 
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use std::sync::Arc;
@@ -16,6 +17,9 @@ pub struct Offer {
     pub at: Moment,
     /// Where each joint should go; `None` leaves it alone.
     pub aims: PerDof<Option<Angle>>,
+    /// A gap between the pads of thumb and index that is wanted: the aims are its angles, and the hand goes there along the path on
+    /// which the pads meet.
+    pub gap: Option<Gap>,
     /// How fast and how firmly.
     pub limits: OfferLimits,
     /// Whether its dead-man is held; `None` for a source without one.

@@ -208,6 +208,7 @@ impl Listening {
         let offer = Offer {
             at: now,
             aims: line.aims,
+            gap: line.gap,
             limits: OfferLimits::NONE,
             held: line.held,
             mark: Some(line.mark),

@@ -307,7 +307,7 @@ thumb_bend = 800
                 "version = 2",
                 "line 2, `version`: version 2 cannot be read, only version 1",
             ),
-            ("version = 1\n", "", "`version`: missing field"),
+            ("version = 1\n", "", "`version`: it is missing: add it"),
             (
                 "handscope-params",
                 "handscope-poses",

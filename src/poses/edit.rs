@@ -1,9 +1,10 @@
 //! How the user changes the library. Every change leaves it whole: names differ, steps name poses that exist.
 
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
     ENTRIES_MAX, EntryId, LibraryPose, Millis, PoseId, PoseLibrary, Reaction, ReactionId,
-    STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, clean, free_name,
+    STEPS_MAX, Sequence, SequenceId, SequenceStep, StepGoal, TAGS_MAX, clean, free_name,
 };
 
 /// One change of a pose.
@@ -13,8 +14,10 @@ pub enum PoseEdit {
     Rename(String),
     /// Tags, separated by commas.
     Tags(String),
-    /// Where one joint goes.
+    /// Where one joint goes. Not of a pose by size, whose angles are those of its gap.
     Angle(Dof, Angle),
+    /// The gap of a pose by size, or one of angles again.
+    Gap(Option<Gap>),
     /// Leave a joint alone, or not.
     Leave(Dof, bool),
     /// Speed of recalling.
@@ -38,6 +41,8 @@ pub enum SequenceEdit {
     Loop(bool),
     /// One more step at the end.
     Add(PoseId),
+    /// One more step at the end: a grip by size.
+    AddGap(Gap),
     /// A step away.
     Remove(usize),
     /// A step from one place to another; those between make room.
@@ -110,10 +115,17 @@ impl PoseLibrary {
         let mut steps = Vec::new();
         for pose in poses {
             let (own, speed) = (pose.name.clone(), pose.speed);
-            steps.push(SequenceStep::new(self.add_pose(&own, pose)?, speed));
+            let goal = StepGoal::Pose(self.add_pose(&own, pose)?);
+            steps.push(SequenceStep::new(goal, speed));
         }
-        if let [only] = steps.as_slice() {
-            return Some(EntryId::Pose(only.pose));
+        if let [
+            SequenceStep {
+                goal: StepGoal::Pose(only),
+                ..
+            },
+        ] = steps.as_slice()
+        {
+            return Some(EntryId::Pose(*only));
         }
         let id = self.add_sequence(&name)?;
         self.sequences.last_mut()?.steps = steps;
@@ -137,7 +149,9 @@ impl PoseLibrary {
             EntryId::Sequence(id) => {
                 let mut copy = other.sequence(id)?.clone();
                 for step in &mut copy.steps {
-                    step.pose = self.needed_from(other, step.pose)?;
+                    if let StepGoal::Pose(pose) = &mut step.goal {
+                        *pose = self.needed_from(other, *pose)?;
+                    }
                 }
                 copy.id = self.add_sequence(&copy.name)?;
                 let own = self.sequences.last_mut()?;
@@ -183,8 +197,11 @@ impl PoseLibrary {
                 return;
             };
             sequence.steps.retain_mut(|step| {
-                let known = ids.iter().find(|(was, _)| *was == step.pose);
-                known.inspect(|(_, id)| step.pose = *id).is_some()
+                let StepGoal::Pose(pose) = &mut step.goal else {
+                    return true;
+                };
+                let known = ids.iter().find(|(was, _)| was == pose);
+                known.inspect(|(_, id)| *pose = *id).is_some()
             });
             if let Some(own) = self.sequences.iter_mut().find(|own| own.id == id) {
                 sequence.id = id;
@@ -214,8 +231,15 @@ impl PoseLibrary {
         };
         match edit {
             PoseEdit::Tags(text) => pose.tags = tags(&text),
-            PoseEdit::Angle(dof, angle) => pose.angles[dof] = angle,
-            PoseEdit::Leave(dof, leave) => pose.leave[dof] = leave,
+            PoseEdit::Angle(dof, angle) => {
+                if pose.gap.is_none() {
+                    pose.angles[dof] = angle;
+                }
+            }
+            PoseEdit::Gap(gap) => pose.set_gap(gap),
+            PoseEdit::Leave(dof, leave) => {
+                pose.leave[dof] = leave && !(pose.gap.is_some() && Gap::JOINTS.contains(&dof));
+            }
             PoseEdit::Speed(speed) => pose.speed = speed,
             PoseEdit::Force(force) => pose.force = force,
             PoseEdit::Move(to) => put(&mut self.poses, at, to),
@@ -223,7 +247,7 @@ impl PoseLibrary {
             PoseEdit::Delete => {
                 self.poses.remove(at);
                 for sequence in &mut self.sequences {
-                    sequence.steps.retain(|step| step.pose != id);
+                    sequence.steps.retain(|step| !step.goal.is_pose(id));
                 }
                 self.reactions
                     .retain(|reaction| reaction.rest != id && reaction.touched != id);
@@ -261,6 +285,7 @@ impl PoseLibrary {
         };
         let speed = match &edit {
             SequenceEdit::Add(pose) => self.pose(*pose).map(|pose| pose.speed),
+            SequenceEdit::AddGap(_) => Some(Speed::GENTLE),
             _ => None,
         };
         let Some(sequence) = self.sequences.iter_mut().find(|own| own.id == id) else {
@@ -271,10 +296,10 @@ impl PoseLibrary {
                 (sequence.name, sequence.name_zh) = (name, String::new());
             }
             SequenceEdit::Loop(looped) => sequence.looped = looped,
-            SequenceEdit::Add(pose) => {
-                if let Some(speed) = speed.filter(|_| sequence.steps.len() < STEPS_MAX) {
-                    sequence.steps.push(SequenceStep::new(pose, speed));
-                }
+            SequenceEdit::Add(pose) => sequence.push(StepGoal::Pose(pose), speed),
+            SequenceEdit::AddGap(gap) => {
+                let force = Force::GENTLE;
+                sequence.push(StepGoal::Gap { gap, force }, speed);
             }
             SequenceEdit::Remove(at) if at < sequence.steps.len() => {
                 sequence.steps.remove(at);
@@ -290,16 +315,24 @@ impl PoseLibrary {
     }
 }
 
+impl Sequence {
+    /// One more step at this speed, if there is one and room for it.
+    fn push(&mut self, goal: StepGoal, speed: Option<Speed>) {
+        if let Some(speed) = speed.filter(|_| self.steps.len() < STEPS_MAX) {
+            self.steps.push(SequenceStep::new(goal, speed));
+        }
+    }
+}
+
 impl SequenceStep {
     /// A step with the waiting times that the user starts from.
-    pub fn new(pose: PoseId, speed: Speed) -> Self {
+    pub const fn new(goal: StepGoal, speed: Speed) -> Self {
         Self {
-            pose,
+            goal,
             speed,
             dwell: Millis::DWELL,
             limit: Millis::LIMIT,
             until: None,
-            others: toml::Table::new(),
         }
     }
 }
@@ -314,6 +347,8 @@ impl LibraryPose {
             key: None,
             tags: Vec::new(),
             angles,
+            gap: None,
+            thresholds: None,
             leave: PerDof::splat(false),
             speed: Speed::GENTLE,
             force: Force::GENTLE,

@@ -1,10 +1,12 @@
 //! The library as TOML, version 1 (assets/manual/files.md). A file is taken whole or not at all; keys that are not known are kept.
 
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::poses::grip_row::{GripRow, ThresholdsRow, read_thresholds, thresholds_row};
 use crate::poses::library::{
     ENTRIES_MAX, EntryKey, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, Reaction,
-    ReactionId, Retries, STEPS_MAX, Sequence, SequenceId, SequenceStep, TAGS_MAX, UntilHolding,
-    clean,
+    ReactionId, Retries, STEPS_MAX, Sequence, SequenceId, SequenceStep, StepGoal, TAGS_MAX,
+    UntilHolding, clean,
 };
 use crate::poses::reaction::TouchForce;
 use crate::store::toml_file::VERSION;
@@ -40,8 +42,13 @@ struct PoseRow {
     speed: Speed,
     force: Force,
     #[serde(default)]
-    leave: Vec<Dof>,
-    angles: AnglesRow,
+    leave: Option<Spanned<Vec<Dof>>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    angles: Option<AnglesRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    grip: Option<GripRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    grip_thresholds: Option<ThresholdsRow>,
     #[serde(flatten)]
     others: toml::Table,
 }
@@ -68,21 +75,26 @@ struct SequenceRow {
     #[serde(default, rename = "loop")]
     looped: bool,
     #[serde(default, rename = "step")]
-    steps: Vec<StepRow>,
+    steps: Vec<Spanned<StepRow>>,
     #[serde(flatten)]
     others: toml::Table,
 }
 
+/// A step goes to a pose or has a grip by size, with its force. One with a key that is not known is another step than was meant.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct StepRow {
-    pose: Spanned<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pose: Option<Spanned<String>>,
     speed: Speed,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    force: Option<Force>,
     dwell_ms: Millis,
     limit_ms: Millis,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    grip: Option<GripRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     until: Option<UntilRow>,
-    #[serde(flatten)]
-    others: toml::Table,
 }
 
 /// What a step waits for. A grip that this version does not know is refused: a step that does not wait is another.
@@ -145,33 +157,43 @@ fn pose_row(pose: &LibraryPose) -> PoseRow {
         tags: pose.tags.clone(),
         speed: pose.speed,
         force: pose.force,
-        leave: left.collect(),
-        angles: AnglesRow {
+        leave: Some(Spanned::new(0..0, left.collect())),
+        angles: pose.gap.is_none().then(|| AnglesRow {
             little: angles[Dof::Little],
             ring: angles[Dof::Ring],
             middle: angles[Dof::Middle],
             index: angles[Dof::Index],
             thumb_bend: angles[Dof::ThumbBend],
             thumb_rotate: angles[Dof::ThumbRotate],
-        },
+        }),
+        grip: pose.gap.map(GripRow::of),
+        grip_thresholds: pose.thresholds.as_ref().map(thresholds_row),
         others: pose.others.clone(),
     }
 }
 
 fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
     let steps = sequence.steps.iter().filter_map(|step| {
-        Some(StepRow {
-            pose: unplaced(&library.pose(step.pose)?.name),
-            speed: step.speed,
-            dwell_ms: step.dwell,
-            limit_ms: step.limit,
-            until: step.until.map(|until| UntilRow {
-                grip: WaitedGrip::Holding,
-                within_ms: until.within,
-                retries: until.retries,
-            }),
-            others: step.others.clone(),
-        })
+        let (pose, gap) = match step.goal {
+            StepGoal::Pose(id) => (Some(unplaced(&library.pose(id)?.name)), None),
+            StepGoal::Gap { gap, force } => (None, Some((gap, force))),
+        };
+        Some(Spanned::new(
+            0..0,
+            StepRow {
+                pose,
+                speed: step.speed,
+                force: gap.map(|(_, force)| force),
+                dwell_ms: step.dwell,
+                limit_ms: step.limit,
+                until: step.until.map(|until| UntilRow {
+                    grip: WaitedGrip::Holding,
+                    within_ms: until.within,
+                    retries: until.retries,
+                }),
+                grip: gap.map(|(gap, _)| GripRow::of(gap)),
+            },
+        ))
     });
     SequenceRow {
         name: unplaced(&sequence.name),
@@ -274,15 +296,25 @@ impl PoseReader<'_> {
         {
             return Err(self.0.blame(row.name.span(), "tags", bad_name(bad)));
         }
-        let angles = row.angles;
-        let angles = PerDof::new([
-            angles.little,
-            angles.ring,
-            angles.middle,
-            angles.index,
-            angles.thumb_bend,
-            angles.thumb_rotate,
-        ]);
+        let gap = row
+            .grip
+            .as_ref()
+            .map(|grip| grip.read(self.0))
+            .transpose()?;
+        let angles = match (row.angles, gap) {
+            (Some(angles), None) => angles.all(),
+            (None, Some(gap)) => gap.angles(),
+            (None, None) => {
+                return Err(self.0.blame(row.name.span(), "angles", FileCause::Missing));
+            }
+            (Some(_), Some(_)) => {
+                let cause = FileCause::Both { other: "angles" };
+                return Err(self.0.blame(row.name.span(), "grip", cause));
+            }
+        };
+        let leave = self.left(row.leave, gap)?;
+        let thresholds = row.grip_thresholds.as_ref();
+        let thresholds = thresholds.map(|row| read_thresholds(row, self.0));
         let id = PoseId(library.fresh());
         library.poses.push(LibraryPose {
             id,
@@ -291,12 +323,33 @@ impl PoseReader<'_> {
             key: row.key,
             tags: row.tags,
             angles,
-            leave: PerDof::from_fn(|dof| row.leave.contains(&dof)),
+            gap,
+            thresholds: thresholds.transpose()?,
+            leave: PerDof::from_fn(|dof| leave.contains(&dof)),
             speed: row.speed,
             force: row.force,
             others: row.others,
         });
         Ok(())
+    }
+
+    /// The joints that are left alone; in a grip by size thumb and index cannot be.
+    fn left(self, row: Option<Spanned<Vec<Dof>>>, gap: Option<Gap>) -> Result<Vec<Dof>, FileError> {
+        let Some(row) = row else {
+            return Ok(Vec::new());
+        };
+        let left = row.get_ref().iter();
+        let bad = left
+            .clone()
+            .find(|dof| gap.is_some() && Gap::JOINTS.contains(dof));
+        if let Some(dof) = bad {
+            let cause = FileCause::Value {
+                got: format!("\"{}\"", dof.name()),
+                allowed: "a joint that a grip by size can leave alone: take it away".into(),
+            };
+            return Err(self.0.blame(row.span(), "leave", cause));
+        }
+        Ok(row.into_inner())
     }
 
     fn sequence(self, library: &mut PoseLibrary, row: SequenceRow) -> Result<(), FileError> {
@@ -353,9 +406,24 @@ impl PoseReader<'_> {
         Ok(pose.id)
     }
 
-    fn step(self, library: &PoseLibrary, row: StepRow) -> Result<SequenceStep, FileError> {
+    fn step(self, library: &PoseLibrary, row: Spanned<StepRow>) -> Result<SequenceStep, FileError> {
+        let (place, row) = (row.span(), row.into_inner());
+        let gap = row
+            .grip
+            .as_ref()
+            .map(|grip| grip.read(self.0))
+            .transpose()?;
+        let wrong = |field, cause| Err(self.0.blame(place, field, cause));
+        let goal = match (&row.pose, gap, row.force) {
+            (Some(name), None, None) => StepGoal::Pose(self.named(library, "pose", name)?),
+            (None, Some(gap), Some(force)) => StepGoal::Gap { gap, force },
+            (Some(_), Some(_), _) => return wrong("grip", FileCause::Both { other: "pose" }),
+            (Some(_), None, Some(_)) => return wrong("force", FileCause::Both { other: "pose" }),
+            (None, Some(_), None) => return wrong("force", FileCause::Missing),
+            (None, None, _) => return wrong("pose", FileCause::Missing),
+        };
         Ok(SequenceStep {
-            pose: self.named(library, "pose", &row.pose)?,
+            goal,
             speed: row.speed,
             dwell: row.dwell_ms,
             limit: row.limit_ms,
@@ -365,8 +433,20 @@ impl PoseReader<'_> {
                     retries: until.retries,
                 },
             }),
-            others: row.others,
         })
+    }
+}
+
+impl AnglesRow {
+    const fn all(&self) -> PerDof<Angle> {
+        PerDof::new([
+            self.little,
+            self.ring,
+            self.middle,
+            self.index,
+            self.thumb_bend,
+            self.thumb_rotate,
+        ])
     }
 }
 

@@ -1,5 +1,7 @@
 //! Poses and sequences as plain values. How they are changed is in `edit`, how they are written in `file`.
 
+use crate::hand::gap::Gap;
+use crate::hand::grip::GripThresholds;
 use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::reaction::TouchForce;
 use serde::{Deserialize, Serialize};
@@ -211,6 +213,10 @@ pub struct LibraryPose {
     pub tags: Vec<String>,
     /// Where the joints go, 0 bent to 1000 open.
     pub angles: PerDof<Angle>,
+    /// The gap of a pose by size. Its angles are those of the gap, and thumb and index go there along the path on which they meet.
+    pub gap: Option<Gap>,
+    /// What its grip is told by while it is what was asked for last; `None` for the usual.
+    pub thresholds: Option<GripThresholds>,
     /// Joints that are left alone although an angle is known.
     pub leave: PerDof<bool>,
     /// Speed of the joints that move.
@@ -235,16 +241,48 @@ impl LibraryPose {
         names.any(|name| name.contains(words))
     }
 
+    /// Makes it a pose by size, or one of its angles again. Thumb and index of a pose by size take part.
+    pub fn set_gap(&mut self, gap: Option<Gap>) {
+        self.gap = gap;
+        if let Some(gap) = gap {
+            self.angles = gap.angles();
+            for dof in Gap::JOINTS {
+                self.leave[dof] = false;
+            }
+        }
+    }
+
     /// Where each joint goes; `None` for those that are left alone.
     pub fn targets(&self) -> PerDof<Option<Angle>> {
         PerDof::from_fn(|dof| (!self.leave[dof]).then_some(self.angles[dof]))
     }
 }
 
-/// One pose on a timeline.
-#[derive(Debug, Clone, PartialEq)]
+/// Where a step goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepGoal {
+    /// To a pose of the library.
+    Pose(PoseId),
+    /// To a gap between the pads of thumb and index; what is between them is gripped.
+    Gap {
+        /// The gap.
+        gap: Gap,
+        /// Force threshold of the joints.
+        force: Force,
+    },
+}
+
+impl StepGoal {
+    /// True if it is this pose.
+    pub fn is_pose(self, id: PoseId) -> bool {
+        self == Self::Pose(id)
+    }
+}
+
+/// One pose, or grip by size, on a timeline.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceStep {
-    pub pose: PoseId,
+    pub goal: StepGoal,
     /// Speed on the way there; the pose's own is for recalling it alone.
     pub speed: Speed,
     /// Time at the pose before the next step.
@@ -253,8 +291,6 @@ pub struct SequenceStep {
     pub limit: Millis,
     /// The grip that it waits for before its dwell, if any.
     pub until: Option<UntilHolding>,
-    /// Keys of a newer version, kept as they are.
-    pub others: toml::Table,
 }
 
 /// Poses one after the other.

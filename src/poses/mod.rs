@@ -2,6 +2,7 @@
 
 pub mod edit;
 pub mod file;
+mod grip_row;
 pub mod library;
 pub mod player;
 pub mod preview;
@@ -12,5 +13,7 @@ pub mod wish;
 
 pub use crate::poses::wish::{Play, Preset};
 
+#[cfg(test)]
+mod grip_tests;
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,13 @@
 //! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
 
-use crate::hand::grip::{GripEstimate, GripState};
+use crate::hand::gap::Gap;
+use crate::hand::grip::{GripEstimate, GripState, GripThresholds};
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
 use crate::poses::library::{
-    EntryId, LibraryPose, Millis, PoseId, PoseLibrary, SequenceId, UntilHolding,
+    EntryId, LibraryPose, Millis, PoseLibrary, SequenceId, SequenceStep, StepGoal, UntilHolding,
 };
 use crate::poses::reaction::TouchForce;
-use crate::poses::way::{Targets, way};
+use crate::poses::way::{Targets, WayPart, pinch_way, way};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -15,13 +16,17 @@ const EMPTY_FOR: Duration = Duration::from_millis(300);
 /// Until then, readings may show what the hand did before it was told something: it takes 66 ms, and is read every 25.
 const REACTS_WITHIN: Duration = Duration::from_millis(150);
 
+/// A grip by size that is taken alone may take so much longer than the stroke at its speed.
+const SPARE: Duration = Duration::from_secs(4);
+
 /// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cue {
-    pub pose: PoseId,
     /// Where each joint goes; `None` = left alone.
     pub targets: Targets,
-    /// Speed on the way.
+    /// The gap that these are the targets of, in a grip by size.
+    pub gap: Option<Gap>,
+    /// Speed on the way; of a grip by size that of the fastest joint.
     pub speed: Speed,
     /// Force threshold.
     pub force: Force,
@@ -31,59 +36,70 @@ pub struct Cue {
     pub limit: Duration,
     /// The grip that it waits for before its dwell, if any.
     pub until: Option<UntilHolding>,
+    /// What its grip is told by; `None` for the usual.
+    pub thresholds: Option<GripThresholds>,
 }
 
 /// The steps of a sequence as they are now.
 pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
     let steps = library.sequence(sequence).into_iter();
     let steps = steps.flat_map(|own| &own.steps);
-    let cues = steps.filter_map(|step| {
-        let pose = library.pose(step.pose)?;
-        Some(Cue {
-            pose: pose.id,
-            targets: pose.targets(),
-            speed: step.speed,
-            force: pose.force,
-            dwell: step.dwell.duration(),
-            limit: step.limit.duration(),
-            until: step.until,
-        })
-    });
-    cues.collect()
+    steps.filter_map(|step| library.cue(step)).collect()
 }
 
 impl Cue {
     /// A pose taken alone, at its own speed.
     pub fn of(pose: &LibraryPose) -> Self {
+        let limit = Millis::LIMIT.duration();
         Self {
-            pose: pose.id,
             targets: pose.targets(),
+            gap: pose.gap,
             speed: pose.speed,
             force: pose.force,
             dwell: Duration::ZERO,
-            limit: Millis::LIMIT.duration(),
+            // What opens first and is late then would not close.
+            limit: pose.gap.map_or(limit, |_| pose.speed.stroke() + SPARE),
             until: None,
+            thresholds: pose.thresholds,
         }
     }
 
-    /// The cues of its way from these angles on, one after the other; time is spent at the last.
-    pub(crate) fn legs(&self, from: &PerDof<Option<i16>>) -> Vec<Self> {
-        let mut legs: Vec<Self> = way(from, &self.targets)
-            .into_iter()
-            .map(|targets| Self {
-                targets,
-                dwell: Duration::ZERO,
-                ..self.clone()
-            })
-            .collect();
-        if let Some(last) = legs.last_mut() {
-            last.dwell = self.dwell;
+    /// A grip by size, at this speed.
+    fn of_gap(gap: Gap, speed: Speed, force: Force) -> Self {
+        let pose = LibraryPose::at(gap.angles());
+        Self {
+            gap: Some(gap),
+            speed,
+            force,
+            ..Self::of(&pose)
         }
-        legs
+    }
+
+    /// The parts of its way from these angles on, one after the other.
+    pub(crate) fn parts(&self, from: &PerDof<Option<i16>>) -> Vec<WayPart> {
+        if let Some(gap) = self.gap {
+            let moves = self.targets.map(|target| target.is_some());
+            return pinch_way(from, gap, self.speed, &moves);
+        }
+        let straight = way(from, &self.targets);
+        let parts = straight.into_iter().map(|targets| WayPart {
+            targets,
+            speeds: PerDof::splat(self.speed),
+            is_pinching: false,
+        });
+        parts.collect()
     }
 
     /// Lets go: the joints that it moves open. The thumb keeps its rotation, which the next try needs.
     fn opening(&self) -> Self {
+        if self.gap.is_some() {
+            let open = Gap::MAX.angles();
+            return Self {
+                targets: PerDof::from_fn(|dof| self.targets[dof].map(|_| open[dof])),
+                gap: Some(Gap::MAX),
+                ..self.clone()
+            };
+        }
         let opens = |dof: Dof| self.targets[dof].filter(|_| dof != Dof::ThumbRotate);
         Self {
             targets: PerDof::from_fn(|dof| opens(dof).map(|_| Angle::MAX)),
@@ -122,6 +138,21 @@ pub struct ReactionCue {
 }
 
 impl PoseLibrary {
+    /// What is needed for a step; `None` if its pose is not in this library.
+    fn cue(&self, step: &SequenceStep) -> Option<Cue> {
+        let cue = match step.goal {
+            StepGoal::Pose(pose) => Cue::of(self.pose(pose)?),
+            StepGoal::Gap { gap, force } => Cue::of_gap(gap, step.speed, force),
+        };
+        Some(Cue {
+            speed: step.speed,
+            dwell: step.dwell.duration(),
+            limit: step.limit.duration(),
+            until: step.until,
+            ..cue
+        })
+    }
+
     /// What is needed to play an entry; `None` if it is not in this library.
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let plan = |cues, looped, reaction| PlayPlan {
@@ -163,6 +194,8 @@ pub enum PlayEnd {
     TakenOver,
     /// A step waited for a grip that did not come in time; this was the grip then.
     NotHolding(GripState),
+    /// A joint is locked without which there is no grip by size.
+    Locked,
 }
 
 /// Where a sequence stands.
@@ -224,7 +257,7 @@ pub struct Player {
     pace: PlayMode,
     view: PlayView,
     /// What is left of the way to the current pose; the first was sent.
-    legs: VecDeque<Cue>,
+    parts: VecDeque<WayPart>,
     /// The next part of the way is to be sent.
     due: bool,
     /// The current pose was reached, or its time is up; what it waits for is there.
@@ -239,7 +272,7 @@ impl Player {
             view.phase = PlayPhase::Ended(PlayEnd::Finished);
         }
         Self {
-            legs: VecDeque::new(),
+            parts: VecDeque::new(),
             due: !cues.is_empty(),
             cues,
             looped,
@@ -255,15 +288,20 @@ impl Player {
     }
 
     fn goal(&self) -> Option<Cue> {
-        let cue = self.cues.get(self.view.at)?;
+        let cue = self.cue()?;
         Some(match self.view.phase {
             PlayPhase::Opening { .. } => cue.opening(),
             _ => cue.clone(),
         })
     }
 
+    /// The step where it stands.
+    pub fn cue(&self) -> Option<&Cue> {
+        self.cues.get(self.view.at)
+    }
+
     fn until(&self) -> Option<UntilHolding> {
-        self.cues.get(self.view.at)?.until
+        self.cue()?.until
     }
 
     /// Where it stands.
@@ -281,7 +319,7 @@ impl Player {
         matches!(self.view.phase, PlayPhase::Paused)
     }
 
-    /// Advances the time. Returns the cue to send now, if one is due.
+    /// Advances the time. Returns the part of the way to send now, if one is due.
     ///
     /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at. `grasp` as it
     /// is known at `now`.
@@ -290,7 +328,7 @@ impl Player {
         now: Moment,
         seen: &PerDof<Option<i16>>,
         grasp: &GripEstimate,
-    ) -> Option<Cue> {
+    ) -> Option<WayPart> {
         match self.view.phase {
             PlayPhase::Moving { since } if !self.due && self.took_hold(since, grasp) => {
                 self.arrive(now);
@@ -310,17 +348,18 @@ impl Player {
             return None;
         }
         self.due = false;
-        if self.legs.pop_front().is_none() || self.legs.is_empty() {
-            self.legs = self.goal()?.legs(seen).into();
+        if self.parts.pop_front().is_none() || self.parts.is_empty() {
+            self.parts = self.goal()?.parts(seen).into();
         }
-        self.legs.front().cloned()
+        self.parts.front().copied()
     }
 
     /// What closes on an object never arrives: the grip that the step waits for ends its way. One of before does not.
     fn took_hold(&self, since: Moment, grasp: &GripEstimate) -> bool {
         let is_new = grasp.since >= since.plus(REACTS_WITHIN);
         let is_held = grasp.state == GripState::Holding && is_new;
-        is_held && self.until().is_some() && self.legs.len() == 1
+        let closes = |part: &WayPart| part.is_pinching || self.parts.len() == 1;
+        is_held && self.until().is_some() && self.parts.front().is_some_and(closes)
     }
 
     /// The step's pose counts as reached, with all that it waits for.
@@ -330,10 +369,10 @@ impl Player {
     }
 
     fn moving(&mut self, since: Moment, now: Moment, seen: &PerDof<Option<i16>>) {
-        let Some(cue) = self.legs.front() else {
+        let (Some(part), Some(cue)) = (self.parts.front(), self.cue()) else {
             return;
         };
-        let there = |dof: Dof| match cue.targets[dof] {
+        let there = |dof: Dof| match part.targets[dof] {
             None => true,
             Some(target) => {
                 seen[dof].is_some_and(|seen| target.get().abs_diff(seen) <= Angle::ARRIVED_WITHIN)
@@ -344,7 +383,7 @@ impl Player {
         if !is_there && !too_late {
             return;
         }
-        if is_there && self.legs.len() > 1 {
+        if is_there && self.parts.len() > 1 {
             // Each part of the way has as much time as a straight one.
             if let PlayPhase::Moving { since } | PlayPhase::Opening { since } = &mut self.view.phase
             {
@@ -374,7 +413,7 @@ impl Player {
             self.arrive(now);
         } else if is_empty && self.view.retries < until.retries.get() {
             self.view.retries += 1;
-            self.legs.clear();
+            self.parts.clear();
             self.view.phase = PlayPhase::Opening { since: now };
             self.due = true;
         } else if now.since(since) >= until.within.duration() {
@@ -383,7 +422,7 @@ impl Player {
     }
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
-        let dwell = self.cues.get(self.view.at).map(|cue| cue.dwell);
+        let dwell = self.cue().map(|cue| cue.dwell);
         if dwell.is_some_and(|dwell| now.since(since) < dwell) {
             return;
         }
@@ -408,7 +447,7 @@ impl Player {
     }
 
     fn begin(&mut self, now: Moment) {
-        self.legs.clear();
+        self.parts.clear();
         self.view.phase = PlayPhase::Moving { since: now };
         self.due = true;
         self.arrived = false;

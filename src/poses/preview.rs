@@ -3,6 +3,7 @@
 use crate::hand::{Dof, Moment, PerDof};
 use crate::poses::library::{PoseLibrary, SequenceId};
 use crate::poses::player::{Cue, cues};
+use crate::poses::way::WayPart;
 use std::time::Duration;
 
 /// Full stroke at full speed without load (manual 2.6.13).
@@ -66,20 +67,20 @@ impl Preview {
             left = if round > 0.0 { left % round } else { 0.0 };
         }
         for (step, cue) in self.cues.iter().enumerate() {
-            for leg in legs(cue, &angles) {
-                let way = way_s(&leg, &angles);
+            for part in parts(cue, &angles) {
+                let way = way_s(&part, &angles, cue.limit);
                 if left < way {
-                    let part = |dof: Dof| moved(&leg, dof, angles[dof], left);
-                    return shown(PerDof::from_fn(part), step, false);
+                    let moved = |dof: Dof| moved(&part, dof, angles[dof], left);
+                    return shown(PerDof::from_fn(moved), step, false);
                 }
-                angles = PerDof::from_fn(|dof| moved(&leg, dof, angles[dof], way));
+                angles = PerDof::from_fn(|dof| moved(&part, dof, angles[dof], way));
                 left -= way;
-                let dwell = leg.dwell.as_secs_f64();
-                if left < dwell {
-                    return shown(angles, step, false);
-                }
-                left -= dwell;
             }
+            let dwell = cue.dwell.as_secs_f64();
+            if left < dwell {
+                return shown(angles, step, false);
+            }
+            left -= dwell;
         }
         shown(
             angles,
@@ -92,45 +93,46 @@ impl Preview {
     fn round(&self, mut angles: PerDof<f64>) -> (f64, PerDof<f64>) {
         let mut seconds = 0.0;
         for cue in &self.cues {
-            for leg in legs(cue, &angles) {
-                let way = way_s(&leg, &angles);
-                seconds += way + leg.dwell.as_secs_f64();
-                angles = PerDof::from_fn(|dof| moved(&leg, dof, angles[dof], way));
+            for part in parts(cue, &angles) {
+                let way = way_s(&part, &angles, cue.limit);
+                seconds += way;
+                angles = PerDof::from_fn(|dof| moved(&part, dof, angles[dof], way));
             }
+            seconds += cue.dwell.as_secs_f64();
         }
         (seconds, angles)
     }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "an angle of 0 to 1000")]
-fn legs(cue: &Cue, from: &PerDof<f64>) -> Vec<Cue> {
-    cue.legs(&from.map(|angle| Some(angle.round() as i16)))
+fn parts(cue: &Cue, from: &PerDof<f64>) -> Vec<WayPart> {
+    cue.parts(&from.map(|angle| Some(angle.round() as i16)))
 }
 
 /// Thousandths of the stroke in a second.
-fn rate(cue: &Cue) -> f64 {
-    f64::from(cue.speed.get()) / FULL_STROKE_S
+fn rate(part: &WayPart, dof: Dof) -> f64 {
+    f64::from(part.speeds[dof].get()) / FULL_STROKE_S
 }
 
 /// Seconds until every joint is there, at most the step's own limit.
-fn way_s(cue: &Cue, from: &PerDof<f64>) -> f64 {
-    let far = |dof: Dof| cue.targets[dof].map(|to| (f64::from(to.get()) - from[dof]).abs());
-    let farthest = Dof::ALL.into_iter().filter_map(far).fold(0.0, f64::max);
-    let limit = Duration::as_secs_f64(&cue.limit);
-    if farthest <= 0.0 {
-        0.0
-    } else if rate(cue) <= 0.0 {
-        limit
-    } else {
-        (farthest / rate(cue)).min(limit)
-    }
+fn way_s(part: &WayPart, from: &PerDof<f64>, limit: Duration) -> f64 {
+    let limit = limit.as_secs_f64();
+    let takes = |dof: Dof| {
+        let far = (f64::from(part.targets[dof]?.get()) - from[dof]).abs();
+        Some(match far {
+            0.0 => 0.0,
+            far => far / rate(part, dof),
+        })
+    };
+    let longest = Dof::ALL.into_iter().filter_map(takes);
+    longest.fold(0.0, f64::max).min(limit)
 }
 
-fn moved(cue: &Cue, dof: Dof, from: f64, seconds: f64) -> f64 {
-    let Some(to) = cue.targets[dof].map(|to| f64::from(to.get())) else {
+fn moved(part: &WayPart, dof: Dof, from: f64, seconds: f64) -> f64 {
+    let Some(to) = part.targets[dof].map(|to| f64::from(to.get())) else {
         return from;
     };
-    let reach = rate(cue) * seconds;
+    let reach = rate(part, dof) * seconds;
     from + (to - from).clamp(-reach, reach)
 }
 

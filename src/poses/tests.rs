@@ -4,9 +4,12 @@ use crate::hand::grip::{GripEstimate, GripState};
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
 use crate::poses::edit::{PoseEdit, SequenceEdit};
 use crate::poses::file::{read, write};
-use crate::poses::library::{LibraryPose, Millis, PoseId, PoseLibrary, Retries, UntilHolding};
+use crate::poses::library::{
+    LibraryPose, Millis, PoseId, PoseLibrary, Retries, StepGoal, UntilHolding,
+};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, Player};
 use crate::poses::preview::Preview;
+use crate::poses::way::WayPart;
 use proptest::prelude::*;
 use std::time::Duration;
 
@@ -38,7 +41,6 @@ speed = 250
 dwell_ms = 400
 limit_ms = 3000
 until = { grip = "holding", within_ms = 2000, retries = 3 }
-note = "slow"
 "#;
 
 #[test]
@@ -53,12 +55,12 @@ fn a_file_is_read_as_documented_and_unknown_keys_survive() {
     assert_eq!(pose.targets()[Dof::Index], Angle::new(420).ok());
     let sequence = &library.sequences[0];
     assert!(sequence.looped);
-    assert_eq!(sequence.steps[0].pose, pose.id);
+    assert_eq!(sequence.steps[0].goal, StepGoal::Pose(pose.id));
     assert_eq!(sequence.steps[0].dwell, Millis::try_from(400).unwrap());
     let until = sequence.steps[0].until.unwrap();
     assert_eq!((until.within.get(), until.retries.get()), (2000, 3));
     let again = write(&library).unwrap();
-    for kept in ["mood = \"calm\"", "colour = \"red\"", "note = \"slow\""] {
+    for kept in ["mood = \"calm\"", "colour = \"red\""] {
         assert!(again.contains(kept), "{kept}\n{again}");
     }
     assert_eq!(read(&again).unwrap(), library);
@@ -67,6 +69,8 @@ fn a_file_is_read_as_documented_and_unknown_keys_survive() {
 #[test]
 fn a_bad_file_is_refused_with_line_and_field() {
     for (from, to, line, field) in [
+        ("retries = 3 }", "retries = 3 }\nunitl = 3", 29, "unitl"),
+        ("until = {", "untill = {", 28, "untill"),
         ("index = 420", "index = 1001", 16, "index"),
         ("index = 420", "index = -1", 16, "index"),
         ("index = 420", "index = nan", 16, "index"),
@@ -100,6 +104,9 @@ fn a_bad_file_is_refused_with_line_and_field() {
             said.starts_with(&format!("line {line}, `{field}`: ")),
             "{said}"
         );
+        for word in ["variant", "struct", "TOML", "expected", "invalid type"] {
+            assert!(!said.contains(word), "{said}");
+        }
     }
     let twice = GOOD.replacen("[[sequence]]", "[[pose]]\nname = \"Pinch\"\nspeed = 1\nforce = 1\nangles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_rotate = 1 }\n[[sequence]]", 1);
     assert!(read(&twice).unwrap_err().to_string().contains("used twice"));
@@ -172,13 +179,14 @@ proptest! {
 
 fn cue(angle: i16) -> Cue {
     Cue {
-        pose: PoseId(1),
         targets: PerDof::splat(Angle::new(angle).ok()),
+        gap: None,
         speed: Speed::MAX,
         force: Force::GENTLE,
         dwell: Duration::from_millis(200),
         limit: Duration::from_millis(1000),
         until: None,
+        thresholds: None,
     }
 }
 
@@ -191,7 +199,7 @@ fn at(angle: i16) -> PerDof<Option<i16>> {
 }
 
 /// One moment of a player that nobody tells a grip.
-fn tick(player: &mut Player, millis: u64, angle: i16) -> Option<Cue> {
+fn tick(player: &mut Player, millis: u64, angle: i16) -> Option<WayPart> {
     player.tick(ms(millis), &at(angle), &GripEstimate::default())
 }
 

@@ -1,7 +1,8 @@
-//! The way from one pose to another on which thumb and index do not meet. Counts only; the drawn hand's geometry proves it in the
-//! tests, and feeds no motion.
+//! The way from one pose to another on which thumb and index do not meet, and to a grip by size, on which they do at its end.
+//! Counts only; the drawn hand's geometry proves it in the tests, and feeds no motion.
 
-use crate::hand::{Angle, Dof, PerDof};
+use crate::hand::gap::{Gap, gap_on_path};
+use crate::hand::{Angle, Dof, PerDof, Speed};
 
 /// Angles of some joints; `None` = left alone.
 pub type Targets = PerDof<Option<Angle>>;
@@ -52,4 +53,48 @@ pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
         ways.push(thumb(bent));
     }
     ways
+}
+
+/// A straight part of a way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WayPart {
+    /// Where the joints go.
+    pub targets: Targets,
+    /// How fast.
+    pub speeds: PerDof<Speed>,
+    /// The pads of thumb and index face each other: what stops them may be held.
+    pub is_pinching: bool,
+}
+
+/// The way to a gap: open first, unless the hand is on the path already, then along the path on which the pads meet. Of joints
+/// that do not pinch only those that `moves` has.
+pub fn pinch_way(
+    from: &PerDof<Option<i16>>,
+    to: Gap,
+    fastest: Speed,
+    moves: &PerDof<bool>,
+) -> Vec<WayPart> {
+    let part = |angles: Targets| PerDof::from_fn(|dof| angles[dof].filter(|_| moves[dof]));
+    // Joints that do not pinch are not looked at.
+    let counts = PerDof::from_fn(|dof| match Gap::JOINTS.contains(&dof) {
+        true => from[dof].map(f32::from),
+        false => Some(f32::from(Angle::MAX.get())),
+    });
+    let on_path = counts.all().and_then(|counts| gap_on_path(&counts));
+    let mut parts = Vec::with_capacity(5);
+    if on_path.is_none() {
+        let opened = way(from, &part(Gap::MAX.angles().map(Some)));
+        parts.extend(opened.into_iter().map(|targets| WayPart {
+            targets,
+            speeds: PerDof::splat(fastest),
+            is_pinching: false,
+        }));
+    }
+    let begins = on_path.map_or(Gap::MAX, Gap::nearest);
+    parts.extend(begins.legs_to(to).into_iter().map(|leg| WayPart {
+        targets: part(leg.to.map(Some)),
+        speeds: leg.speeds(fastest),
+        is_pinching: true,
+    }));
+    parts
 }

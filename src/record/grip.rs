@@ -41,6 +41,12 @@ impl GripFollower {
         }
     }
 
+    /// The grip as it is known at `at`, without a new reading.
+    pub(crate) fn known(&self, at: Moment) -> Grip {
+        let grip = self.estimator.known(true, at);
+        self.doubted.map_or(grip, Grip::unknown)
+    }
+
     /// A status that did not change is not told.
     fn report(&mut self, report: &LinkReport) {
         if let Ok(status) = serde_json::from_str::<Doubt>(&report.status) {
@@ -144,6 +150,38 @@ mod tests {
             .unwrap();
         let first: GripMessage = cdr::decode(&first.bytes).unwrap();
         assert_eq!((first.state.as_str(), first.since), ("holding", last.since));
+    }
+
+    #[test]
+    fn a_file_begins_with_the_grip_and_tells_it_where_readings_stop() {
+        let opening = Opening::begin(
+            "sim:".into(),
+            (Moment::ZERO, Duration::from_secs(100)),
+            Side::Right,
+        );
+        let state = |ms: u64| {
+            let at = Moment::from_micros(ms * 1000);
+            let state = LinkState::Monitoring;
+            Entry::Heard(Record::State { at, state })
+        };
+        let told = |encoder: &mut EntryEncoder, entry: &Entry| -> Option<String> {
+            let messages = encoder.encode(entry);
+            let grip = messages.iter().find(|own| own.topic == Topic::Grip)?;
+            Some(cdr::decode::<GripMessage>(&grip.bytes).unwrap().state)
+        };
+        let mut encoder = EntryEncoder::new(&opening);
+        let first = told(&mut encoder, &state(5));
+        assert_eq!(first.as_deref(), Some("unknown"), "before any reading");
+        for ms in (10..=500).step_by(10) {
+            encoder.encode(&reading(Moment::from_micros(ms * 1000)));
+        }
+        // A file that begins in the middle, with whatever comes first.
+        let mut next = encoder.next(&opening);
+        let held = told(&mut next, &state(510));
+        assert_eq!(held.as_deref(), Some("holding"));
+        assert_eq!(told(&mut next, &state(520)), None, "once");
+        let old = told(&mut next, &state(1200));
+        assert_eq!(old.as_deref(), Some("unknown"), "its readings are old");
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! Files of ours in TOML: of which format and version they are, and where in them something is wrong. Knows what stands in none
 //! of them.
 
+use crate::store::file_error::{FileCause, FileError};
 use crate::store::read_text;
-use crate::system::SystemError;
+use crate::store::toml_words::plain;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::io;
@@ -10,140 +11,7 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-/// The version of all formats that is written, and the only one that is read.
-pub const VERSION: i64 = 1;
-
-/// Why a file was rejected, as a whole.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}{cause}", place(*.line, .field.as_ref()))]
-pub struct FileError {
-    /// Line, 1 the first, where one is to blame.
-    pub line: Option<usize>,
-    /// Field, where one is to blame.
-    pub field: Option<String>,
-    /// What is wrong.
-    pub cause: FileCause,
-}
-
-/// What is wrong with a file.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum FileCause {
-    /// Not TOML, or not a row of a table, or a value that does not fit its field.
-    #[error("{0}")]
-    Malformed(String),
-    /// Another table.
-    #[error("this is not a table of samples")]
-    NotSamples,
-    /// Not a picture.
-    #[error("{0}")]
-    Picture(String),
-    /// Another kind of file.
-    #[error("this is another kind of file: its format is \"{got}\", not \"{wanted}\"")]
-    Format {
-        /// What it says it is.
-        got: String,
-        /// What it should be.
-        wanted: &'static str,
-    },
-    /// Written by another version.
-    #[error("version {got} cannot be read, only version {VERSION}")]
-    Version {
-        /// What it says.
-        got: i64,
-    },
-    /// A value that is not allowed there.
-    #[error("{got} is not {allowed}")]
-    Value {
-        /// What stands there.
-        got: String,
-        /// What may.
-        allowed: String,
-    },
-    /// Two entries with one name.
-    #[error("the name \"{name}\" is used twice")]
-    Twice { name: String },
-    /// A name that the file does not have.
-    #[error("there is no \"{name}\" in this file")]
-    Absent { name: String },
-    /// More than there may be.
-    #[error("{got} are too many: at most {limit}")]
-    TooMany {
-        /// How many there are.
-        got: usize,
-        /// How many there may be.
-        limit: usize,
-    },
-    /// It holds what nobody else may know, and others can read or change it.
-    #[error("others can read this file: run 'chmod 600 {path}'")]
-    NotPrivate {
-        /// The file.
-        path: String,
-    },
-    /// It names a file outside its own folder.
-    #[error("{got} does not lie in the folder of this file, or below it")]
-    Outside {
-        /// The name.
-        got: String,
-    },
-    /// A file that holds nothing of its kind.
-    #[error("there is nothing in it")]
-    Empty,
-    /// The system could not read it.
-    #[error("it cannot be read: {0}")]
-    Unreadable(SystemError),
-    /// A file that this one names is rejected.
-    #[error("it cannot be read: {path}: {}", .error.reason())]
-    Named { path: String, error: Box<FileError> },
-}
-
-impl FileError {
-    /// The error of the file that names this one.
-    pub fn of_named(self, path: String) -> Self {
-        let error = Box::new(self);
-        FileCause::Named { path, error }.into()
-    }
-
-    /// What is wrong, where it is said already that the file cannot be read.
-    fn reason(&self) -> String {
-        match &self.cause {
-            FileCause::Unreadable(why) => why.to_string(),
-            FileCause::Named { path, error } => format!("{path}: {}", error.reason()),
-            _ => self.to_string(),
-        }
-    }
-}
-
-/// Line and field, as they stand before the cause.
-fn place(line: Option<usize>, field: Option<&String>) -> String {
-    let line = line.map(|line| format!("line {line}, "));
-    let field = field.map(|field| format!("`{field}`: "));
-    line.unwrap_or_default() + &field.unwrap_or_default()
-}
-
-impl From<FileCause> for FileError {
-    fn from(cause: FileCause) -> Self {
-        Self {
-            line: None,
-            field: None,
-            cause,
-        }
-    }
-}
-
-impl From<io::Error> for FileError {
-    fn from(error: io::Error) -> Self {
-        FileCause::Unreadable(error.into()).into()
-    }
-}
-
-impl From<FileError> for io::Error {
-    fn from(error: FileError) -> Self {
-        match &error.cause {
-            FileCause::Unreadable(system) => Self::new(system.kind, error),
-            _ => Self::new(io::ErrorKind::InvalidData, error),
-        }
-    }
-}
+pub use crate::store::file_error::VERSION;
 
 /// Reads a file that must be there and has at most `limit` bytes.
 ///
@@ -205,18 +73,17 @@ impl<'a> FileText<'a> {
     }
 
     fn toml_error(self, error: &toml::de::Error) -> FileError {
-        let said = error.message().trim().replace('\n', " ");
-        let named = ["missing field `", "unknown field `"]
-            .iter()
-            .find_map(|start| {
-                let rest = said.strip_prefix(start)?;
-                rest.split('`').next().map(str::to_owned)
-            });
+        let said = error.message().trim();
+        let (named, cause) = match self.0.parse::<toml::Table>() {
+            Ok(_) => plain(said),
+            Err(_) if said == "duplicate key" => (None, FileCause::KeyTwice),
+            Err(_) => (None, FileCause::Syntax(said.into())),
+        };
         let span = error.span().unwrap_or(0..0);
         FileError {
             field: named.or_else(|| self.key_before(span.start)),
             line: error.span().map(|span| self.line(span.start)),
-            cause: FileCause::Malformed(said),
+            cause,
         }
     }
 

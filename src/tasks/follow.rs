@@ -1,6 +1,7 @@
 //! A hand that follows a source under a lease that the user granted: gamepad, stream, another hand. When it moves, and how far, is decided
 //! in `inputs`; here it is done.
 
+use crate::hand::gap::Gap;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, DriveHeat, HandSample, Moment, PerDof, Setpoints, Target,
 };
@@ -157,6 +158,11 @@ impl<H: TaskHand> FollowRun<'_, H> {
         let locked = self.start.terms.borrow().locked;
         for (dof, aim) in offer.aims.iter_mut() {
             *aim = aim.filter(|_| !locked[dof]);
+        }
+        if offer.gap.is_some() && Gap::JOINTS.into_iter().any(|dof| locked[dof]) {
+            // Without one of them there is no path, and nothing is closed beside it.
+            offer.gap = None;
+            offer.aims = PerDof::splat(None);
         }
         if offer.held == Some(true) {
             // Should this task hang, the link stops the hand by itself. A lease that ended is seen in the next step.

@@ -4,12 +4,12 @@
 use crate::hand::gap::{Gap, gap_on_path, held_gap};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Force, Groups, HandSample, Moment, PerDof, Setpoints, Speed,
-    Target,
+    Angle, AngleReading, ArmEpoch, Dof, Force, Group, Groups, HandSample, Moment, PerDof,
+    Setpoints, Speed, Target,
 };
 use crate::link::{Clock, Lease};
 use crate::poses::player::PlayEnd;
-use crate::poses::way::{Targets, way};
+use crate::poses::way::{WayPart, pinch_way};
 use crate::record::{Disarmed, Record, Rest};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
@@ -25,6 +25,14 @@ const TICK: Duration = Duration::from_millis(5);
 const FRESH_FOR: Duration = Duration::from_millis(250);
 /// A part of the way is not judged before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
+/// Setpoints that are read back sooner after they were written may be those of before.
+const ACTS_WITHIN: Duration = Duration::from_millis(150);
+/// A part of the way that is done waits no longer than this, counted from its start, for what is read back.
+const SEEN_WITHIN: Duration = Duration::from_millis(1500);
+/// So many readings in a row with a value that was not told are another controller's; one may be wrong.
+const STRANGE: u8 = 2;
+/// A hand may round what it is told by so much.
+const ROUNDS_BY: u16 = 5;
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -62,6 +70,8 @@ pub enum GripEnd {
     Late,
     /// The user ended it. The hand was stopped.
     Person,
+    /// Another controller wrote where the joints go or how fast. The hand was stopped.
+    OtherWrote,
     /// The arming ended, a drive reported a fault, the link was lost, or another moves the hand.
     Broken(PlayEnd),
 }
@@ -93,6 +103,7 @@ pub async fn grip<H: TaskHand>(
         hand,
         sample: start.seen,
         estimator: GripEstimator::default(),
+        told: ToldSetpoints::default(),
         legs: None,
         sent: start.clock.now(),
         start,
@@ -113,6 +124,12 @@ pub async fn grip<H: TaskHand>(
         }
     };
     let disarmed = hand.status().disarmed;
+    let end = match (end, disarmed) {
+        (GripEnd::Broken(PlayEnd::Disarmed), Some(Disarmed::OtherController)) => {
+            GripEnd::OtherWrote
+        }
+        (end, _) => end,
+    };
     let stop = match end {
         GripEnd::Held | GripEnd::Reached => {
             hand.disarm();
@@ -125,6 +142,7 @@ pub async fn grip<H: TaskHand>(
         | GripEnd::NotOpened
         | GripEnd::Late
         | GripEnd::Person
+        | GripEnd::OtherWrote
         | GripEnd::Broken(_) => Some(series::hold(hand, &mut records).await),
     };
     GripReport {
@@ -138,22 +156,14 @@ pub async fn grip<H: TaskHand>(
     }
 }
 
-/// A part of the way.
-#[derive(Debug, Clone, Copy)]
-struct Leg {
-    targets: Targets,
-    speeds: PerDof<Speed>,
-    /// On the path on which the pads face each other.
-    is_on_path: bool,
-}
-
 struct GripRun<'a, H> {
     hand: &'a H,
     start: GripStart,
     sample: HandSample,
     estimator: GripEstimator,
+    told: ToldSetpoints,
     /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
-    legs: Option<VecDeque<Leg>>,
+    legs: Option<VecDeque<WayPart>>,
     /// When the part under way was sent.
     sent: Moment,
 }
@@ -161,6 +171,7 @@ struct GripRun<'a, H> {
 impl<H: TaskHand> GripRun<'_, H> {
     fn take(&mut self, sample: HandSample, fresh: Groups) {
         self.sample = sample;
+        self.told.read(&self.sample, fresh);
         self.estimator
             .take(&self.sample, fresh, self.start.clock.now());
     }
@@ -178,39 +189,50 @@ impl<H: TaskHand> GripRun<'_, H> {
         if let Some(why) = reason(&self.hand.status(), self.start.epoch) {
             return Some(GripEnd::Broken(why));
         }
+        if self.told.is_foreign() {
+            return Some(GripEnd::OtherWrote);
+        }
         let now = self.start.clock.now();
         let Some(angles) = self.angles() else {
             let is_late = now.since(self.sent) > SPARE;
             return is_late.then_some(GripEnd::Late);
         };
         let Some(leg) = self.legs.as_ref().and_then(|legs| legs.front()).copied() else {
-            self.legs = Some(legs(&angles, &self.start).into());
+            let (gap, speed) = (self.start.gap, self.start.speed);
+            let way = pinch_way(&angles.map(Some), gap, speed, &PerDof::splat(true));
+            self.legs = Some(way.into());
             return self.send();
         };
         let arrived = leg.targets.iter().all(|(dof, to)| {
             to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_WITHIN)
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
+        let is_seen = self.told.is_seen() || now.since(self.sent) >= SEEN_WITHIN;
+        if arrived && !is_last && !is_seen {
+            // What another wrote meanwhile would be overwritten unseen.
+            return None;
+        }
         if arrived && !is_last {
             self.legs.as_mut().and_then(VecDeque::pop_front);
             return self.send();
         }
         let since = now.since(self.sent);
-        if since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting {
+        let rests = since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting;
+        if rests && !self.told.is_doubted() {
             return Some(self.at_rest(leg, arrived));
         }
         (since > limit(&leg)).then_some(GripEnd::Late)
     }
 
     /// How it ended, where the hand rests now.
-    fn at_rest(&self, leg: Leg, arrived: bool) -> GripEnd {
+    fn at_rest(&self, leg: WayPart, arrived: bool) -> GripEnd {
         let angle = self.sample.angle.map(|angle| angle.value);
         let grip = self.estimator.grip();
         let gap = angle.and_then(|angle| held_gap(&grip, &angle));
         match gap {
             Some(_) => GripEnd::Held,
             None if arrived => GripEnd::Reached,
-            None if leg.is_on_path => GripEnd::Stopped,
+            None if leg.is_pinching => GripEnd::Stopped,
             None => GripEnd::NotOpened,
         }
     }
@@ -227,35 +249,104 @@ impl<H: TaskHand> GripRun<'_, H> {
             }
         }
         self.sent = self.start.clock.now();
+        self.told.tell(&setpoints, self.sent);
         let set = self.hand.set(self.start.lease, &setpoints);
         set.is_err().then_some(GripEnd::Broken(PlayEnd::TakenOver))
     }
 }
 
-/// The way from these angles: open first, unless the hand is on the path already, then along the path.
-fn legs(from: &PerDof<i16>, start: &GripStart) -> Vec<Leg> {
-    let on_path = gap_on_path(&from.map(f32::from));
-    let mut legs = Vec::with_capacity(5);
-    if on_path.is_none() {
-        let opened = way(&from.map(Some), &Gap::MAX.angles().map(Some));
-        legs.extend(opened.into_iter().map(|targets| Leg {
-            targets,
-            speeds: PerDof::splat(start.speed),
-            is_on_path: false,
-        }));
+/// What the joints were told by this grip, against what is read back of it. Pure; what follows from it is the grip's.
+#[derive(Debug, Default)]
+struct ToldSetpoints {
+    at: Option<Moment>,
+    angles: ToldValues,
+    speeds: ToldValues,
+}
+
+/// One group of setpoints.
+#[derive(Debug, Default)]
+struct ToldValues {
+    told: PerDof<Option<i16>>,
+    /// The joint was seen to take what it was told as it is.
+    is_taken: PerDof<bool>,
+    /// It was read back since the joints were told something last.
+    is_seen: bool,
+    /// Readings in a row with a value that was not told.
+    strange: u8,
+}
+
+impl ToldSetpoints {
+    fn tell(&mut self, setpoints: &Setpoints, now: Moment) {
+        self.at = Some(now);
+        self.angles
+            .tell(&setpoints.angle.map(|to| to.map(Target::raw)));
+        self.speeds
+            .tell(&setpoints.speed.map(|speed| speed.map(Speed::get)));
     }
-    let begins = on_path.map_or(Gap::MAX, Gap::nearest);
-    legs.extend(begins.legs_to(start.gap).into_iter().map(|leg| Leg {
-        targets: leg.to.map(Some),
-        speeds: leg.speeds(start.speed),
-        is_on_path: true,
-    }));
-    legs
+
+    fn read(&mut self, sample: &HandSample, fresh: Groups) {
+        let Some(at) = self.at.map(|at| at.plus(ACTS_WITHIN)) else {
+            return;
+        };
+        let angles = sample
+            .angle_set
+            .filter(|set| fresh.contains(Group::AngleSet) && set.asked >= at);
+        if let Some(set) = angles {
+            self.angles.read(&set.value.map(|to| to.map(Target::raw)));
+        }
+        let speeds = sample
+            .speed_set
+            .filter(|set| fresh.contains(Group::SpeedSet) && set.asked >= at);
+        if let Some(set) = speeds {
+            self.speeds
+                .read(&set.value.map(|speed| speed.map(Speed::get)));
+        }
+    }
+
+    fn groups(&self) -> [&ToldValues; 2] {
+        [&self.angles, &self.speeds]
+    }
+
+    /// Both groups were read since the joints were told something, with nothing strange.
+    fn is_seen(&self) -> bool {
+        self.groups()
+            .iter()
+            .all(|own| own.is_seen && own.strange == 0)
+    }
+
+    /// One reading showed what was not told: the next one says whether that is true.
+    fn is_doubted(&self) -> bool {
+        self.groups().iter().any(|own| own.strange > 0)
+    }
+
+    fn is_foreign(&self) -> bool {
+        self.groups().iter().any(|own| own.strange >= STRANGE)
+    }
+}
+
+impl ToldValues {
+    fn tell(&mut self, newer: &PerDof<Option<i16>>) {
+        self.told = PerDof::from_fn(|dof| newer[dof].or(self.told[dof]));
+        (self.is_seen, self.strange) = (false, 0);
+    }
+
+    fn read(&mut self, values: &PerDof<Option<i16>>) {
+        let is_told = PerDof::from_fn(|dof| {
+            let both = values[dof].zip(self.told[dof]);
+            both.is_none_or(|(value, told)| value.abs_diff(told) <= ROUNDS_BY)
+        });
+        let is_strange = |dof: Dof| self.is_taken[dof] && !is_told[dof];
+        self.strange = match Dof::ALL.into_iter().any(is_strange) {
+            true => self.strange.saturating_add(1),
+            false => 0,
+        };
+        self.is_seen = true;
+        self.is_taken = PerDof::from_fn(|dof| self.is_taken[dof] || is_told[dof]);
+    }
 }
 
 /// How long a part of the way may take: the whole stroke at its speed, and some time to spare.
-fn limit(leg: &Leg) -> Duration {
+fn limit(leg: &WayPart) -> Duration {
     let fastest = leg.speeds.as_array().iter().max().copied();
-    let stroke = f64::from(Angle::MAX.get());
-    Duration::from_secs_f64(stroke / fastest.unwrap_or(Speed::MIN).angle_per_s()) + SPARE
+    fastest.unwrap_or(Speed::MIN).stroke() + SPARE
 }

@@ -1,6 +1,7 @@
 //! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. Whoever else moves
 //! the hand ends it.
 
+use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, AngleReading, ArmEpoch, Dof, HandSample, PerDof, Setpoints, Target};
 use crate::link::{Clock, Lease, LinkStatus};
@@ -167,11 +168,19 @@ impl<H: TaskHand> Playing<'_, H> {
         });
         let now = self.clock.now();
         let grip = self.grip.known(status.is_believed(), now);
-        if let Some(cue) = self.player.tick(now, &seen, &grip.grasp) {
+        let part = self.player.tick(now, &seen, &grip.grasp);
+        if self.lacks_a_joint() {
+            self.player.end(PlayEnd::Locked);
+            self.hold_here(tell);
+            return;
+        }
+        if let Some((part, cue)) = part.zip(self.player.cue()) {
+            self.grip.judge_by(cue.thresholds.unwrap_or_default());
+            let force = cue.force;
             let mut setpoints = Setpoints::none(self.epoch);
-            for (dof, to) in self.free(&cue.targets) {
-                setpoints.speed[dof] = Some(cue.speed);
-                setpoints.force[dof] = Some(cue.force);
+            for (dof, to) in self.free(&part.targets) {
+                setpoints.speed[dof] = Some(part.speeds[dof]);
+                setpoints.force[dof] = Some(force);
                 setpoints.angle[dof] = Some(Target::Go(to));
             }
             self.send(setpoints, tell);
@@ -179,6 +188,13 @@ impl<H: TaskHand> Playing<'_, H> {
         if matches!(self.player.view().phase, PlayPhase::Dwelling { .. }) {
             self.react(tell);
         }
+    }
+
+    /// A grip by size is asked for, and a joint that pinches is locked.
+    fn lacks_a_joint(&self) -> bool {
+        let is_grip = self.player.cue().is_some_and(|cue| cue.gap.is_some());
+        let lacks = Gap::JOINTS.into_iter().any(|dof| self.locked[dof]);
+        is_grip && lacks && !self.player.is_over()
     }
 
     /// Sends the fingers whose tip was touched or let go.

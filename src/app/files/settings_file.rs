@@ -40,6 +40,11 @@ pub fn load(path: &Path) -> Loaded {
     }
 }
 
+/// The settings as they are; `None` where there are none, or they cannot be read. The file stays where it is.
+pub fn peek(path: &Path) -> Option<Settings> {
+    toml_file::load(path, FILE_LEN_MAX, |text| FileText::plain(text).parse()).ok()
+}
+
 /// The file's text.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 
 use crate::app::env::running::Running;
 use crate::hand::Setpoints;
+use crate::hand::grip::GripThresholds;
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::tasks::play::{PlayCommand, PlayStep};
@@ -16,6 +17,8 @@ pub struct SequenceRun {
     /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
     pub(crate) task: Option<Running<PlayStep, PlayEnd>>,
+    /// What the grip of each step is told by; none once the user moves the hand in another way.
+    pub(crate) thresholds: Vec<Option<GripThresholds>>,
 }
 
 impl SequenceRun {
@@ -29,6 +32,16 @@ impl SequenceRun {
         matches!(self.view.phase, PlayPhase::Paused)
     }
 
+    /// What the grip is told by, as long as its step is what was asked for.
+    pub(crate) fn thresholds(&self) -> GripThresholds {
+        let is_asked = match self.view.phase {
+            PlayPhase::Ended(end) => end == PlayEnd::Finished,
+            _ => true,
+        };
+        let own = self.thresholds.get(self.view.at).copied().flatten();
+        own.filter(|_| is_asked).unwrap_or_default()
+    }
+
     pub(crate) fn command(&self, command: PlayCommand) {
         if let Some(commands) = &self.commands {
             // One that cannot be taken any more has ended.
@@ -38,6 +51,7 @@ impl SequenceRun {
 
     /// It does not move the hand any more.
     pub(crate) fn leave(&mut self) {
+        self.thresholds.clear();
         if self.is_running() {
             self.commands = None;
             self.view.phase = PlayPhase::Ended(PlayEnd::TakenOver);

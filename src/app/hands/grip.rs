@@ -19,8 +19,7 @@ pub fn held_gap(hand: &Hand, now: Moment) -> Option<f32> {
 
 /// Whether a joint that pinches is locked.
 pub fn locks_pinch(hand: &Hand) -> bool {
-    let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
-    let mut pinching = pinching.into_iter();
+    let mut pinching = Gap::JOINTS.into_iter();
     pinching.any(|dof| hand.controls.joints[dof].locked)
 }
 

@@ -438,6 +438,7 @@ impl Hand {
         let Some(open) = &mut self.connection.open else {
             return false;
         };
+        let thresholds = plan.cues.iter().map(|cue| cue.thresholds).collect();
         let start = PlayStart {
             plan,
             pace,
@@ -458,6 +459,7 @@ impl Hand {
             view: PlayView::first(now),
             commands: Some(commands),
             task: Some(task),
+            thresholds,
         });
         true
     }

@@ -2,9 +2,12 @@
 
 use crate::app::poses::PoseState;
 use crate::hand::{Angle, PerDof};
+use crate::inputs::pad::input::PadAim;
 use crate::inputs::pad::{PadAction, PadControl, PadMap};
 use crate::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use crate::poses::library::{LibraryPose, NAME_CHARS_MAX, PoseId, PoseLibrary, SequenceId};
+use crate::poses::library::{
+    LibraryPose, NAME_CHARS_MAX, PoseId, PoseLibrary, SequenceId, StepGoal,
+};
 use crate::poses::starter::starter;
 use std::collections::BTreeSet;
 
@@ -60,7 +63,11 @@ fn edits_keep_names_apart_and_steps_whole_and_a_deletion_can_be_undone() {
     let last = &book.library.poses[book.library.poses.len() - 2];
     assert_eq!(last.name, "A 4");
     let steps = &book.library.sequences.last().unwrap().steps;
-    assert_eq!(steps[0].pose, last.id, "steps go along with their poses");
+    assert_eq!(
+        steps[0].goal,
+        StepGoal::Pose(last.id),
+        "steps go along with their poses"
+    );
 }
 
 #[test]
@@ -82,7 +89,12 @@ fn a_pose_and_a_step_go_to_a_place_and_those_between_make_room() {
     }
     let steps = |book: &PoseState| -> Vec<PoseId> {
         let sequence = book.library.sequence(own).unwrap();
-        sequence.steps.iter().map(|step| step.pose).collect()
+        let steps = sequence.steps.iter();
+        let pose = |goal| match goal {
+            StepGoal::Pose(id) => Some(id),
+            StepGoal::Gap { .. } => None,
+        };
+        steps.filter_map(|step| pose(step.goal)).collect()
     };
     let before = steps(&book);
     book.edit(LibraryEdit::Sequence(own, SequenceEdit::Move(0, 2)));
@@ -103,15 +115,18 @@ fn a_gamepad_goes_to_a_persons_own_poses_before_those_that_are_shipped_and_shown
     let on_pad = |book: &PoseState, hidden| book.on_pad(&map, hidden);
     let names: Vec<String> = on_pad(&book, &shown).into_keys().collect();
     assert_eq!(names, ["A", "Open", "Pinch", "Point"], "B is on no button");
-    assert_eq!(on_pad(&book, &shown)["A"], open);
+    assert_eq!(on_pad(&book, &shown)["A"], PadAim::joints(open));
     let shipped = starter().poses.iter().find(|pose| pose.name == "Pinch");
-    assert_eq!(on_pad(&book, &shown)["Pinch"], shipped.unwrap().targets());
+    assert_eq!(on_pad(&book, &shown)["Pinch"], PadAim::of(shipped.unwrap()));
     // Another name for it: the button's is gone, and that of a shipped one is the user's own now.
     book.edit(LibraryEdit::Pose(a, PoseEdit::Rename("Pinch".into())));
     let poses = on_pad(&book, &shown);
-    assert_eq!((poses.get("A"), poses["Pinch"]), (None, open));
+    assert_eq!(
+        (poses.get("A"), poses["Pinch"]),
+        (None, PadAim::joints(open))
+    );
     book.edit(LibraryEdit::Pose(a, PoseEdit::Delete));
-    assert_ne!(on_pad(&book, &shown)["Pinch"], open);
+    assert_ne!(on_pad(&book, &shown)["Pinch"], PadAim::joints(open));
     let hidden = BTreeSet::from(["Pinch".to_owned()]);
     assert_eq!(on_pad(&book, &hidden).get("Pinch"), None);
 }

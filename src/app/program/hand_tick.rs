@@ -38,6 +38,8 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     if let Some(sent) = played {
         sent.iter().for_each(|setpoints| hand.sent(setpoints));
     }
+    let thresholds = hand.sequence.as_ref().map(SequenceRun::thresholds);
+    hand.readings.grip.judge_by(thresholds.unwrap_or_default());
     let phase = hand.sequence.as_ref().map(|run| run.view.phase);
     if let Some(PlayPhase::Ended(PlayEnd::NotHolding(grip))) = phase.filter(|_| ran) {
         ctx.tell(NoticeKind::NotHolding { grip });

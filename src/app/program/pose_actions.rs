@@ -25,6 +25,7 @@ pub(super) fn recapture(state: &mut State, id: PoseId) {
     if let Some(angles) = pose_now(state) {
         let mut known = state.poses.library.poses.iter_mut();
         if let Some(pose) = known.find(|pose| pose.id == id) {
+            pose.set_gap(None);
             pose.angles = angles;
         }
     }

@@ -83,6 +83,11 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     if !imported.unknown.is_empty() {
         lines.push(format!("skipped columns: {}", imported.unknown.join(", ")));
     }
+    if imported.has_grip {
+        lines.push(
+            "left out: the columns of the grip, which is found anew from the readings".into(),
+        );
+    }
     if imported.incomplete_tips > 0 {
         lines.push(format!(
             "left out: {} readings of fingertips without all eight channels",
@@ -97,6 +102,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
         "file": path,
         "rows": imported.rows,
         "skipped_columns": imported.unknown,
+        "grip_left_out": imported.has_grip,
         "incomplete_fingertips": imported.incomplete_tips,
     });
     out.result(args.json, &object, lines)

@@ -37,6 +37,9 @@ impl Gap {
     /// Beyond it the index turns its tip, not its pad, to the thumb.
     pub const MAX: Self = Self(120.0);
 
+    /// The joints that pinch; the other fingers only stay out of the way.
+    pub const JOINTS: [Dof; 3] = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
+
     /// Checks the range.
     ///
     /// # Errors
@@ -122,6 +125,9 @@ impl Gap {
     }
 }
 
+/// It is never NaN.
+impl Eq for Gap {}
+
 impl TryFrom<f32> for Gap {
     type Error = GapOutOfRange;
     fn try_from(mm: f32) -> Result<Self, GapOutOfRange> {
@@ -173,10 +179,9 @@ pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
 /// The gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
 pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     let gap = pad_distance(counts);
-    let meant = Gap::new(gap).ok()?.angles();
-    let pinching = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
+    let meant = Gap::nearest(gap).angles();
     let is_near = |dof: Dof| (counts[dof] - f32::from(meant[dof].get())).abs() <= ON_PATH_WITHIN;
-    pinching.into_iter().all(is_near).then_some(gap)
+    Gap::JOINTS.into_iter().all(is_near).then_some(gap)
 }
 
 /// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.

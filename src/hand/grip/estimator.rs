@@ -42,6 +42,22 @@ impl GripEstimator {
         }
     }
 
+    /// What it judges by.
+    pub const fn thresholds(&self) -> GripThresholds {
+        self.thresholds
+    }
+
+    /// Judges by other thresholds from now on. What it knows of the hand stays.
+    pub fn judge_by(&mut self, thresholds: GripThresholds) {
+        if self.thresholds == thresholds {
+            return;
+        }
+        self.thresholds = thresholds;
+        for (_, finger) in self.fingers.iter_mut() {
+            finger.judge_by(&thresholds);
+        }
+    }
+
     /// Takes what was read at `at`, where `fresh` is new in it, and tells the grip.
     pub fn take(&mut self, sample: &HandSample, fresh: Groups, at: Moment) -> Grip {
         let reading = ReadingAt {
@@ -235,6 +251,22 @@ mod tests {
         );
         hand.normal_n = Some(0.0);
         assert_eq!(hand.after(600), GripState::Empty);
+    }
+
+    #[test]
+    fn other_thresholds_count_from_then_on_and_what_was_learnt_stays() {
+        let mut hand = Reading::new(None);
+        assert_eq!(hand.after(200), GripState::Open);
+        (hand.angle, hand.status, hand.force_g) = (400, Status::ForceReached, 270);
+        assert_eq!(hand.after(300), GripState::Empty, "40 g over its zero");
+        hand.estimator.judge_by(GripThresholds {
+            contact_g: 30,
+            ..GripThresholds::default()
+        });
+        assert_eq!(hand.after(100), GripState::Holding);
+        hand.estimator.judge_by(GripThresholds::default());
+        hand.force_g = 231;
+        assert_eq!(hand.after(100), GripState::Lost);
     }
 
     #[test]

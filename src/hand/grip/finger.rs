@@ -52,6 +52,11 @@ impl FingerEstimator {
         }
     }
 
+    /// Judges slips by other thresholds from now on.
+    pub(super) const fn judge_by(&mut self, thresholds: &GripThresholds) {
+        self.slip.judge_by(thresholds);
+    }
+
     /// Without evidence nothing is known, and what was held may be gone. The zero of the force sensor stays.
     pub(super) fn forget(&mut self, at: Moment, thresholds: &GripThresholds) {
         self.motion = PerDof::from_fn(|_| JointMotion::default());

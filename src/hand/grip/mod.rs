@@ -10,4 +10,4 @@ mod thresholds;
 
 pub use estimator::GripEstimator;
 pub use state::{Grip, GripEstimate, GripState};
-pub use thresholds::GripThresholds;
+pub use thresholds::{GripThreshold, GripThresholds};

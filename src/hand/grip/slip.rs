@@ -60,6 +60,12 @@ impl SlipDetector {
         }
     }
 
+    /// Judges by other thresholds from now on.
+    pub(super) const fn judge_by(&mut self, thresholds: &GripThresholds) {
+        self.ratio_jump = thresholds.slip_ratio;
+        self.turn_deg = thresholds.slip_turn_deg;
+    }
+
     /// When it was last seen to slip, s.
     pub const fn last(&self) -> Option<f64> {
         self.last

@@ -131,6 +131,7 @@ impl Taking {
         let offer = Offer {
             at: now,
             aims: asked.aims,
+            gap: None,
             limits: asked.limits,
             held: None,
             mark: Some(asked.mark),

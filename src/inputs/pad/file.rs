@@ -26,12 +26,13 @@ struct MapRow {
 }
 
 /// The words of what needs no name.
-const PLAIN: [(&str, PadAction); 7] = [
+const PLAIN: [(&str, PadAction); 8] = [
     ("nothing", PadAction::Nothing),
     ("dead-man", PadAction::DeadMan),
     ("stop", PadAction::Stop),
     ("close fingers", PadAction::CloseFingers),
     ("bend thumb", PadAction::BendThumb),
+    ("close gap", PadAction::CloseGap),
     ("rotate thumb", PadAction::RotateThumb),
     ("choose fingers", PadAction::ChooseFingers),
 ];

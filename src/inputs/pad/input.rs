@@ -1,11 +1,13 @@
 //! One gamepad that a hand follows: reports in, what it asks of the hand out. It never keeps what it no longer knows.
 
+use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::offer::{Offer, OfferLimits};
 use crate::inputs::pad::control::{ControlKind, PadControl};
 use crate::inputs::pad::map::{PadAction, PadMap};
 use crate::inputs::pad::report::{KernelEvent, PadId, PadNews, PadReport};
 use crate::inputs::pad::state::{FULL, PadState, StickPlace};
+use crate::poses::library::LibraryPose;
 use crate::poses::starter::starter;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -22,8 +24,35 @@ const PUSH_STEP_MAX_US: i64 = 100_000;
 /// Parts of a count of the thumb's angle.
 const PARTS: i64 = 1_000_000;
 
-/// The poses that buttons go to, by name; `None` leaves a joint alone.
-pub type PadPoses = BTreeMap<String, PerDof<Option<Angle>>>;
+/// The poses that buttons go to, by name.
+pub type PadPoses = BTreeMap<String, PadAim>;
+
+/// Where a gamepad wants the hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PadAim {
+    /// Where the joints go; `None` leaves one alone.
+    pub joints: PerDof<Option<Angle>>,
+    /// The gap that these are the angles of, where it is one that is wanted.
+    pub gap: Option<Gap>,
+}
+
+impl PadAim {
+    /// Nothing is asked.
+    const NOTHING: Self = Self::joints(PerDof::splat(None));
+
+    /// These joints, each by itself.
+    pub const fn joints(joints: PerDof<Option<Angle>>) -> Self {
+        Self { joints, gap: None }
+    }
+
+    /// A pose of a library.
+    pub fn of(pose: &LibraryPose) -> Self {
+        Self {
+            joints: pose.targets(),
+            gap: pose.gap,
+        }
+    }
+}
 
 /// What the user did that is no aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +121,7 @@ impl PadInput {
     /// No gamepad yet; its buttons go to the poses that are built in.
     pub fn starting(map: PadMap) -> Self {
         let poses = starter().poses.iter();
-        let poses = poses.map(|pose| (pose.name.clone(), pose.targets()));
+        let poses = poses.map(|pose| (pose.name.clone(), PadAim::of(pose)));
         let mut input = Self::new(map);
         input.set_poses(poses.collect());
         input
@@ -191,15 +220,16 @@ impl PadInput {
     pub fn offer(&mut self, now: Moment) -> Option<Offer> {
         let at = self.heard?;
         let is_held = self.is_held(now);
-        let aims = if is_held {
-            self.aims(now)
+        let aim = if is_held {
+            self.aim(now)
         } else {
             self.push = None;
-            PerDof::splat(None)
+            PadAim::NOTHING
         };
         Some(Offer {
             at,
-            aims,
+            aims: aim.joints,
+            gap: aim.gap,
             limits: OfferLimits::NONE,
             held: Some(is_held),
             // Controls that are held still are no frozen tracking.
@@ -258,10 +288,12 @@ impl PadInput {
         dead_man.any(|control| self.state.is_held(control))
     }
 
-    fn aims(&mut self, now: Moment) -> PerDof<Option<Angle>> {
-        if let Some(pose) = self.held_pose() {
+    fn aim(&mut self, now: Moment) -> PadAim {
+        let gap = self.map.doing(&PadAction::CloseGap).next();
+        let gap = gap.map(|trigger| gap_of(self.state.trigger(trigger)));
+        if let Some(aim) = self.held_pose().or(gap) {
             self.push = None;
-            return pose;
+            return aim;
         }
         let mut aims = PerDof::splat(None);
         for control in PadControl::ALL {
@@ -281,11 +313,11 @@ impl PadInput {
             }
         }
         aims[Dof::ThumbRotate] = self.rotated(now);
-        aims
+        PadAim::joints(aims)
     }
 
     /// The pose whose button is held: the one pressed last, else any.
-    fn held_pose(&self) -> Option<PerDof<Option<Angle>>> {
+    fn held_pose(&self) -> Option<PadAim> {
         let last = self.pose.filter(|control| self.state.is_held(*control));
         let mut all = last.into_iter().chain(self.state.held().iter().copied());
         all.find_map(|control| match self.map.action(control) {
@@ -319,6 +351,16 @@ impl PadInput {
         let aim = aim.clamp(0, i64::from(Angle::MAX.get()) * PARTS);
         self.push = Some(ThumbPush { at: now, aim });
         Some(Angle::nearest(aim / PARTS))
+    }
+}
+
+/// The gap of a trigger: the widest while it is let go.
+fn gap_of(pressed: i16) -> PadAim {
+    let share = f32::from(pressed) / f32::from(FULL);
+    let gap = Gap::nearest(Gap::MAX.mm() + share * (Gap::MIN.mm() - Gap::MAX.mm()));
+    PadAim {
+        joints: gap.angles().map(Some),
+        gap: Some(gap),
     }
 }
 

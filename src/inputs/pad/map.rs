@@ -20,6 +20,8 @@ pub enum PadAction {
     CloseFingers,
     /// Bends the thumb, by amount.
     BendThumb,
+    /// Closes thumb and index to a gap, by amount: let go the widest. What other triggers and sticks ask does not count then.
+    CloseGap,
     /// Left and right rotate the thumb as long as it is pushed.
     RotateThumb,
     /// Chooses which fingers are closed.
@@ -49,7 +51,12 @@ impl PadAction {
     pub const fn choices(kind: ControlKind) -> &'static [Self] {
         match kind {
             ControlKind::Button => &[Self::Nothing, Self::DeadMan, Self::Stop],
-            ControlKind::Trigger => &[Self::Nothing, Self::CloseFingers, Self::BendThumb],
+            ControlKind::Trigger => &[
+                Self::Nothing,
+                Self::CloseFingers,
+                Self::BendThumb,
+                Self::CloseGap,
+            ],
             ControlKind::Stick => &[Self::Nothing, Self::ChooseFingers, Self::RotateThumb],
         }
     }

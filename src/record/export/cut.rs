@@ -5,6 +5,7 @@ use crate::record::export::source::{Broken, Source};
 use crate::record::file::reader::Damage;
 use crate::record::file::writer::{Counted, RecordingWriter};
 use crate::record::file::{Opening, RecordingFile};
+use crate::record::grip::GripFollower;
 use crate::record::{Entry, Event, EventKind};
 use std::io::Write;
 
@@ -70,7 +71,7 @@ pub(crate) fn copy<W: Write>(
         part: None,
         ..source.file.opening().clone()
     };
-    let mut copy = RecordingCopy::new(&opening, to)?;
+    let mut copy = RecordingCopy::after(&opening, to, source.grip_before()?)?;
     let damage = source.entries(|entry| copy.push(&entry))?;
     if let Some(event) = said(&damage) {
         copy.push(&Entry::Event(event))?;
@@ -88,9 +89,15 @@ pub(crate) struct RecordingCopy<W> {
 }
 
 impl<W: Write> RecordingCopy<W> {
+    /// Of entries before which there are none.
     pub(crate) fn new(opening: &Opening, to: W) -> Result<Self, Broken> {
+        Self::after(opening, to, GripFollower::default())
+    }
+
+    /// Of entries before which the grip was followed so far.
+    fn after(opening: &Opening, to: W, grip: GripFollower) -> Result<Self, Broken> {
         Ok(Self {
-            writer: RecordingWriter::copy(opening)?,
+            writer: RecordingWriter::copy(opening, grip)?,
             to,
             rows: 0,
         })

@@ -6,6 +6,7 @@ use crate::record::file::format::encode::{EntryEncoder, Message};
 use crate::record::file::format::opening::{METADATA, Opening, nanos_of};
 use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::Overview;
+use crate::record::grip::GripFollower;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, Compression, McapError, WriteOptions};
@@ -83,18 +84,19 @@ impl RecordingWriter {
     /// # Errors
     /// [`McapError`], which writing to memory does not bring.
     pub fn new(opening: &Opening) -> Result<Self, McapError> {
-        Self::with_chunks(opening, CHUNK_BYTES)
+        Self::with_chunks(opening, CHUNK_BYTES, GripFollower::default())
     }
 
-    /// A copy, of which nothing is lost if the program is killed: its chunks are larger, so that it may be days long.
+    /// A copy, of which nothing is lost if the program is killed: its chunks are larger, so that it may be days long. `grip` as it
+    /// was followed until it begins.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub(crate) fn copy(opening: &Opening) -> Result<Self, McapError> {
-        Self::with_chunks(opening, COPY_CHUNK_BYTES)
+    pub(crate) fn copy(opening: &Opening, grip: GripFollower) -> Result<Self, McapError> {
+        Self::with_chunks(opening, COPY_CHUNK_BYTES, grip)
     }
 
-    fn with_chunks(opening: &Opening, bytes: u64) -> Result<Self, McapError> {
+    fn with_chunks(opening: &Opening, bytes: u64, grip: GripFollower) -> Result<Self, McapError> {
         let waiting = Waiting::default();
         let options = WriteOptions::new()
             .profile("ros2")
@@ -112,7 +114,7 @@ impl RecordingWriter {
         let mut writer = Self {
             mcap,
             waiting,
-            encoder: EntryEncoder::new(opening),
+            encoder: EntryEncoder::following(opening, grip),
             overview: Overview::default(),
             given: 0,
             block_from: 0,

@@ -99,6 +99,8 @@ pub struct Imported {
     pub rows: u64,
     /// Columns of another meaning, which were skipped; the first of them.
     pub unknown: Vec<String>,
+    /// It has columns of the grip, which were left out: the grip is found anew from the readings.
+    pub has_grip: bool,
     /// Readings of a fingertip without all of its forces' and channels' columns, which were left out.
     pub incomplete_tips: u64,
 }
@@ -168,6 +170,7 @@ impl<R: BufRead> CsvValues<R> {
         Ok(Self {
             imported: Imported {
                 unknown: columns.unknown.clone(),
+                has_grip: columns.has_grip(),
                 ..Imported::default()
             },
             lines,
@@ -274,6 +277,11 @@ impl CsvColumns {
             return Err(CsvFault::NothingKnown);
         }
         Ok(Self { all, unknown })
+    }
+
+    fn has_grip(&self) -> bool {
+        let mut all = self.all.iter();
+        all.any(|(_, column)| matches!(column, CsvColumn::Grip(_)))
     }
 
     fn row(&self, cells: &[String]) -> Result<CsvRow, CsvFault> {

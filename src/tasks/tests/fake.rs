@@ -1,8 +1,8 @@
 //! The hand of task tests: a memory, a flash, a power switch and a script of what goes wrong. Speaks no protocol.
 
 use crate::hand::{
-    AngleReading, ArmEpoch, Faults, ForceReading, Group, Groups, HandCommand, HandSample, Moment,
-    PerDof, RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
+    AngleReading, ArmEpoch, Faults, ForceReading, Group, HandCommand, HandSample, Moment, PerDof,
+    RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
 };
 use crate::link::lease::LeaseBook;
 use crate::link::{
@@ -170,13 +170,17 @@ impl FakeHand {
 
     /// This was read of it.
     pub(crate) fn tells(&self, sample: HandSample) {
-        let fresh = Groups::from_iter([
+        let usual = [
             Group::Angle,
             Group::Force,
             Group::Status,
             Group::Faults,
             Group::Temperature,
-        ]);
+        ];
+        let angle_set = sample.angle_set.map(|_| Group::AngleSet);
+        let speed_set = sample.speed_set.map(|_| Group::SpeedSet);
+        let read_back = angle_set.into_iter().chain(speed_set);
+        let fresh = usual.into_iter().chain(read_back).collect();
         let record = Record::Reading {
             sample: Arc::new(sample),
             fresh,

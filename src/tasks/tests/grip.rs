@@ -3,15 +3,16 @@
 use crate::hand::feedback::tactile::TactileBlock;
 use crate::hand::gap::Gap;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, HandSample, PerDof, Speed,
-    Status, Target, Timed,
+    Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, HandSample, PerDof, Setpoints,
+    Speed, Status, Target, Timed,
 };
 use crate::link::Owner;
 use crate::poses::player::PlayEnd;
-use crate::record::{LinkState, Rest};
+use crate::record::{Disarmed, LinkState, Rest};
 use crate::tasks::TaskHand;
 use crate::tasks::grip::{GripEnd, GripReport, GripStart, grip};
 use crate::tasks::tests::fake::{Asked, FakeHand, WELL};
+use std::cell::Cell;
 use std::time::Duration;
 use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
@@ -20,6 +21,10 @@ use tokio::time::sleep;
 /// A grip to 30 mm that goes on.
 struct Bench {
     hand: FakeHand,
+    /// What the hand holds of what it was told.
+    holds: Cell<Option<Setpoints>>,
+    /// Another controller writes so to its little finger: an angle, and a speed.
+    foreign: Cell<[Option<i16>; 2]>,
     end: Option<oneshot::Sender<()>>,
     task: JoinHandle<GripReport>,
 }
@@ -47,6 +52,8 @@ impl Bench {
         });
         Self {
             hand,
+            holds: Cell::new(None),
+            foreign: Cell::new([None; 2]),
             end: Some(end),
             task,
         }
@@ -63,6 +70,7 @@ impl Bench {
                 received: now,
             };
             sample.angle = Some(timed(angles.map(AngleReading::new)));
+            self.read_back(&mut sample);
             if held {
                 let block = TactileBlock::decode(&[0; 58]).unwrap();
                 let pressed = TactileBlock {
@@ -98,6 +106,43 @@ impl Bench {
         }
     }
 
+    /// The setpoints that the hand holds now.
+    fn read_back(&self, sample: &mut HandSample) {
+        let moved = self
+            .hand
+            .facts()
+            .asked
+            .iter()
+            .rev()
+            .find_map(|asked| match asked {
+                Asked::Move(setpoints) => Some(*setpoints),
+                _ => None,
+            });
+        self.holds.set(moved.or(self.holds.get()));
+        let Some(holds) = self.holds.get() else {
+            return;
+        };
+        let [angle, speed] = self.foreign.get();
+        let (mut angles, mut speeds) = (holds.angle, holds.speed);
+        if let Some(angle) = angle {
+            angles[Dof::Little] = Some(Target::Go(Angle::nearest(angle)));
+        }
+        if let Some(speed) = speed {
+            speeds[Dof::Little] = Some(Speed::nearest(speed));
+        }
+        let now = self.hand.clock.now();
+        sample.angle_set = Some(Timed {
+            value: angles,
+            asked: now,
+            received: now,
+        });
+        sample.speed_set = Some(Timed {
+            value: speeds,
+            asked: now,
+            received: now,
+        });
+    }
+
     fn moves(&self, yes: bool) {
         self.hand.facts().status.rest = if yes { Rest::Moving } else { Rest::Resting };
     }
@@ -109,7 +154,7 @@ impl Bench {
             Asked::Move(setpoints) => Some(setpoints),
             _ => None,
         });
-        let of = |all: crate::hand::Setpoints| {
+        let of = |all: Setpoints| {
             [Dof::Index, Dof::ThumbBend].map(|dof| {
                 assert_eq!(all.force[dof], Some(Force::nearest(400)));
                 let to = all.angle[dof].map_or(-1, Target::raw);
@@ -125,7 +170,7 @@ impl Bench {
         bench.moves(true);
         bench.at(PerDof::splat(1000), false, 3).await;
         assert_eq!(bench.sent(), [[(810, 100), (1000, 100)]], "open first");
-        bench.at(angles(120.0), false, 3).await;
+        bench.at(angles(120.0), false, 20).await;
         assert_eq!(bench.sent(), [[(660, 100), (1000, 100)]], "the index alone");
         bench
     }
@@ -138,7 +183,7 @@ fn angles(gap_mm: f32) -> PerDof<i16> {
 #[tokio::test(start_paused = true)]
 async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
     let bench = Bench::opened().await;
-    bench.at(angles(90.5), false, 3).await;
+    bench.at(angles(90.5), false, 20).await;
     let end = angles(30.0);
     let sent = bench.sent();
     let [[(index, slower), (bend, faster)]] = sent[..] else {
@@ -159,7 +204,7 @@ async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
 #[tokio::test(start_paused = true)]
 async fn what_thumb_and_index_hold_ends_it_with_its_size() {
     let bench = Bench::opened().await;
-    bench.at(angles(90.5), false, 3).await;
+    bench.at(angles(90.5), false, 20).await;
     bench.at(angles(45.0), true, 60).await;
     bench.moves(false);
     bench.at(angles(45.0), true, 3).await;
@@ -248,4 +293,48 @@ async fn a_hand_that_never_arrives_is_stopped_when_its_time_is_over() {
     assert_eq!(report.end, GripEnd::Late);
     assert!(report.stop.is_some());
     assert!(bench.hand.asked().contains(&Asked::Stop));
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_another_writes_to_any_joint_ends_it_even_where_the_next_part_would_overwrite_it() {
+    let foreign = [[Some(500), None], [None, Some(900)]];
+    for write in foreign {
+        // In the middle of a part, and just before the end of one.
+        for place in [100.0, 90.5] {
+            let bench = Bench::opened().await;
+            bench.at(angles(110.0), false, 20).await;
+            bench.foreign.set(write);
+            bench.at(angles(place), false, 5).await;
+            let asked = bench.hand.asked();
+            let moved = asked.iter().any(|asked| matches!(asked, Asked::Move(_)));
+            assert!(!moved, "{write:?} {place}: {asked:?}");
+            bench.foreign.set([None; 2]);
+            let report = bench.task.await.unwrap();
+            assert_eq!(report.end, GripEnd::OtherWrote, "{write:?} {place}");
+            assert!(report.stop.is_some());
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn one_wrong_reading_and_a_hand_that_rounds_end_nothing() {
+    let bench = Bench::opened().await;
+    bench.at(angles(110.0), false, 20).await;
+    bench.foreign.set([Some(500), None]);
+    bench.at(angles(105.0), false, 1).await;
+    bench.foreign.set([Some(997), Some(103)]);
+    bench.at(angles(90.5), false, 20).await;
+    assert_eq!(bench.sent().len(), 1, "it goes on along the path");
+    assert!(!bench.task.is_finished());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_disarming_for_another_controller_is_called_so() {
+    let bench = Bench::opened().await;
+    bench.hand.disarm();
+    bench.hand.facts().status.disarmed = Some(Disarmed::OtherController);
+    bench.at(angles(90.5), false, 20).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!(report.end, GripEnd::OtherWrote);
+    assert!(report.stop.is_some());
 }

@@ -1,9 +1,10 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
+use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::link::Owner;
-use crate::poses::library::{EntryId, PoseId, SequenceId};
+use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::LinkState;
 use crate::tasks::TaskHand;
@@ -15,15 +16,16 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
-fn cue(pose: u64, angle: i16) -> Cue {
+fn cue(angle: i16) -> Cue {
     Cue {
-        pose: PoseId(pose),
         targets: PerDof::splat(Some(Angle::nearest(angle))),
+        gap: None,
         speed: Speed::nearest(350),
         force: Force::nearest(900),
         dwell: Duration::from_millis(50),
         limit: Duration::from_secs(5),
         until: None,
+        thresholds: None,
     }
 }
 
@@ -37,12 +39,16 @@ struct Bench {
 
 impl Bench {
     fn start(pace: PlayMode, locked: PerDof<bool>) -> Self {
+        Self::start_with(vec![cue(700), cue(200)], pace, locked)
+    }
+
+    fn start_with(cues: Vec<Cue>, pace: PlayMode, locked: PerDof<bool>) -> Self {
         let hand = FakeHand::new();
         hand.arm_as(1);
         let start = PlayStart {
             plan: PlayPlan {
                 entry: EntryId::Sequence(SequenceId(1)),
-                cues: vec![cue(1, 700), cue(2, 200)],
+                cues,
                 looped: false,
                 reaction: None,
             },
@@ -114,6 +120,55 @@ impl Bench {
         });
         views.next().unwrap()
     }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_grip_by_size_without_one_of_its_joints_ends_and_stays() {
+    let mut locked = PerDof::splat(false);
+    locked[Dof::ThumbBend] = true;
+    let gap = Gap::nearest(30.0);
+    let pinch = Cue {
+        targets: gap.angles().map(Some),
+        gap: Some(gap),
+        ..cue(0)
+    };
+    for (locks, want) in [
+        (PerDof::splat(false), None),
+        (locked, Some(PlayEnd::Locked)),
+    ] {
+        let bench = Bench::start_with(vec![pinch.clone()], PlayMode::Through, locks);
+        sleep(Duration::from_millis(1)).await;
+        bench.at(1000, 3).await;
+        let stays = bench.sent().iter().all(|to| *to == Some(1000));
+        assert_eq!(stays, want.is_some(), "{want:?}");
+        let ended = match bench.view().phase {
+            PlayPhase::Ended(end) => Some(end),
+            _ => None,
+        };
+        assert_eq!(ended, want);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn each_step_is_sent_with_its_own_speed_and_force() {
+    let other = Cue {
+        speed: Speed::nearest(120),
+        force: Force::nearest(300),
+        ..cue(200)
+    };
+    let free = PerDof::splat(false);
+    let bench = Bench::start_with(vec![cue(700), other], PlayMode::Through, free);
+    sleep(Duration::from_millis(1)).await;
+    bench.at(700, 20).await;
+    let of = |all: &Setpoints| {
+        let dof = Dof::Index;
+        (
+            all.speed[dof].map(Speed::get),
+            all.force[dof].map(Force::get),
+        )
+    };
+    let sent: Vec<_> = bench.moves().iter().map(of).collect();
+    assert_eq!(sent, [(Some(350), Some(900)), (Some(120), Some(300))]);
 }
 
 #[tokio::test(start_paused = true)]

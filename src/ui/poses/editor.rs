@@ -1,11 +1,14 @@
 //! One pose of the library, large: its picture, name, tags, angles, speed and force. Every change is an action.
 
 use crate::app::action::Action;
+use crate::hand::gap::{Gap, gap_on_path};
+use crate::hand::grip::{GripThreshold, GripThresholds};
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{EntryId, LibraryPose, NAME_CHARS_MAX};
 use crate::ui::hand::panel;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
+use crate::ui::poses::sequence_view::FIRST_GAP_MM;
 use crate::ui::poses::tiles::{shares, start_ui};
 use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
@@ -14,7 +17,7 @@ use egui::{Color32, Layout, ScrollArea, Ui, vec2};
 /// Characters of all tags.
 const TAGS_MAX: usize = 120;
 /// Height of all fields below the picture.
-const FIELDS: f32 = 11.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
+const FIELDS: f32 = 12.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
 /// Draws the editor of one pose.
 pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
@@ -23,6 +26,7 @@ pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     panel::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
     ScrollArea::vertical().id_salt(pose.id).show(ui, |ui| {
         words_ui(ui, pane, pose);
+        ui.horizontal(|ui| gap_ui(ui, pane, pose));
         for dof in Dof::ALL {
             ui.horizontal(|ui| joint_ui(ui, pane, pose, dof));
         }
@@ -65,28 +69,84 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     }
 }
 
+/// Whether it is a pose by size, its gap, and what its grip is told by.
+fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
+    let look = pane.look;
+    let by_size = Button::said(look, poses::BY_SIZE).choice(pose.gap.is_some());
+    if by_size.ui(ui, look).clicked() {
+        let counts = pose.angles.map(|angle| f32::from(angle.get()));
+        let near = gap_on_path(&counts).unwrap_or(FIRST_GAP_MM);
+        let gap = pose.gap.is_none().then(|| Gap::nearest(near.round()));
+        change(pane, pose, PoseEdit::Gap(gap));
+    }
+    if let Some(gap) = pose.gap
+        && let Some(gap) = gap_field_ui(ui, pane, gap)
+    {
+        change(pane, pose, PoseEdit::Gap(Some(gap)));
+    }
+    if let Some(thresholds) = &pose.thresholds {
+        let words = look.fill(poses::TOLD_BY, &[&thresholds_words(thresholds)]);
+        let label = Label::new(&words, look.palette.muted).ui(ui);
+        label.on_hover_text(look.tip(poses::TOLD_BY));
+    }
+}
+
+/// A gap as a number in mm; the one that was confirmed.
+fn gap_field_ui(ui: &mut Ui, pane: &mut Pane<'_>, gap: Gap) -> Option<Gap> {
+    let look = pane.look;
+    let caption = look.say(poses::GAP);
+    Label::new(caption, look.palette.muted).ui(ui);
+    let label = look.told(poses::POSE, caption);
+    let range = f64::from(Gap::MIN.mm())..=f64::from(Gap::MAX.mm());
+    let field = NumberField::new(&label, look.tip(poses::GAP), range).decimals(1);
+    #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
+    let typed = field.ui(ui, pane, Some(gap.mm().into()))? as f32;
+    Gap::new(typed).ok()
+}
+
+/// The thresholds that are not the usual ones, by the names that files have.
+fn thresholds_words(thresholds: &GripThresholds) -> String {
+    let usual = GripThresholds::default();
+    let all = GripThreshold::ALL.into_iter();
+    let own = all.filter(|one| one.of(thresholds) != one.of(&usual));
+    let words: Vec<String> = own
+        .map(|one| format!("{} {}", one.name(), one.of(thresholds)))
+        .collect();
+    words.join(", ")
+}
+
 fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
-    if let Some(angle) = angle_ui(ui, pane, dof, pose.angles[dof]) {
+    let fixed = pose.gap.map(|_| look.say(poses::ANGLE_OF_GAP));
+    if let Some(angle) = angle_ui(ui, pane, (dof, pose.angles[dof]), fixed) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
     }
     let text = look.say(poses::LEAVE);
     let label = look.told(words::dof(dof), text);
     let leave = pose.leave[dof];
+    let pinches = pose.gap.is_some() && Gap::JOINTS.contains(&dof);
     let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
+    let button = button.disabled_if(pinches, look.say(poses::LEAVE_PINCHES));
     if button.choice(leave).ui(ui, look).clicked() {
         change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
 }
 
 /// One joint's angle as a number behind its name; the number that was confirmed.
-fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, angle: Angle) -> Option<Angle> {
+fn angle_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (dof, angle): (Dof, Angle),
+    fixed: Option<&str>,
+) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));
     caption_ui(ui, name, look.palette.dof[dof]);
     let label = format!("{name} pose {}", look.say(poses::ANGLE));
     let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0);
-    let typed = field.whole_ui(ui, pane, Some(angle.get()))?;
+    let typed = field
+        .disabled(fixed)
+        .whole_ui(ui, pane, Some(angle.get()))?;
     Angle::new(typed).ok()
 }
 

@@ -4,8 +4,11 @@ use crate::app::action::Action;
 use crate::app::hands::grip;
 use crate::hand::Angle;
 use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
+use crate::poses::edit::LibraryEdit;
+use crate::poses::library::LibraryPose;
 use crate::ui::hand::{aim, figures};
-use crate::ui::kit::{Button, Label, NumberField, Pane};
+use crate::ui::kit::{Button, Label, Look, NumberField, Pane};
+use crate::ui::text::errors::no_gap;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
 use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
@@ -13,13 +16,13 @@ use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
 /// Width of the drawer.
 const DRAWER: f32 = 420.0;
 
-/// What a kind is called, and why it has no gap, if it has none.
-const fn words(kind: GripKind) -> (Text, Option<Text>) {
+/// What a kind is called.
+pub(crate) const fn kind_words(kind: GripKind) -> Text {
     match kind {
-        GripKind::Pinch => (poses::KIND_PINCH, None),
-        GripKind::ThreeFingers => (poses::KIND_THREE, Some(poses::NO_GAP_THREE)),
-        GripKind::AllFingers => (poses::KIND_ALL, Some(poses::NO_GAP_ALL)),
-        GripKind::Around => (poses::KIND_AROUND, Some(poses::NO_GAP_AROUND)),
+        GripKind::Pinch => poses::KIND_PINCH,
+        GripKind::ThreeFingers => poses::KIND_THREE,
+        GripKind::AllFingers => poses::KIND_ALL,
+        GripKind::Around => poses::KIND_AROUND,
     }
 }
 
@@ -41,11 +44,10 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.horizontal(|ui| {
         for kind in GripKind::ALL {
-            let (name, no_gap) = words(kind);
-            let button = Button::said(look, name).choice(kind.offered().is_ok());
-            button
-                .disabled(no_gap.map(|why| look.say(why)))
-                .ui(ui, look);
+            let offered = kind.offered();
+            let button = Button::said(look, kind_words(kind)).choice(offered.is_ok());
+            let no_gap = offered.err().map(|why| look.say(no_gap(why)));
+            button.disabled(no_gap).ui(ui, look);
         }
     });
 }
@@ -101,6 +103,17 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.set_min_height(theme::CONTROL);
         opening_ui(ui, pane, is_armed);
     });
+    let keep = Button::said(look, poses::GAP_KEEP);
+    let pose = Action::Library(LibraryEdit::Add(vec![pose(look, Gap::nearest(mm))]));
+    keep.on_click(ui, pane, pose);
+}
+
+/// A pose by size with this gap, gentle.
+fn pose(look: Look, gap: Gap) -> LibraryPose {
+    let mut pose = LibraryPose::at(gap.angles());
+    pose.name = look.fill(poses::GAP_POSE, &[&gap.mm()]);
+    pose.set_gap(Some(gap));
+    pose
 }
 
 /// Before a gap can be sent: that the hand is not armed, or the button that opens it.

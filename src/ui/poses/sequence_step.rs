@@ -1,15 +1,19 @@
 //! One step of a sequence as a row: its pose, its times and its place. Every change is an action.
 
 use crate::app::action::Action;
-use crate::hand::Speed;
+use crate::hand::gap::Gap;
+use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
-use crate::poses::library::{EntryId, Millis, Retries, Sequence, SequenceStep, UntilHolding};
+use crate::poses::library::{
+    EntryId, Millis, Retries, Sequence, SequenceStep, StepGoal, UntilHolding,
+};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, main, poses};
 use crate::ui::theme;
 use egui::{Align, CursorIcon, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
+use std::ops::RangeInclusive;
 
 /// Height of a row: its pose and place, and below them its numbers.
 pub(crate) const ROW: f32 = theme::CONTROL + NUMBER.y + 2.0 * theme::STEP;
@@ -61,16 +65,30 @@ pub(crate) fn step_ui(
     };
     let mut top = line(above, Layout::right_to_left(Align::Center));
     let mut bottom = line(below, Layout::left_to_right(Align::Min));
-    let mut new = step.clone();
+    let mut new = *step;
     place_ui(&mut top, pane, sequence, at);
     until_ui(&mut top, look, at, &mut new);
     numbers_ui(&mut bottom, pane, at, &mut new);
-    if let Some(pose) = pane.state.poses.library.pose(step.pose) {
-        panel::sign_ui(ui, look, picture, &shares(&pose.angles));
-        kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &pose.name));
+    if let Some((name, angles)) = shown(pane, step.goal) {
+        panel::sign_ui(ui, look, picture, &shares(&angles));
+        kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &name));
     }
     if new != *step {
         change(pane, sequence, SequenceEdit::Change(at, new));
+    }
+}
+
+/// What a step is called, and its angles.
+fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
+    match goal {
+        StepGoal::Pose(id) => {
+            let pose = pane.state.poses.library.pose(id)?;
+            Some((pose.name.clone(), pose.angles))
+        }
+        StepGoal::Gap { gap, .. } => {
+            let name = pane.look.say(poses::KIND_PINCH);
+            Some((format!("{name} {} mm", gap.mm()), gap.angles()))
+        }
     }
 }
 
@@ -126,29 +144,77 @@ fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
     }
 }
 
-fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceStep) {
-    let look = pane.look;
-    let mut number = |(caption, tip): (Text, Text), (now, max)| {
-        let label = named(look, at, caption);
-        let field = NumberField::new(&label, look.say(tip), 0.0..=max);
+/// A number of a step with its caption.
+struct StepNumber {
+    /// Which step, 0 the first.
+    at: usize,
+    caption: Text,
+    tip: Text,
+    now: f64,
+    range: RangeInclusive<f64>,
+    decimals: usize,
+}
+
+impl StepNumber {
+    /// A whole number from 0 on.
+    fn whole(at: usize, caption: Text, now: impl Into<f64>, max: impl Into<f64>) -> Self {
+        Self {
+            at,
+            caption,
+            tip: caption.tip(),
+            now: now.into(),
+            range: 0.0..=max.into(),
+            decimals: 0,
+        }
+    }
+
+    /// Draws it; the number that was confirmed.
+    fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
+        let look = pane.look;
+        let label = named(look, self.at, self.caption);
+        let field = NumberField::new(&label, look.say(self.tip), self.range);
+        let field = field.decimals(self.decimals);
         let typed = ui.allocate_ui_with_layout(NUMBER, Layout::top_down(Align::Min), |ui| {
             ui.set_min_width(NUMBER.x);
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
-            Label::new(look.say(caption), look.palette.muted)
+            Label::new(look.say(self.caption), look.palette.muted)
                 .small()
                 .ui(ui);
-            field.whole_ui(ui, pane, Some::<f64>(now))
+            field.ui(ui, pane, Some(self.now))
         });
         typed.inner
+    }
+
+    /// The same for a whole number.
+    fn whole_ui(self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i64> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "only whole numbers of the range pass"
+        )]
+        self.ui(ui, pane).map(|typed| typed as i64)
+    }
+}
+
+fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceStep) {
+    if let StepGoal::Gap { gap, force } = &mut step.goal {
+        gap_ui(ui, pane, at, gap);
+        let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
+        let typed = number.whole_ui(ui, pane);
+        *force = typed
+            .and_then(|typed| Force::new(typed).ok())
+            .unwrap_or(*force);
+    }
+    let number = StepNumber {
+        caption: main::NAME_SPEED,
+        ..StepNumber::whole(at, poses::SPEED, step.speed.get(), Speed::MAX.get())
     };
-    let now = (f64::from(step.speed.get()), 1000.0);
-    let speed = number((main::NAME_SPEED, poses::SPEED.tip()), now);
+    let speed = number.whole_ui(ui, pane);
     let speed = speed.and_then(|typed| Speed::new(typed).ok());
     step.speed = speed.unwrap_or(step.speed);
     let mut millis = |caption: Text, time: &mut Millis| {
-        let now = (f64::from(time.get()), f64::from(Millis::MAX));
-        let typed = number((caption, caption.tip()), now);
+        let number = StepNumber::whole(at, caption, time.get(), Millis::MAX);
+        let typed = number.whole_ui(ui, pane);
         let typed = typed.and_then(|typed| Millis::try_from(typed).ok());
         *time = typed.unwrap_or(*time);
     };
@@ -156,9 +222,23 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
     millis(poses::LIMIT, &mut step.limit);
     if let Some(until) = &mut step.until {
         millis(poses::WITHIN, &mut until.within);
-        let now = (until.retries.get().into(), Retries::MAX.into());
-        let typed = number((poses::RETRIES, poses::RETRIES.tip()), now);
+        let number = StepNumber::whole(at, poses::RETRIES, until.retries.get(), Retries::MAX);
+        let typed = number.whole_ui(ui, pane);
         let typed = typed.and_then(|typed| Retries::try_from(typed).ok());
         until.retries = typed.unwrap_or(until.retries);
     }
+}
+
+/// The gap of a grip by size.
+fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, gap: &mut Gap) {
+    let number = StepNumber {
+        range: Gap::MIN.mm().into()..=Gap::MAX.mm().into(),
+        decimals: 1,
+        ..StepNumber::whole(at, poses::GAP, gap.mm(), Gap::MAX.mm())
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
+    let typed = number
+        .ui(ui, pane)
+        .and_then(|typed| Gap::new(typed as f32).ok());
+    *gap = typed.unwrap_or(*gap);
 }

@@ -2,6 +2,7 @@
 
 use crate::app::action::Action;
 use crate::hand::PerDof;
+use crate::hand::gap::Gap;
 use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
@@ -16,6 +17,9 @@ use std::time::Duration;
 
 /// Time between two pictures of a dry run while nothing else is new.
 const FRAME: Duration = Duration::from_millis(33);
+
+/// The gap that a grip by size starts from, mm.
+pub(crate) const FIRST_GAP_MM: f32 = 30.0;
 
 /// What the sequences need between frames.
 #[derive(Debug, Default)]
@@ -124,6 +128,13 @@ impl SequenceView {
         {
             change(pane, sequence, SequenceEdit::Add(pose));
         }
+        if Button::said(look, poses::ADD_GRIP).ui(ui, look).clicked() {
+            change(
+                pane,
+                sequence,
+                SequenceEdit::AddGap(Gap::nearest(FIRST_GAP_MM)),
+            );
+        }
     }
 }
 
@@ -203,6 +214,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         PlayPhase::Ended(PlayEnd::Fault) => (poses::END_FAULT, palette.bad),
         PlayPhase::Ended(PlayEnd::LinkLost) => (poses::END_LOST, palette.bad),
         PlayPhase::Ended(PlayEnd::TakenOver) => (poses::END_TAKEN, palette.warn),
+        PlayPhase::Ended(PlayEnd::Locked) => (poses::END_LOCKED, palette.warn),
         PlayPhase::Ended(PlayEnd::NotHolding(grip)) => {
             let grip = look.say(panels::grip(grip));
             return (look.fill(poses::END_NOT_HOLDING, &[&grip]), palette.warn);

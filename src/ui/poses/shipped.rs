@@ -46,8 +46,8 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
         .rect_filled(place, theme::ROUND, look.palette.sunken);
     ui.spacing_mut().item_spacing.y = theme::STEP;
     let (_, picture) = ui.allocate_space(vec2(place.width(), 88.0));
-    if let Some(pose) = pictured(&state.poses, entry) {
-        panel::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
+    if let Some(angles) = pictured(&state.poses, entry) {
+        panel::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&angles));
     }
     let color = if hidden || overridden {
         look.palette.muted

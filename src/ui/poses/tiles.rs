@@ -2,11 +2,12 @@
 
 use crate::app::action::Action;
 use crate::app::hands::action::HandsAction;
+use crate::app::hands::grip;
 use crate::app::poses::PoseState;
 use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::Play;
-use crate::poses::library::{EntryId, LibraryPose};
+use crate::poses::library::{EntryId, LibraryPose, StepGoal};
 use crate::ui::hand::panel;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::poses::grip_size;
@@ -38,7 +39,8 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     }
     let moves = |dof: Dof| !pose.leave[dof] && !pane.state.hand().controls.joints[dof].locked;
     let any = Dof::ALL.into_iter().any(moves);
-    (!any).then(|| pane.look.say(main::LOCKED))
+    let pinches = pose.gap.is_none() || !grip::locks_pinch(pane.state.hand());
+    (!any || !pinches).then(|| pane.look.say(main::LOCKED))
 }
 
 /// Why no gesture can be started now.
@@ -78,7 +80,14 @@ pub(crate) fn tile_ui(
     let (upper, lower) = words
         .shrink2(vec2(theme::GAP, 0.0))
         .split_top_bottom_at_fraction(0.5);
-    let about = if pose.tags.is_empty() {
+    let about = if let Some(gap) = pose.gap {
+        format!(
+            "{} mm · {} · {} g",
+            gap.mm(),
+            pose.speed.get(),
+            pose.force.get()
+        )
+    } else if pose.tags.is_empty() {
         format!("{} · {} g", pose.speed.get(), pose.force.get())
     } else {
         pose.tags.join(" · ")
@@ -200,10 +209,10 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let response = button.ground(ui, look, rect, id);
     let inner = rect.shrink(theme::STEP);
     let (picture, words) = inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT);
-    if let Some(pose) = pictured(&state.poses, entry) {
+    if let Some(angles) = pictured(&state.poses, entry) {
         // Room for what stands in the corners.
         let picture = picture.shrink2(vec2(theme::GAP, 0.0));
-        panel::sign_ui(ui, look, picture, &shares(&pose.angles));
+        panel::sign_ui(ui, look, picture, &shares(&angles));
     }
     let color = button.text_color(look);
     let words = words.expand2(vec2(theme::BAR, 0.0));
@@ -281,15 +290,19 @@ pub(crate) fn press(state: &State, entry: EntryId) -> Action {
     }
 }
 
-/// The pose that stands for an entry.
-pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<&LibraryPose> {
+/// The angles that stand for an entry.
+pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<PerDof<Angle>> {
+    let pose = |id| library.pose(id).map(|pose| pose.angles);
     match entry {
-        EntryId::Pose(id) => library.pose(id),
+        EntryId::Pose(id) => pose(id),
         EntryId::Sequence(id) => {
             let steps = &library.sequence(id)?.steps;
-            library.pose(steps.get(steps.len() / 2)?.pose)
+            match steps.get(steps.len() / 2)?.goal {
+                StepGoal::Pose(id) => pose(id),
+                StepGoal::Gap { gap, .. } => Some(gap.angles()),
+            }
         }
-        EntryId::Reaction(id) => library.pose(library.reaction(id)?.touched),
+        EntryId::Reaction(id) => pose(library.reaction(id)?.touched),
     }
 }
 

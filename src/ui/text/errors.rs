@@ -3,6 +3,7 @@
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
+use crate::hand::gap::NotOffered;
 use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
@@ -10,7 +11,7 @@ use crate::link::{LeaseRefusal, LinkTrouble, RequestError};
 use crate::record::NotSent;
 use crate::record::export::ExportError;
 use crate::share::gateway::WriteRefusal;
-use crate::store::{FileCause, FileError};
+use crate::store::{FileCause, FileError, ValueKind};
 use crate::system::SystemError;
 use crate::tasks::{BackupError, TaskError};
 use crate::transport::dds::DdsError;
@@ -19,7 +20,7 @@ use crate::transport::endpoint::typed::TypedError;
 use crate::transport::{Remedy, TransportError, WireFailure};
 use crate::trials::plan_settings::PlanReadError;
 use crate::ui::style::{Look, format};
-use crate::ui::text::inputs;
+use crate::ui::text::{Text, inputs, poses};
 use std::fmt::Display;
 use std::io::ErrorKind;
 
@@ -218,6 +219,15 @@ chinese! {
 
     fn file_cause_zh(&FileCause) {
         FileCause::Malformed(_) => "格式不对";
+        FileCause::Syntax(_) => "不是有效的 TOML：每行应写成“键 = 值”";
+        FileCause::KeyTwice => "这个键出现了两次，请删除一个";
+        FileCause::Both { other } => "不能与 {other} 同时出现，请删除其一";
+        FileCause::Missing => "缺少此项，请补上";
+        FileCause::Unknown { known } => "此处没有这个键，只有 {known}，请更正或删除";
+        FileCause::Range { got, range } => "{got} 超出范围 {}", range.replace(" to ", " 至 ");
+        FileCause::Kind { got, wanted } => "{got} 不是{}", value_kind_zh(*wanted);
+        FileCause::Choice { got, known } => "“{got}”不可用，只能是 {known}";
+        FileCause::NotOffered(why) => "{}", no_gap(*why).zh.trim_end_matches('。');
         FileCause::NotSamples => "不是采样表";
         FileCause::Picture(_) => "图片格式不对";
         FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
@@ -312,6 +322,26 @@ pub(crate) fn task(look: Look, error: &TaskError) -> String {
 /// Why a file was not taken.
 pub(crate) fn file(look: Look, error: &FileError) -> String {
     told(look, error, |error| file_zh(error) + "。")
+}
+
+/// Why a kind of grip has no gap.
+pub(crate) const fn no_gap(why: NotOffered) -> Text {
+    match why {
+        NotOffered::BesideMiddle => poses::NO_GAP_THREE,
+        NotOffered::BesideOthers => poses::NO_GAP_ALL,
+        NotOffered::OnPalm => poses::NO_GAP_AROUND,
+    }
+}
+
+const fn value_kind_zh(kind: ValueKind) -> &'static str {
+    match kind {
+        ValueKind::Whole => "此处允许的整数",
+        ValueKind::Number => "数字",
+        ValueKind::Truth => " true 或 false",
+        ValueKind::Text => "带引号的文字",
+        ValueKind::List => "方括号列表",
+        ValueKind::Table => "键值表",
+    }
 }
 
 fn file_zh(error: &FileError) -> String {
@@ -678,7 +708,25 @@ mod tests {
         };
         let name = || "fist".to_owned();
         let all = [
-            FileCause::Malformed("invalid type".into()),
+            FileCause::Malformed("57 cells instead of 58".into()),
+            FileCause::Syntax("key with no value".into()),
+            FileCause::KeyTwice,
+            FileCause::Both { other: "angles" },
+            FileCause::Missing,
+            FileCause::Unknown { known: name() },
+            FileCause::Range {
+                got: "1001".into(),
+                range: "0 to 1000".into(),
+            },
+            FileCause::Kind {
+                got: "1".into(),
+                wanted: ValueKind::Truth,
+            },
+            FileCause::Choice {
+                got: "open".into(),
+                known: name(),
+            },
+            FileCause::NotOffered(NotOffered::OnPalm),
             FileCause::NotSamples,
             FileCause::Picture("bad signature".into()),
             FileCause::Format {
@@ -702,7 +750,7 @@ mod tests {
                 error: Box::new(FileCause::Empty.into()),
             },
         ];
-        let source = include_str!("../../store/toml_file.rs");
+        let source = include_str!("../../store/file_error.rs");
         check(&all, (source, "FileCause"), |cause| {
             file(chinese(), &at(cause.clone()))
         });

@@ -91,6 +91,8 @@ texts! {
         LineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
         LineFault::Length => "Refused: not six values", "拒绝：不是六个数值";
         LineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
+        LineFault::Gap => "Refused: gap not 3 to 120 mm", "拒绝：间距超出 3 至 120 mm";
+        LineFault::Both => "Refused: gap and values", "拒绝：同时给出间距与数值";
         LineFault::Late => "Refused: late", "拒绝：迟到";
         LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
     }
@@ -137,6 +139,7 @@ texts! {
         PadAction::Pose(_) => "Pose {}", "姿态：{}", "The hand goes to this pose while the button is held.", "按住时灵巧手摆出该姿态。";
         PadAction::CloseFingers => "Close fingers", "弯曲手指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
         PadAction::BendThumb => "Bend thumb", "弯曲拇指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
+        PadAction::CloseGap => "Close to a gap", "按间距捏合", "By amount: let go is 120 mm between the pads of thumb and index, pressed is 3 mm. What other triggers and sticks ask does not count then.", "按行程控制：松开为拇指与食指指腹相距 120 mm，按到底为 3 mm。此时其他扳机与摇杆不起作用。";
         PadAction::RotateThumb => "Rotate thumb", "旋转拇指", "Left and right push the thumb as long as it is held; let go, the thumb stays.", "左右推动时旋转拇指；松开后拇指保持不动。";
         PadAction::ChooseFingers => "Choose fingers", "选择手指", "At rest all four. Left, up, right and down choose index, middle, ring and little finger.", "居中时为四指；向左、上、右、下分别选择食指、中指、无名指、小拇指。";
     }

@@ -32,6 +32,8 @@ texts! {
     GAP: "Gap, mm", "间距 mm", "Between the pads of thumb and index, by the model of the hand.", "拇指与食指指腹之间的距离，按手的模型计算。";
     GAP_WISH: "Not armed: the drawn hand shows where it would go.", "未使能：仅在图上显示将到达的位置。";
     GAP_OPEN: "Open for the grip", "先张开", "Opens thumb and index to 120 mm. From there they go to any gap without meeting.", "把拇指与食指张开到 120 mm，之后可到任意间距而不相碰。";
+    GAP_KEEP: "Keep as pose", "存为姿态", "Adds a pose by size with this gap. Nothing is sent.", "以此间距添加一个按尺寸的姿态，不发送任何内容。";
+    GAP_POSE: "Pinch {} mm", "捏 {} mm";
     GAP_CLOSED: "Open for the grip first: from here thumb and index could meet.", "请先张开：从当前位置出发，拇指与食指可能相碰。";
     HELD_SIZE: "Held", "夹持尺寸", "The distance of the pads while thumb and index alone hold something. Two blocks of known size correct it for this hand.", "仅拇指与食指夹住物体时指腹之间的距离。用两个已知尺寸的块可为此手校准。";
     HELD_NONE: "nothing between thumb and index", "拇指与食指之间没有物体";
@@ -65,6 +67,10 @@ texts! {
     RECALL_NAME: "Go to", "执行姿态";
     NAME: "Name", "名称";
     ANGLE: "angle", "角度", "0 bent to 1000 open.", "0 弯曲，1000 张开。";
+    BY_SIZE: "By size", "按尺寸", "A pose by size: thumb and index go to a gap, along the path on which their pads meet.", "按尺寸的姿态：拇指与食指沿指腹相对的路径到达指定间距。";
+    ANGLE_OF_GAP: "This angle follows from the gap.", "此角度由间距决定。";
+    LEAVE_PINCHES: "A grip by size needs this joint.", "按尺寸抓握需要此自由度。";
+    TOLD_BY: "Grip told by: {}", "抓握判断：{}", "Thresholds that a file sets for this pose. They count while it is what was asked for.", "文件为该姿态设定的判断阈值；仅在执行该姿态时生效。";
     LEAVE: "leave alone", "不参与", "This joint stays where it is when the pose is taken.", "执行该姿态时，此自由度保持不动。";
     SPEED: "Speed", "速度", "Speed of the joints on the way, 0 to 1000.", "运动速度，0 到 1000。";
     FORCE: "Force, g", "力阈值 g", "Force threshold on the way, 0 to 3000 g.", "力阈值，0 到 3000 g。";
@@ -81,6 +87,7 @@ texts! {
     NEEDS_POSES: "Save a pose first.", "请先记录姿态。";
     STEPS_EMPTY: "No steps yet: add a pose below.", "还没有步骤：请在下方添加姿态。";
     ADD: "Add", "添加", "Adds this pose as the last step.", "把该姿态添加为最后一步。";
+    ADD_GRIP: "Add grip by size", "添加按尺寸抓握", "Adds a step that closes thumb and index to a gap, along the path on which their pads meet.", "添加一步：让拇指与食指沿指腹相对的路径合到指定间距。";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
     UNTIL: "Until holding", "直到握住", "Waits at the pose until the hand holds something, as its grip tells; an unknown grip does not count.", "在该姿态等待，直到抓握状态为“握住”；状态未知不算。";
@@ -110,6 +117,7 @@ texts! {
     END_FAULT: "Ended: a drive reports a fault", "已结束：驱动器报告故障";
     END_LOST: "Ended: the link was lost", "已结束：连接断开";
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
+    END_LOCKED: "Ended: a grip by size needs index and thumb, and one of them is locked", "已结束：按尺寸抓握需要食指与拇指，其中有自由度已锁定";
     END_NOT_HOLDING: "Ended: the hand was to hold something and did not in time. Grip: {}.", "已结束：未在时限内握住。抓握：{}。";
     PICTURE: "Picture of the pose", "姿态图";
 

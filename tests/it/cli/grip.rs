@@ -2,7 +2,7 @@
 //! by Ctrl-C.
 
 use crate::cli::refuses_unarmed;
-use crate::setup::process::{run, sim_on_tcp, start};
+use crate::setup::process::{handscope, listen, run, sim_on_tcp, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 
@@ -99,4 +99,35 @@ fn ctrl_c_holds_the_hand() {
     let rests = angles(&hand);
     assert_eq!(rests, angles(&hand));
     assert!(rests[5] > 500, "{rests:?}");
+}
+
+#[test]
+fn blocks_that_were_measured_in_the_window_make_its_sizes_true() {
+    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+    let folder = tempfile::tempdir().unwrap();
+    let home = folder.path().join("handscope");
+    std::fs::create_dir(&home).unwrap();
+    let settings = format!(
+        "[hands.\"{hand}\"]\nsize_blocks = [{{ size_mm = 10.0, gap_mm = 24.0 }}, {{ size_mm = 50.0, gap_mm = 64.0 }}]\n"
+    );
+    std::fs::write(home.join("settings.toml"), settings).unwrap();
+    let grip = |folder: &std::path::Path| {
+        let line = [
+            "grip", "--hand", &hand, "--gap", "60", "--speed", "900", "--arm",
+        ];
+        let mut command = handscope();
+        command.args([&line[..], &["--json"]].concat());
+        command.env("XDG_CONFIG_HOME", folder);
+        let ended = listen(command).end().ok();
+        ended.lines().pop().unwrap()["grip"].take()
+    };
+    let told = grip(folder.path());
+    let (gap, size) = (told["gap_mm"].as_f64(), told["size_mm"].as_f64());
+    assert!((gap.unwrap() - 14.0 - size.unwrap()).abs() < 0.1, "{told}");
+    assert_eq!(told["size_by"], "blocks");
+    let told = grip(&folder.path().join("empty"));
+    assert_eq!(
+        (&told["size_by"], &told["size_mm"]),
+        (&"model".into(), &told["gap_mm"])
+    );
 }

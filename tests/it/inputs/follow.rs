@@ -4,6 +4,7 @@
 use crate::setup::hand;
 use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
+use handscope::hand::gap::{Gap, gap_on_path};
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::inputs::{Offer, OfferLimits};
@@ -141,6 +142,7 @@ impl Stage {
             let _sent = offers.try_send(Offer {
                 at: self.clock.now(),
                 aims: PerDof::splat(Some(Angle::nearest(aim))),
+                gap: None,
                 limits: OfferLimits::NONE,
                 held: None,
                 mark: Some(aim.unsigned_abs().into()),
@@ -414,4 +416,53 @@ fn nobody_arms_or_goes_on_while_what_has_to_be_held_at_the_window_is_not() {
         stage.pass(200).await;
         assert_eq!(stage.link.status().armed, None);
     });
+}
+
+#[test]
+fn a_gap_is_gone_to_over_the_wire_and_not_at_all_without_one_of_its_joints() {
+    for is_locked in [false, true] {
+        in_virtual_time(async {
+            let mut stage = Stage::begin().await;
+            let (offers, taken) = mpsc::channel(64);
+            let mut locked = PerDof::splat(false);
+            locked[Dof::ThumbRotate] = is_locked;
+            let terms = FollowTerms {
+                limits: LIMITS,
+                locked,
+                ..FollowTerms::default()
+            };
+            let start = FollowStart {
+                terms: watch::Sender::new(terms).subscribe(),
+                ..stage.beginning(stage.link.grant(Owner::Gamepad))
+            };
+            let link = stage.link.clone();
+            let task = tokio::spawn(async move { follow(&link, start, taken, |_| ()).await });
+            let gap = Gap::nearest(30.0);
+            for _ in 0..1200 {
+                let _sent = offers.try_send(Offer {
+                    at: stage.clock.now(),
+                    aims: gap.angles().map(Some),
+                    gap: Some(gap),
+                    limits: OfferLimits::NONE,
+                    held: None,
+                    mark: None,
+                });
+                stage.pass(10).await;
+            }
+            let now = stage.sample().angle.unwrap().value;
+            let counts = now.map(|angle| f32::from(angle.raw()));
+            if is_locked {
+                assert!(
+                    stage.index().is_empty(),
+                    "nothing is closed beside the thumb"
+                );
+            } else {
+                let mm = gap_on_path(&counts).unwrap();
+                assert!((mm - 30.0).abs() < 3.0, "{mm}");
+                check(&stage.index());
+            }
+            drop(offers);
+            task.await.unwrap();
+        });
+    }
 }

@@ -1,6 +1,7 @@
 //! Lines over real sockets of this computer: who is taken, what is refused, when nobody listens.
 
 use handscope::hand::Dof;
+use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
 use handscope::inputs::line::LineFault;
 use handscope::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
@@ -73,6 +74,14 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
     let offer = offers.recv().await.unwrap();
     let index = offer.aims[Dof::Index].unwrap().get();
     assert_eq!((index, offer.aims[Dof::ThumbBend]), (500, None));
+    send(r#"{"seq":10,"grip_mm":30}"#);
+    let offer = offers.recv().await.unwrap();
+    assert_eq!(offer.gap, Some(Gap::nearest(30.0)));
+    send(r#"{"seq":11,"grip_mm":30,"right":[1,1,1,0.5,null,1]}"#);
+    send(r#"{"seq":12,"grip_mm":130}"#);
+    let view = until(&source, |view| view.intake.refused.len() == 6).await;
+    assert_eq!(view.intake.refused[&LineFault::Both], 1);
+    assert_eq!(view.intake.refused[&LineFault::Gap], 1);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]

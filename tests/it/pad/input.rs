@@ -1,11 +1,13 @@
 //! What a gamepad asks of a hand, control by control, and when it asks nothing.
 
 use crate::pad::setup::{BLUETOOTH, PAD, Played, STEAM, SWITCH, XBOX, angles, event, facts};
-use handscope::hand::Moment;
-use handscope::inputs::pad::input::HEARD_WITHIN;
+use handscope::hand::gap::Gap;
+use handscope::hand::{Angle, Moment, PerDof};
+use handscope::inputs::pad::input::{HEARD_WITHIN, PadAim};
 use handscope::inputs::pad::{
     FaceOrder, PadAction, PadControl, PadEvent, PadId, PadInput, PadMap, PadNews,
 };
+use handscope::poses::library::LibraryPose;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -153,7 +155,7 @@ fn a_pose_is_aimed_at_while_its_button_is_held_and_the_triggers_go_on_after() {
 fn a_pose_that_is_changed_while_its_button_is_held_must_be_held_anew() {
     let library = |open: [i64; 6]| {
         let poses = [("Pinch", [400; 6]), ("Open", open)];
-        let named = poses.map(|(name, raw)| (name.to_owned(), angles(raw)));
+        let named = poses.map(|(name, raw)| (name.to_owned(), PadAim::joints(angles(raw))));
         BTreeMap::from(named)
     };
     let mut pad = Played::xbox();
@@ -170,6 +172,52 @@ fn a_pose_that_is_changed_while_its_button_is_held_must_be_held_anew() {
     pad.says("BTN_TL", 0);
     pad.hold();
     assert_eq!(pad.aims(), [400; 6]);
+}
+
+#[test]
+fn a_trigger_that_closes_to_a_gap_goes_from_the_widest_to_the_narrowest_and_nothing_else_counts() {
+    let mut pad = Played::xbox();
+    let map = PadMap::usual();
+    let map = map
+        .with(PadControl::RightTrigger, PadAction::CloseGap)
+        .unwrap();
+    pad.input.set_map(map);
+    let gap = |pad: &mut Played| pad.offer().gap.map(Gap::mm);
+    pad.says("ABS_RZ", 0);
+    assert_eq!(gap(&mut pad), None, "without the dead-man nothing");
+    pad.hold();
+    assert_eq!(gap(&mut pad), Some(120.0));
+    pad.says("ABS_Z", 255);
+    pad.says("ABS_RX", 32767);
+    let aims = pad.aims();
+    let angles = Gap::MAX.angles().map(Angle::get);
+    assert_eq!(aims, *angles.as_array(), "no thumb and no stick");
+    let mut last = 120.0;
+    for raw in [60, 130, 255] {
+        pad.says("ABS_RZ", raw);
+        let now = gap(&mut pad).unwrap();
+        assert!(now < last, "{raw}: {now}");
+        last = now;
+    }
+    assert_eq!(last, 3.0);
+    pad.says("BTN_WEST", 1);
+    assert_eq!(gap(&mut pad), None, "a pose counts");
+    assert_eq!(pad.aims()[3], 1000);
+    pad.says("BTN_WEST", 0);
+    assert_eq!(gap(&mut pad), Some(3.0));
+}
+
+#[test]
+fn a_pose_by_size_is_aimed_at_by_its_gap() {
+    let mut pad = Played::xbox();
+    let mut pose = LibraryPose::at(PerDof::splat(Angle::MAX));
+    pose.set_gap(Some(Gap::nearest(25.0)));
+    let poses = [("Pinch".to_owned(), PadAim::of(&pose))];
+    pad.input.set_poses(BTreeMap::from(poses));
+    pad.says("BTN_TL", 0);
+    pad.hold();
+    pad.says("BTN_SOUTH", 1);
+    assert_eq!(pad.offer().gap, Some(Gap::nearest(25.0)));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::pad::setup::{BLUETOOTH, PAD, STEAM, SWITCH, XBOX, facts};
 use handscope::hand::{Angle, Moment, PerDof};
-use handscope::inputs::pad::input::HEARD_WITHIN;
+use handscope::inputs::pad::input::{HEARD_WITHIN, PadAim};
 use handscope::inputs::pad::{
     KernelEvent, PadAction, PadControl, PadEvent, PadId, PadInput, PadMap, PadNews, PadReport,
 };
@@ -139,7 +139,7 @@ fn input(random: &mut fastrand::Rng) -> PadInput {
         angle.filter(|_| random.bool())
     };
     let mut pose = || PerDof::from_fn(|_| joint(random));
-    let poses = ["Open", "Pinch"].map(|name| (name.to_owned(), pose()));
+    let poses = ["Open", "Pinch"].map(|name| (name.to_owned(), PadAim::joints(pose())));
     input.set_poses(BTreeMap::from(poses));
     input.set_actual(pose());
     input

@@ -4,6 +4,7 @@ use crate::pad::setup::{XBOX, angles, event, facts};
 use crate::setup::link;
 use handscope::hand::Moment;
 use handscope::inputs::pad::device::{PadReader, find};
+use handscope::inputs::pad::input::PadAim;
 use handscope::inputs::pad::reader::{DeviceSays, OpenPad, PadDevice};
 use handscope::inputs::pad::source::{PadSource, PadSourceConfig, PadView};
 use handscope::inputs::pad::{
@@ -221,7 +222,7 @@ async fn the_poses_of_a_pad_that_is_followed_can_be_changed() {
     };
     until(&|view| view.name.is_some()).await;
     for at in [400, 700] {
-        let pose = [("Pinch".to_owned(), angles([at; 6]))];
+        let pose = [("Pinch".to_owned(), PadAim::joints(angles([at; 6])))];
         source.set_poses(pose.into());
         for (name, value) in [
             ("BTN_TL", 0),

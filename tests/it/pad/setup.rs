@@ -3,6 +3,7 @@
 use handscope::hand::{Angle, Moment, PerDof};
 use handscope::inputs::Offer;
 use handscope::inputs::pad::control::kernel_code;
+use handscope::inputs::pad::input::PadAim;
 use handscope::inputs::pad::{
     AxisRange, FaceOrder, KernelEvent, PadEvent, PadFacts, PadId, PadInput, PadMap, PadNews,
     PadReport,
@@ -92,7 +93,7 @@ impl Played {
             ("Pinch", [1000, 1000, 1000, 420, 380, 150]),
             ("Point", [0, 0, 0, 1000, -1, -1]),
         ];
-        let poses = poses.map(|(name, raw)| (name.to_owned(), angles(raw)));
+        let poses = poses.map(|(name, raw)| (name.to_owned(), PadAim::joints(angles(raw))));
         input.set_poses(BTreeMap::from(poses));
         let mut played = Self {
             input,

@@ -26,7 +26,7 @@ fn gripping(bench: &mut Bench, within_ms: i64, retries: i64) -> SequenceId {
             within: Millis::try_from(within_ms).unwrap(),
             retries: Retries::try_from(retries).unwrap(),
         }),
-        ..sequence.steps[1].clone()
+        ..sequence.steps[1]
     };
     for edit in [SequenceEdit::Change(1, waits), SequenceEdit::Add(open)] {
         bench.act(Action::Library(LibraryEdit::Sequence(own, edit)));

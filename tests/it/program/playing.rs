@@ -34,7 +34,7 @@ pub(super) fn library(bench: &mut Bench) -> (PoseId, SequenceId) {
         let sequence = bench.state().poses.library.sequence(own).unwrap();
         let short = SequenceStep {
             dwell: Millis::try_from(50).unwrap(),
-            ..sequence.steps[at].clone()
+            ..sequence.steps[at]
         };
         bench.act(edit(SequenceEdit::Change(at, short)));
     }

@@ -55,6 +55,38 @@ fn highest_g(run: &Run) -> f64 {
     peaks.fold(0.0, f64::max)
 }
 
+#[test]
+fn a_slip_ends_the_search_or_narrows_it_to_what_is_slower() {
+    let mut hand = VirtualHand::new(random(1), 1, &object(13.0, None));
+    let run = hand.tune(&goal());
+    assert!(run.finding.unwrap().result.is_ok());
+    let (mut ended, mut narrowed) = (0, 0);
+    for slips_at in 0..run.trials.len() {
+        let mut search = SettingsSearch::new(goal()).unwrap();
+        for (number, trial) in run.trials[..=slips_at].iter().enumerate() {
+            let mut trial = trial.clone();
+            if number == slips_at {
+                trial.summary.joints[0].slip_count = Some(1);
+            }
+            search.learn(&trial);
+        }
+        let slipped = search.tried().last().unwrap().setting.speed;
+        match (search.finding(), search.next()) {
+            (Some(finding), None) => {
+                let dof = Dof::Index;
+                assert_eq!(finding.result, Err(NoClaim::Slips { dof }), "{slips_at}");
+                ended += 1;
+            }
+            (None, Some(next)) => {
+                assert!(next.setting.speed < slipped, "{slips_at}: {slipped:?}");
+                narrowed += 1;
+            }
+            other => panic!("{slips_at}: {other:?}"),
+        }
+    }
+    assert!(ended >= 1 && narrowed >= 10, "{ended} {narrowed}");
+}
+
 /// Searches while something happens after so many closes.
 fn meanwhile(
     body: BodyParams,

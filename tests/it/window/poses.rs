@@ -6,6 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, Speed};
+use handscope::poses::library::StepGoal;
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
@@ -253,8 +254,11 @@ fn pose_names(bench: &Bench) -> Vec<&str> {
 fn steps(bench: &Bench) -> Vec<&str> {
     let library = &bench.state().poses.library;
     let steps = library.sequences[0].steps.iter();
-    let name = |pose| library.pose(pose).unwrap().name.as_str();
-    steps.map(|step| name(step.pose)).collect()
+    let name = |goal| match goal {
+        StepGoal::Pose(id) => library.pose(id).unwrap().name.as_str(),
+        StepGoal::Gap { .. } => "grip by size",
+    };
+    steps.map(|step| name(step.goal)).collect()
 }
 
 #[test]

@@ -54,8 +54,13 @@ impl EntryEncoder {
 
     /// For the file after this one. What was learnt of the grip is known in it.
     pub(crate) fn next(&self, opening: &Opening) -> Self {
+        Self::following(opening, self.grip.clone())
+    }
+
+    /// For a file before which the grip was followed so far.
+    pub(crate) fn following(opening: &Opening, grip: GripFollower) -> Self {
         Self {
-            grip: self.grip.clone(),
+            grip,
             ..Self::new(opening)
         }
     }
@@ -86,8 +91,10 @@ impl EntryEncoder {
     /// The messages of one entry.
     pub(crate) fn encode(&mut self, entry: &Entry) -> Vec<Message> {
         let mut messages = self.own(entry);
-        let grip = self.grip.take(entry);
-        messages.extend(grip.and_then(|grip| self.tell(&grip, entry.at())));
+        let at = entry.at();
+        // Wherever a file begins or is cut, and where readings stop, the grip is known a second later at most.
+        let grip = self.grip.take(entry).unwrap_or_else(|| self.grip.known(at));
+        messages.extend(self.tell(&grip, at));
         messages
     }
 
