@@ -4,7 +4,7 @@ use crate::cli::out::{Out, say};
 use crate::cli::parse::{force, hand, speed};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
-use crate::cli::trial::output::stop_words;
+use crate::tasks::series::{STOP_LOST, stop_words};
 use crate::hand::PerDof;
 use crate::hand::gap::{Gap, GripKind};
 use crate::hand::{Force, Speed};
@@ -152,7 +152,7 @@ fn outcome(args: &GripArgs, report: &GripReport) -> Result<String, String> {
 const fn broken(why: PlayEnd) -> &'static str {
     match why {
         PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
-        PlayEnd::LinkLost => session::STOP_LOST,
+        PlayEnd::LinkLost => STOP_LOST,
         PlayEnd::TakenOver => "another moves the hand now",
         PlayEnd::Finished | PlayEnd::Person | PlayEnd::NotHolding(_) | PlayEnd::Disarmed => {
             "the hand was disarmed meanwhile"

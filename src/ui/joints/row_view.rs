@@ -176,7 +176,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let Some((speed, force)) = set.filter(is_rough) else {
         return;
     };
-    if pane.state.hand().series.is_some() {
+    if pane.state.hand().runs_series() {
         return;
     }
     let response = kit::warning_ui(ui, pane.look.palette.warn);

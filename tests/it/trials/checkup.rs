@@ -1,10 +1,10 @@
 //! A check-up on bodies that it does not know: healthy ones, and each kind of wear at the size that it is to be found at.
 
 use crate::trials::virtual_hand::{VirtualHand, object};
-use crate::trials::worn::{JOINT, WEARS, checked, finds, told};
-use handscope::checkup::run::LIMITS;
-use handscope::checkup::{Checkup, Light, Part, Subject};
-use handscope::hand::{ArmEpoch, Dof, Fault};
+use crate::trials::worn::{JOINT, WEARS, checked, finds, started, told};
+use handscope::checkup::check::{checks, stopped_early};
+use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
+use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
 use handscope::trials::Abort;
@@ -18,7 +18,7 @@ fn healthy_bodies_are_told_to_be_healthy() {
         figures += checks.len();
         wrong.extend(told(&checks));
     }
-    assert_eq!(figures, 25 * (6 * 16 + 5 * 2 + 1));
+    assert_eq!(figures, 25 * (6 * 16 + 5 * 3 + 1));
     assert!(wrong.len() * 50 < 25, "{wrong:?}");
 }
 
@@ -53,9 +53,9 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
 }
 
 #[test]
-fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
+fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, _) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, _) = hand.run(started(), |_, _| ());
     assert_eq!(checkup.aborted(), None);
     for entry in hand.hand.journal() {
         let (shorts, _) = entry.bytes.as_chunks::<2>();
@@ -69,18 +69,8 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
             assert!((-1..=most).contains(&raw), "{entry:?}");
         }
     }
-    let block = object(13.0, None);
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &block);
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
-    let Some(Abort::Ceiling { grams, .. }) = checkup.aborted() else {
-        panic!("{:?}", checkup.aborted());
-    };
-    assert!(
-        stopped && grams < 2 * i32::from(LIMITS.ceiling_g),
-        "{grams}"
-    );
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         if checkup.view().joint == Some(Dof::Index) {
             hand.inject_fault(Dof::Index, Fault::OverCurrent);
         }
@@ -96,7 +86,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
             )
     );
     // What was not measured is not known, and is not called good.
-    let checks = checkup.checks(&[], &[]);
+    let checks = checks(checkup.measured(), "", &[]);
     let supply = checks
         .iter()
         .find(|check| check.measured.what == Subject::SlowerTogether);
@@ -106,7 +96,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
 #[test]
 fn no_joint_moves_while_another_does_not_open() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         let is_bent = hand.true_angles()[Dof::Index] < 500.0;
         if is_bent && checkup.view().joint == Some(Dof::Index) {
             hand.set_dead(Dof::Index, true);
@@ -116,4 +106,119 @@ fn no_joint_moves_while_another_does_not_open() {
     let dof = Dof::Index;
     assert_eq!(checkup.aborted(), Some(Abort::Unreached { dof, target }));
     assert!(stopped && hand.hand.true_angles()[Dof::ThumbBend] > 990.0);
+}
+
+/// The most that a fingertip was pressed with in a check-up of a hand with something in it, and how it ended, g.
+fn pressed(zero_g: f64, stiffness: f64) -> (f64, Checkup, VirtualHand) {
+    let mut body = BodyParams::default();
+    for (_, joint) in body.joints.iter_mut() {
+        joint.force_zero_g = zero_g;
+    }
+    let mut hand = VirtualHand::new(body, 1, &object(stiffness, None));
+    let mut most = 0.0_f64;
+    let (checkup, _) = hand.run(started(), |hand, _| {
+        let loads = hand.true_loads();
+        most = loads.iter().map(|(_, grams)| *grams).fold(most, f64::max);
+    });
+    (most, checkup, hand)
+}
+
+#[test]
+fn what_stands_in_the_hand_ends_it_at_once_whatever_the_sensors_say_of_nothing() {
+    for zero_g in [-170.0, -50.0, 0.0, 240.0, 400.0] {
+        for stiffness in [0.3, 1.0, 3.0] {
+            let (most, checkup, hand) = pressed(zero_g, stiffness);
+            let why = checkup.aborted();
+            let said = matches!(why, Some(Abort::NotEmpty { .. } | Abort::Ceiling { .. }));
+            assert!(said, "{zero_g} {stiffness}: {why:?}");
+            assert!(most <= 300.0, "{zero_g} {stiffness}: {most}");
+            // The threshold of each write is by the joint's own zero.
+            let forces = hand.hand.journal().iter().filter(|own| (1498..1510).contains(&own.address));
+            for entry in forces {
+                let (shorts, _) = entry.bytes.as_chunks::<2>();
+                for raw in shorts.iter().map(|short| f64::from(i16::from_le_bytes(*short))) {
+                    assert!(raw < 0.0 || raw - zero_g <= 210.0, "{entry:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
+    for zero_g in [-600.0, -300.0, 700.0] {
+        let (most, checkup, _) = pressed(zero_g, 3.0);
+        assert!(most < 1.0, "{zero_g}: {most}");
+        assert_eq!(checkup.left_alone().len(), 6, "{zero_g}");
+        let all = checks(checkup.measured(), "", &[]);
+        assert_eq!(stopped_early(&all), Some(Dof::Little), "no birth record");
+    }
+    let mut body = BodyParams::default();
+    body.joints[JOINT].force_zero_g = -600.0;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let (checkup, stopped) = hand.run(started(), |hand, _| {
+        assert!(hand.true_angles()[JOINT] > 990.0);
+    });
+    assert_eq!((checkup.aborted(), stopped), (None, false));
+    let [(dof, _)] = checkup.left_alone()[..] else {
+        panic!("{:?}", checkup.left_alone());
+    };
+    assert_eq!(dof, JOINT);
+    let all = checks(checkup.measured(), "", &[]);
+    let of = |what: Subject, of: Part| {
+        let own = all.iter().find(|own| (own.measured.what, own.measured.of) == (what, of));
+        own.unwrap().light
+    };
+    assert_eq!(of(Subject::ForceZero, Part::Joint(JOINT)), Light::Act);
+    assert_eq!(of(Subject::ClosingSpeed, Part::Joint(JOINT)), Light::Unknown);
+    assert_eq!(of(Subject::ClosingSpeed, Part::Joint(Dof::Index)), Light::Fine);
+}
+
+#[test]
+fn a_joint_that_is_jammed_is_measured_so_and_makes_no_birth_record() {
+    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    hand.hand.set_jam(JOINT, Some(300.0));
+    let (checkup, _) = hand.run(started(), |hand, _| {
+        // The drive calls that a stall before it is told to open.
+        hand.set_jam(JOINT, Some(300.0));
+    });
+    let all = checks(checkup.measured(), "", &[]);
+    assert_eq!(stopped_early(&all), Some(JOINT), "{:?}", checkup.aborted());
+}
+
+#[test]
+fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
+    let plan = CheckupPlan { press: true };
+    let mut body = BodyParams::default();
+    body.fingertips[Finger::Ring].dead[3] = true;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let mut asked = Vec::new();
+    let (mut held, mut open) = (0, true);
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1), plan), |hand, checkup| {
+        let finger = checkup.view().press;
+        if let Some(finger) = finger.filter(|finger| asked.last() != Some(finger)) {
+            asked.push(finger);
+            held = 0;
+        }
+        held += 1;
+        // The little finger is forgotten; the others are pressed for a second.
+        for tip in Finger::ALL {
+            let is_pressed = finger == Some(tip) && tip != Finger::Little && held < 100;
+            hand.press_tip(tip, if is_pressed { 800.0 } else { 0.0 });
+        }
+        open &= finger.is_none() || hand.true_angles().iter().all(|(_, angle)| *angle > 990.0);
+    });
+    assert_eq!((checkup.aborted(), stopped, hand.disarmed), (None, false, true));
+    assert!(open, "nothing moves");
+    assert_eq!(asked.first(), Some(&Finger::Thumb));
+    assert_eq!(asked.len(), 5);
+    let all = checks(checkup.measured(), "", &[]);
+    let silent = |finger: Finger| {
+        let mut own = all.iter().filter(|own| own.measured.what == Subject::SilentChannels);
+        let own = own.find(|own| own.measured.of == Part::Fingertip(finger)).unwrap();
+        (own.light, own.measured.channels.to_string())
+    };
+    assert_eq!(silent(Finger::Ring), (Light::Act, "4".to_owned()));
+    assert_eq!(silent(Finger::Thumb), (Light::Fine, String::new()));
+    assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
 }
