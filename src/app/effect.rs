@@ -114,7 +114,9 @@ impl Action {
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
             | Self::Trial(TrialAction::Start(_) | TrialAction::ArmAndStart(_))
-            | Self::Checkup(CheckupAction::Start(_) | CheckupAction::ArmAndStart(_)) => Effect::Moves,
+            | Self::Checkup(CheckupAction::Start(_) | CheckupAction::ArmAndStart(_)) => {
+                Effect::Moves
+            }
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)

@@ -74,8 +74,7 @@ mod tests {
             Part::Fingertip(Finger::Ring),
             Part::Hand,
         ];
-        let measured =
-            of.map(|of| Measured::new(Subject::Backlash, of, (nth > 0).then_some(1.5)));
+        let measured = of.map(|of| Measured::new(Subject::Backlash, of, (nth > 0).then_some(1.5)));
         Kept {
             at: format!("{nth}"),
             hand: "rtu:/dev/x?id=1".into(),

@@ -141,7 +141,11 @@ impl Checkup {
             total: self.total,
             joint,
             press,
-            left: running.iter().chain(&self.left).map(|own| own.expected()).sum(),
+            left: running
+                .iter()
+                .chain(&self.left)
+                .map(|own| own.expected())
+                .sum(),
         }
     }
 

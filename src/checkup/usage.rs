@@ -112,3 +112,71 @@ impl Usage {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::Moment;
+    use crate::record::file::FileMark;
+    use crate::record::file::overview::LINES;
+
+    /// The least and the greatest angle of the index in each second.
+    fn overview(seconds: &[(f32, f32)]) -> Overview {
+        let mut overview = Overview::default();
+        for (second, (least, greatest)) in (0..).zip(seconds) {
+            let mut row = OverviewRow {
+                second,
+                least: [f32::NAN; LINES],
+                greatest: [f32::NAN; LINES],
+            };
+            let line = joint_line(Quantity::Angle, Dof::Index);
+            (row.least[line], row.greatest[line]) = (*least, *greatest);
+            overview.rows.push(row);
+        }
+        overview
+    }
+
+    #[test]
+    fn a_joint_closes_that_was_open_and_is_bent_and_not_one_that_opens() {
+        let mut usage = Usage::default();
+        let seconds = [
+            (1000.0, 1000.0),
+            (300.0, 1000.0),
+            (300.0, 300.0),
+            // It opens, stays, bends half, and closes over two seconds.
+            (300.0, 1000.0),
+            (1000.0, 1000.0),
+            (500.0, 1000.0),
+            (650.0, 1000.0),
+            (200.0, 650.0),
+        ];
+        usage.add(&overview(&seconds), 100);
+        assert_eq!(usage.most_closed(), (Dof::Index, 2));
+        assert_eq!((usage.read_s, usage.moved_s), (8, 5));
+        usage.add(&overview(&[(0.0, 0.0)]), 50);
+        assert_eq!((usage.recordings, usage.since_1970_s), (2, 50));
+        assert_eq!(usage.most_closed().1, 2, "it was bent from the beginning");
+    }
+
+    #[test]
+    fn stalls_are_counted_and_other_faults_are_not() {
+        let mut overview = overview(&[]);
+        let stall = Fault::Stall.name();
+        let other = Fault::OverCurrent.name();
+        for words in [
+            format!("index: {stall}"),
+            format!("ring: {other}, {stall}"),
+            format!("ring: {other}"),
+        ] {
+            overview.marks.push(FileMark {
+                at: Moment::ZERO,
+                kind: EventKind::Fault,
+                words,
+            });
+        }
+        let mut usage = Usage::default();
+        usage.add(&overview, 0);
+        assert_eq!(usage.stalls, 2);
+        assert_eq!(usage.hours(), ["0.0", "0.0"]);
+    }
+}

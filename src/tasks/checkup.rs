@@ -3,9 +3,7 @@
 
 use crate::checkup::check::{checks, stopped_early};
 use crate::checkup::kept::{self, Kept};
-use crate::checkup::report::{
-    CheckupReport, JSON_FILE, Keeping, PAGE_FILE, RECORDING_FILE,
-};
+use crate::checkup::report::{CheckupReport, JSON_FILE, Keeping, PAGE_FILE, RECORDING_FILE};
 use crate::checkup::usage::Usage;
 use crate::checkup::{Checkup, Measured};
 use crate::hand::kinematics::Side;
@@ -187,9 +185,10 @@ impl CheckupFiles {
             },
             None => self.keep(&report, measured),
         };
-        let written = self.report.as_deref().map(|folder| {
-            write(folder, &report).map(|()| folder.to_owned())
-        });
+        let written = self
+            .report
+            .as_deref()
+            .map(|folder| write(folder, &report).map(|()| folder.to_owned()));
         ConcludedCheckup { report, written }
     }
 
@@ -223,5 +222,8 @@ impl CheckupFiles {
 fn write(folder: &Path, report: &CheckupReport) -> io::Result<()> {
     let page = report.html().map_err(io::Error::other)?;
     replace(&folder.join(PAGE_FILE), page.as_bytes())?;
-    replace(&folder.join(JSON_FILE), format!("{}\n", report.json()).as_bytes())
+    replace(
+        &folder.join(JSON_FILE),
+        format!("{}\n", report.json()).as_bytes(),
+    )
 }

@@ -66,11 +66,15 @@ impl CheckupRun {
         };
         let task = Running::start(ctx.env, |steps| async move {
             let wanted = files.clone();
-            if let Err(error) = on_thread(move || prepare(&wanted)).await {
-                link.disarm();
-                return Err(error);
-            }
-            let recording = files.record(link.observe(), clock)?;
+            let prepared = on_thread(move || prepare(&wanted)).await;
+            let recording = prepared.and_then(|()| files.record(link.observe(), clock));
+            let recording = match recording {
+                Ok(recording) => recording,
+                Err(error) => {
+                    link.disarm();
+                    return Err(error);
+                }
+            };
             let mut told = None;
             let tell = |checkup: &mut Checkup| {
                 let view = checkup.view();

@@ -1,7 +1,7 @@
 //! What is done at each hand in each frame: news are taken in, and what was begun goes on.
 
-use crate::app::checkup::work::files;
 use crate::app::checkup::CheckupRun;
+use crate::app::checkup::work::files;
 use crate::app::ctx::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;

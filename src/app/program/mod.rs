@@ -434,7 +434,8 @@ impl App {
         let reported = self.exhibit.flush(state, now);
         let trials = &state.trials;
         let checks = state.hands.iter().any(|hand| hand.checkup.run.is_some());
-        let tried = checks || trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
+        let tried =
+            checks || trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
         let is_kept = reported && !tried && self.recorded.is_written();
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);

@@ -29,7 +29,13 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     let files = files(args)?;
     prepare(&files)?;
     let mut hand = ArmedHand::ready(&args.hand, arm_limits()).await?;
-    let recording = files.record(hand.link.observe(), hand.clock)?;
+    let recording = match files.record(hand.link.observe(), hand.clock) {
+        Ok(recording) => recording,
+        Err(error) => {
+            hand.disarm().await;
+            bail!("the check-up cannot be recorded: {error}");
+        }
+    };
     let mut told = None;
     let checkup = Checkup::start(hand.epoch, plan);
     let (checkup, report) = hand

@@ -26,6 +26,10 @@ impl ReportView {
         let own = &state.hand().checkup;
         kit::card_ui(ui, look, |ui| {
             ui.set_min_height(ui.available_height());
+            if let Some(recorded) = pane.recorded() {
+                kit::say_ui(ui, recorded, look.palette.muted);
+                return;
+            }
             match (&own.last, &own.unread) {
                 (Some(shown), _) => self.shown_ui(ui, pane, shown),
                 (None, Some(error)) => {

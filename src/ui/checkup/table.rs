@@ -135,7 +135,11 @@ fn trend_ui(ui: &mut Ui, pane: &Pane<'_>, check: &Check) -> Option<Response> {
         } else {
             0.5
         };
-        let y = egui::remap(part, 0.0..=1.0, f64::from(place.bottom())..=f64::from(place.top()));
+        let y = egui::remap(
+            part,
+            0.0..=1.0,
+            f64::from(place.bottom())..=f64::from(place.top()),
+        );
         #[expect(clippy::cast_possible_truncation, reason = "a place on the screen")]
         let y = y as f32;
         pos2(x, y)

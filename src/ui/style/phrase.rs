@@ -81,8 +81,8 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, checkup, device, exhibit, inputs, main, notices, panels, poses, recordings, scan, traffic,
-        tune, window,
+        cards, checkup, device, exhibit, inputs, main, notices, panels, poses, recordings, scan,
+        traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {

@@ -103,7 +103,9 @@ pub(crate) const fn advice(what: Subject) -> Text {
         | Subject::OpeningCurrent
         | Subject::CurrentPerSpeed
         | Subject::WarmedBy => "检查自由度处是否有异物并清洁，然后重新体检；仍然如此则检修驱动器",
-        Subject::Backlash | Subject::OthersMoved => "检查手指连杆：销轴磨损或螺钉松动会造成这种情况",
+        Subject::Backlash | Subject::OthersMoved => {
+            "检查手指连杆：销轴磨损或螺钉松动会造成这种情况"
+        }
         Subject::ClosingSpeed | Subject::OpeningSpeed | Subject::SlowerTogether => {
             "检查 24 V 电源及其电缆与插头：灵巧手最大电流为 2 A"
         }

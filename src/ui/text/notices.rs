@@ -10,7 +10,9 @@ use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::style::{Look, format};
-use crate::ui::text::{checkup, errors, inputs, main, panels, poses, recordings, scan, tune, window, words};
+use crate::ui::text::{
+    checkup, errors, inputs, main, panels, poses, recordings, scan, tune, window, words,
+};
 use std::path::Path;
 
 texts! {

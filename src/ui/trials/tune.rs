@@ -77,10 +77,7 @@ fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     let refusal = pane.state.hand().series_refusal(&wanted.trials());
     StartWish {
         refused: start_refused(pane, unsound, refusal),
-        start: (
-            tune::START_BUTTON,
-            Action::Trial(TrialAction::Start(kind)),
-        ),
+        start: (tune::START_BUTTON, Action::Trial(TrialAction::Start(kind))),
         arm_and_start: (
             tune::ARM_AND_START,
             Action::Trial(TrialAction::ArmAndStart(kind)),

@@ -15,9 +15,7 @@ use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{
-    Text, checkup, errors, main, notices, panels, poses, tune, window, words,
-};
+use crate::ui::text::{Text, checkup, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{Color32, Frame, Key, TextEdit, Ui, vec2};

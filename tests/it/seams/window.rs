@@ -182,6 +182,8 @@ impl Window {
     pub(super) fn checkup(mut self) -> Self {
         let plan = CheckupPlan::default();
         self.act(Action::Checkup(CheckupAction::ArmAndStart(plan)));
+        // Three joints have their turn before it.
+        self.run(30_000);
         self.until("it closes", |window| window.hand.angles()[3] < 980);
         self
     }

@@ -3,10 +3,14 @@
 use crate::trials::virtual_hand::{VirtualHand, object};
 use crate::trials::worn::{JOINT, WEARS, checked, finds, started, told};
 use handscope::checkup::check::{checks, stopped_early};
+use handscope::checkup::report::{CheckupReport, Keeping};
 use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
+use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
+use handscope::tasks::series::SeriesReport;
+use handscope::transport::Endpoint;
 use handscope::trials::Abort;
 use handscope::trials::series::Series;
 
@@ -133,10 +137,17 @@ fn what_stands_in_the_hand_ends_it_at_once_whatever_the_sensors_say_of_nothing()
             assert!(said, "{zero_g} {stiffness}: {why:?}");
             assert!(most <= 300.0, "{zero_g} {stiffness}: {most}");
             // The threshold of each write is by the joint's own zero.
-            let forces = hand.hand.journal().iter().filter(|own| (1498..1510).contains(&own.address));
+            let forces = hand
+                .hand
+                .journal()
+                .iter()
+                .filter(|own| (1498..1510).contains(&own.address));
             for entry in forces {
                 let (shorts, _) = entry.bytes.as_chunks::<2>();
-                for raw in shorts.iter().map(|short| f64::from(i16::from_le_bytes(*short))) {
+                for raw in shorts
+                    .iter()
+                    .map(|short| f64::from(i16::from_le_bytes(*short)))
+                {
                     assert!(raw < 0.0 || raw - zero_g <= 210.0, "{entry:?}");
                 }
             }
@@ -166,12 +177,20 @@ fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
     assert_eq!(dof, JOINT);
     let all = checks(checkup.measured(), "", &[]);
     let of = |what: Subject, of: Part| {
-        let own = all.iter().find(|own| (own.measured.what, own.measured.of) == (what, of));
+        let own = all
+            .iter()
+            .find(|own| (own.measured.what, own.measured.of) == (what, of));
         own.unwrap().light
     };
     assert_eq!(of(Subject::ForceZero, Part::Joint(JOINT)), Light::Act);
-    assert_eq!(of(Subject::ClosingSpeed, Part::Joint(JOINT)), Light::Unknown);
-    assert_eq!(of(Subject::ClosingSpeed, Part::Joint(Dof::Index)), Light::Fine);
+    assert_eq!(
+        of(Subject::ClosingSpeed, Part::Joint(JOINT)),
+        Light::Unknown
+    );
+    assert_eq!(
+        of(Subject::ClosingSpeed, Part::Joint(Dof::Index)),
+        Light::Fine
+    );
 }
 
 #[test]
@@ -208,17 +227,88 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
         }
         open &= finger.is_none() || hand.true_angles().iter().all(|(_, angle)| *angle > 990.0);
     });
-    assert_eq!((checkup.aborted(), stopped, hand.disarmed), (None, false, true));
+    assert_eq!(
+        (checkup.aborted(), stopped, hand.disarmed),
+        (None, false, true)
+    );
     assert!(open, "nothing moves");
     assert_eq!(asked.first(), Some(&Finger::Thumb));
     assert_eq!(asked.len(), 5);
     let all = checks(checkup.measured(), "", &[]);
     let silent = |finger: Finger| {
-        let mut own = all.iter().filter(|own| own.measured.what == Subject::SilentChannels);
-        let own = own.find(|own| own.measured.of == Part::Fingertip(finger)).unwrap();
+        let mut own = all
+            .iter()
+            .filter(|own| own.measured.what == Subject::SilentChannels);
+        let own = own
+            .find(|own| own.measured.of == Part::Fingertip(finger))
+            .unwrap();
         (own.light, own.measured.channels.to_string())
     };
     assert_eq!(silent(Finger::Ring), (Light::Act, "4".to_owned()));
     assert_eq!(silent(Finger::Thumb), (Light::Fine, String::new()));
     assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
+}
+
+/// Checks a body up, and makes of it what the program does.
+fn concluded(files: &CheckupFiles, backlash: f64, jam: Option<f64>) -> CheckupReport {
+    let mut body = BodyParams::default();
+    body.joints[JOINT].backlash = backlash;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    hand.hand.set_jam(JOINT, jam);
+    let (checkup, _) = hand.run(started(), |_, _| ());
+    let report = SeriesReport {
+        aborted: checkup.aborted(),
+        stop: None,
+    };
+    let done = files.conclude(EndedCheckup {
+        checkup,
+        report,
+        recording: None,
+    });
+    done.written.unwrap().unwrap();
+    done.report
+}
+
+#[test]
+fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let hand: Endpoint = "rtu:/dev/ttyUSB0".parse().unwrap();
+    let files = CheckupFiles {
+        kept: CheckupFiles::kept_in(folder.path(), &hand),
+        report: Some(folder.path().join("out")),
+        recordings: None,
+        hand,
+    };
+    assert_eq!(files.last().unwrap(), None);
+    // A jam in the way of the first is no birth record; in the way of a later one it is part of the trend.
+    let first = concluded(&files, 0.0, Some(300.0));
+    let keeping = match first.aborted {
+        None => Keeping::NotAsFirst { dof: JOINT },
+        Some(_) => Keeping::Partial,
+    };
+    assert_eq!(first.keeping, keeping);
+    assert_eq!(files.earlier().unwrap(), []);
+    for (earlier, backlash) in [0.0, 3.0, 6.0, 9.0, 12.0].into_iter().enumerate() {
+        let report = concluded(&files, backlash, None);
+        assert_eq!(
+            report.keeping,
+            Keeping::Kept { earlier },
+            "{:?}",
+            report.aborted
+        );
+        assert_eq!(report.earlier, earlier);
+    }
+    let (last, page) = files.last().unwrap().unwrap();
+    assert_eq!(page, files.report);
+    let of = Part::Joint(JOINT);
+    let mut own = last.checks.iter();
+    let own = own.find(|own| (own.measured.what, own.measured.of) == (Subject::Backlash, of));
+    let own = own.unwrap();
+    assert_eq!(own.trend.points.len(), 5);
+    let drift = own.drift().unwrap();
+    assert!(drift.from < 1.0 && drift.to > 11.0, "{drift:?}");
+    let drifting = last.checks.iter().filter(|own| own.drift().is_some());
+    assert_eq!(drifting.count(), 1, "nothing else drifts");
+    let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(page.contains("<polyline") && page.contains("counts over 5 check-ups since"));
 }

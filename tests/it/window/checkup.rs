@@ -4,6 +4,7 @@ use crate::setup::window::{Bench, Role};
 use egui::Key;
 use handscope::app::checkup::ShownCheckup;
 use handscope::checkup::report::Keeping;
+use handscope::checkup::usage::Usage;
 use handscope::checkup::{Light, Part, Subject};
 use handscope::hand::{Dof, Finger};
 use handscope::sim::{BodyParams, Object, Scenario, SimConfig};
@@ -105,6 +106,16 @@ fn a_check_up_is_told_joint_by_joint_and_its_figures_report_and_recording_stay()
     let item = handscope::record::file::RecordingFile::open(&folder(&shown).join("check.mcap"));
     let item = item.unwrap();
     assert!(item.overview().counts.writes > 50 && item.is_closed());
+    // From such a recording its use is counted: each joint closed at both speeds.
+    let hand = bench.state().hand().connection.endpoint.clone().unwrap();
+    let usage = Usage::of(&folder(&shown), &hand).unwrap();
+    assert!(
+        usage.closes.iter().all(|(_, closes)| *closes == 2),
+        "{usage:?}"
+    );
+    assert!(usage.moved_s > 20 && usage.read_s >= usage.moved_s);
+    let other = "tcp:127.0.0.1:9".parse().unwrap();
+    assert_eq!(Usage::of(&folder(&shown), &other), None);
     bench.click("Only what is not fine");
     bench.run(60);
     assert!(bench.texts_with("dead time").is_empty());
