@@ -35,6 +35,8 @@ const BEGINS_WITHIN: Duration = Duration::from_millis(1000);
 const STILL: i16 = 1;
 /// A joint this near to its target has arrived.
 const ARRIVED: i16 = 3;
+/// A joint this near to its open end did not begin to close.
+const STUCK_WITHIN: i16 = 10;
 /// The angle from which on a joint is in no other's way.
 const OPEN_ENOUGH: i16 = 900;
 /// A fingertip is let go so long after its last pressed reading.
@@ -105,6 +107,8 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
+    /// Joints that do not close below what their sensors say of nothing: their drives count that as force.
+    counts_zero: PerDof<bool>,
     figures: Figures,
     plan: CheckupPlan,
     is_over: bool,
@@ -122,6 +126,7 @@ impl Checkup {
             left,
             running: None,
             zero_g: PerDof::splat(None),
+            counts_zero: PerDof::splat(false),
             figures: Figures::default(),
             is_over: false,
             aborted: None,
@@ -176,7 +181,11 @@ impl Checkup {
         let may_move = |dof: Dof| step == Step::Open || self.may_move(dof);
         let wanted = step.targets();
         let targets = PerDof::from_fn(|dof| wanted[dof].filter(|_| may_move(dof)));
-        let forces = PerDof::from_fn(|dof| targets[dof].map(|_| self.threshold(dof)));
+        let force = |dof: Dof| match step.closes() && !self.counts_zero[dof] {
+            true => self.threshold(dof).min(threshold(0.0)),
+            false => self.threshold(dof),
+        };
+        let forces = PerDof::from_fn(|dof| targets[dof].map(|_| force(dof)));
         let stands_still = targets.iter().all(|(_, target)| target.is_none());
         let stage = match step {
             Step::Rest => Stage::Resting,
@@ -214,10 +223,27 @@ impl Checkup {
 
     /// Above what the joint says of nothing.
     fn threshold(&self, dof: Dof) -> Force {
-        let zero = self.zero_g[dof].unwrap_or_default();
-        #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
-        let grams = (zero + THRESHOLD_G).round() as i64;
-        Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
+        threshold(self.zero_g[dof].unwrap_or_default())
+    }
+
+    /// Begins the step anew with thresholds above the zero, for joints that did not begin to close below it.
+    // Manual: whether a drive counts what its sensor says of nothing is not said. The lower threshold is gentle either way.
+    fn raise(&mut self, now: Moment) -> Option<SeriesOrder> {
+        let running = self.running.as_ref()?;
+        let (step, (_, pose)) = (running.record.step, running.pose?);
+        let stuck = |dof: Dof| {
+            let is_closing = step.closes() && running.targets[dof].is_some();
+            let is_open = pose[dof] >= Angle::MAX.get() - STUCK_WITHIN;
+            is_closing && is_open && running.forces[dof] != Some(self.threshold(dof))
+        };
+        let stuck = PerDof::from_fn(stuck);
+        if !stuck.iter().any(|(_, is_stuck)| *is_stuck) {
+            return None;
+        }
+        self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stuck[dof]);
+        self.left.push_front(step);
+        self.running = None;
+        self.next(now)
     }
 
     fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<SeriesOrder> {
@@ -314,6 +340,13 @@ impl Checkup {
             running.stage = Stage::Pressing { last: asked };
         }
     }
+}
+
+/// So far above a zero.
+fn threshold(zero_g: f64) -> Force {
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let grams = (zero_g + THRESHOLD_G).round() as i64;
+    Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
 }
 
 impl Series for Checkup {
@@ -417,7 +450,11 @@ impl Series for Checkup {
         if !is_over {
             return None;
         }
-        if let Some(dof) = running.blocked() {
+        let blocked = running.blocked();
+        if let Some(order) = self.raise(now) {
+            return Some(order);
+        }
+        if let Some(dof) = blocked {
             let target = Angle::MAX.get();
             return Some(self.fail(Abort::Unreached { dof, target }));
         }

@@ -193,15 +193,16 @@ impl CheckupFiles {
     }
 
     fn keep(&self, report: &CheckupReport, figures: Vec<Measured>) -> Keeping {
+        if report.aborted.is_some() {
+            return Keeping::Partial;
+        }
         let Some(file) = &self.kept else {
             return Keeping::BuiltIn;
         };
         let earlier = report.earlier;
-        let early = stopped_early(&report.checks).filter(|_| earlier == 0);
-        match (report.aborted, early) {
-            (Some(_), _) => Keeping::Partial,
-            (None, Some(dof)) => Keeping::NotAsFirst { dof },
-            (None, None) => {
+        match stopped_early(&report.checks).filter(|_| earlier == 0) {
+            Some(dof) => Keeping::NotAsFirst { dof },
+            None => {
                 let own = Kept {
                     at: report.at.clone(),
                     hand: report.hand.clone(),
