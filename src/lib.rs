@@ -22,7 +22,7 @@
 //! | 4 | [`checkup`] | a check-up of an empty hand: what is measured, what it should be, what it was at first |
 //! | 4 | [`share`] | one hand for several programs: gateway, DDS, live viewers |
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
-//! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, play, follow, exhibit |
+//! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, check-up, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
 //! | 7 | [`ui`] | the window: reads state, returns actions |
 //! | 8 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |

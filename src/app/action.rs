@@ -1,5 +1,6 @@
 //! Everything the user can ask for, as one closed list. Says nothing about how it is done.
 
+use crate::app::checkup::CheckupAction;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
 use crate::app::hand::HoldKey;
@@ -83,6 +84,8 @@ pub enum Action {
     Input(InputAction),
     /// What is asked about grasp trials.
     Trial(TrialAction),
+    /// What is asked about check-ups.
+    Checkup(CheckupAction),
     /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
     ImportPoses(Option<PathBuf>),
     /// Ask where the poses should go, and write them.
@@ -196,6 +199,7 @@ impl Action {
             | Self::Exhibit(_)
             | Self::Input(_)
             | Self::Trial(_)
+            | Self::Checkup(_)
             | Self::ImportPoses(_)
             | Self::ExportPoses
             | Self::NameGesture(..)

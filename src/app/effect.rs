@@ -1,6 +1,7 @@
 //! What each action does to a hand or to the window, in one list without a rest; when it passes follows from that.
 
 use crate::app::action::Action;
+use crate::app::checkup::CheckupAction;
 use crate::app::hand::HoldKey;
 use crate::app::hands::action::HandsAction;
 use crate::app::inputs::InputAction;
@@ -112,7 +113,10 @@ impl Action {
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
-            | Self::Trial(TrialAction::Start(_) | TrialAction::ArmAndStart(_)) => Effect::Moves,
+            | Self::Trial(TrialAction::Start(_) | TrialAction::ArmAndStart(_))
+            | Self::Checkup(CheckupAction::Start(_) | CheckupAction::ArmAndStart(_)) => {
+                Effect::Moves
+            }
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)

@@ -1,6 +1,7 @@
 //! Everything the program knows, without drawing: state, actions, and what is done about them.
 
 pub mod action;
+pub mod checkup;
 pub mod connect;
 pub(crate) mod ctx;
 pub mod effect;

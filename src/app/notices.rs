@@ -140,6 +140,14 @@ pub enum NoticeKind {
         /// Why it ended early.
         aborted: Option<Abort>,
     },
+    /// A check-up is over.
+    CheckupEnded {
+        /// Figures that are to be acted on, and to be watched.
+        act: usize,
+        watch: usize,
+        /// Why it ended early.
+        aborted: Option<Abort>,
+    },
     /// Something else was asked of the hand while a series runs. Nothing was sent.
     SeriesRuns,
     /// The hand was to be armed for a series, and is not, or the plan is another by now.
@@ -264,6 +272,11 @@ impl NoticeKind {
             | Self::Recorded
             | Self::PosesImported { .. }
             | Self::SeriesEnded { aborted: None, .. }
+            | Self::CheckupEnded {
+                act: 0,
+                aborted: None,
+                ..
+            }
             | Self::RecordingOpened { .. }
             | Self::DrawnWithoutOpenGl { .. }
             | Self::NoFileChosen => Level::Info,

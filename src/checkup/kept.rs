@@ -20,6 +20,9 @@ pub struct Kept {
     /// The hand, as an endpoint.
     pub hand: String,
     pub figures: Vec<Measured>,
+    /// The folder of its report, if it was written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub report: Option<PathBuf>,
 }
 
 /// The file of the hand at an endpoint, told by place and id.
@@ -64,15 +67,12 @@ mod tests {
             Part::Fingertip(Finger::Ring),
             Part::Hand,
         ];
-        let measured = of.map(|of| Measured {
-            what: Subject::Backlash,
-            of,
-            value: (nth > 0).then_some(1.5),
-        });
+        let measured = of.map(|of| Measured::new(Subject::Backlash, of, (nth > 0).then_some(1.5)));
         Kept {
             at: format!("{nth}"),
             hand: "rtu:/dev/x?id=1".into(),
             figures: measured.into(),
+            report: None,
         }
     }
 

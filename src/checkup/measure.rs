@@ -2,10 +2,11 @@
 
 use crate::checkup::steps::{SPEEDS, Step, Way};
 use crate::checkup::subject::{Part, Subject};
+use crate::checkup::tips::{ChannelSet, TipReading, TipsAtRest, Unpressed};
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{
     AngleReading, CurrentReading, Dof, Finger, ForceReading, Group, Groups, HandSample, Moment,
-    PerDof, PerFinger, PositionReading, Timed,
+    PerDof, PositionReading, Timed,
 };
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 use serde::{Deserialize, Serialize};
@@ -17,8 +18,9 @@ const COUNTS: f64 = 2.0;
 const HALF_WAY: f64 = 500.0;
 /// The middle of a stroke, where a joint goes at its full speed.
 const MIDDLE: RangeInclusive<f64> = 0.25..=0.75;
-/// A channel of a fingertip is dead that never differs in so many readings.
-const TIP_READINGS: usize = 20;
+/// Pressed above its zero by this before it is nearly bent, a joint met something, g. What is nearly bent may meet the palm.
+const MET_G: f64 = 80.0;
+const NEARLY_BENT: f64 = 100.0;
 
 /// One figure; `None` where it could not be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -29,6 +31,34 @@ pub struct Measured {
     pub of: Part,
     /// In the unit of the subject.
     pub value: Option<f64>,
+    /// The channels that a figure of a fingertip counts.
+    #[serde(default, skip_serializing_if = "ChannelSet::is_empty")]
+    pub channels: ChannelSet,
+}
+
+impl Measured {
+    /// A figure.
+    pub fn new(what: Subject, of: Part, value: Option<f64>) -> Self {
+        let channels = ChannelSet::default();
+        Self {
+            what,
+            of,
+            value,
+            channels,
+        }
+    }
+
+    /// A number of channels of a fingertip.
+    fn counted(what: Subject, finger: Finger, channels: Option<ChannelSet>) -> Self {
+        Self {
+            channels: channels.unwrap_or_default(),
+            ..Self::new(
+                what,
+                Part::Fingertip(finger),
+                channels.map(ChannelSet::count),
+            )
+        }
+    }
 }
 
 /// What was read of the joints at one time; `None` is what this reading had not.
@@ -39,14 +69,6 @@ pub(crate) struct Reading {
     angle: Option<PerDof<f64>>,
     force: Option<PerDof<f64>>,
     current: Option<PerDof<f64>>,
-}
-
-/// The channels of one fingertip at one time, counts.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TipReading {
-    at_s: f64,
-    finger: Finger,
-    raw: [u32; 8],
 }
 
 /// When a value was true: between question and answer.
@@ -76,17 +98,6 @@ impl Reading {
             angle: angle.map(|(_, six)| six),
             force: force.map(|(_, six)| six),
             current: current.map(|(_, six)| six),
-        })
-    }
-}
-
-impl TipReading {
-    pub(crate) fn of(sample: &HandSample, finger: Finger) -> Option<Self> {
-        let block = sample.tactile[finger]?;
-        Some(Self {
-            at_s: at_s(&block),
-            finger,
-            raw: block.value.raw,
         })
     }
 }
@@ -126,6 +137,18 @@ impl StepRecord {
     /// What each force sensor says of nothing, g.
     pub(crate) fn zeros(&self) -> PerDof<Option<f64>> {
         PerDof::from_fn(|dof| mean(&values(&self.curve(dof, |own| own.force))))
+    }
+
+    /// Where a joint that closes pressed on something before it was nearly bent, and how hard above its zero, g.
+    pub(crate) fn met(&self, dof: Dof, zero_g: f64) -> Option<(f64, f64)> {
+        let angle = self.curve(dof, |own| own.angle);
+        let force = self.curve(dof, |own| own.force);
+        let pressed = force.points().windows(3).filter_map(|own| {
+            let rise = mean(&own.iter().map(|point| point.v).collect::<Vec<_>>())? - zero_g;
+            let at = angle.at(own.last()?.t)?;
+            (at >= NEARLY_BENT && rise >= MET_G).then_some((at, rise))
+        });
+        pressed.reduce(|most, own| if own.1 > most.1 { own } else { most })
     }
 
     fn stroke(&self, dof: Dof) -> Stroke {
@@ -227,21 +250,16 @@ pub(crate) struct Figures {
     together: PerDof<Option<f64>>,
     /// At the beginning, and at the end.
     rests: Vec<Rest>,
+    /// Of each fingertip that was to be pressed, what was read meanwhile.
+    presses: Vec<(Finger, Vec<TipReading>)>,
 }
 
 #[derive(Debug, Clone)]
 struct Rest {
-    at_s: f64,
     zero_g: PerDof<Option<f64>>,
     noise_g: PerDof<Option<f64>>,
-    tips: PerFinger<[Option<ChannelRest>; 8]>,
+    tips: TipsAtRest,
     warmth: PerDof<Option<f64>>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct ChannelRest {
-    mean: f64,
-    is_dead: bool,
 }
 
 impl Default for Figures {
@@ -251,6 +269,7 @@ impl Default for Figures {
             others: PerDof::splat(None),
             together: PerDof::splat(None),
             rests: Vec::new(),
+            presses: Vec::new(),
         }
     }
 }
@@ -269,7 +288,17 @@ impl Figures {
                 self.together = PerDof::from_fn(|dof| record.stroke(dof).speed);
             }
             Step::Together(Way::Opening) => {}
+            Step::Press(finger) => self.presses.push((finger, record.tips.clone())),
         }
+    }
+
+    /// What the fingertips would say that nobody presses; `None` before the last rest.
+    pub(crate) fn unpressed(&self) -> Option<Unpressed<'_>> {
+        let [first, last] = self.rests.as_slice() else {
+            return None;
+        };
+        let (first, last) = (&first.tips, &last.tips);
+        Some(Unpressed { first, last })
     }
 
     /// A figure of the strokes of a joint, at both speeds.
@@ -302,43 +331,28 @@ impl Rest {
             let degrees = count(&forces) - 1.0;
             (degrees >= 1.0).then(|| (spread(&forces) / degrees).sqrt())
         };
-        let channel = |finger: Finger, nth: usize| {
-            let own = record.tips.iter().filter(|tip| tip.finger == finger);
-            let counts: Vec<f64> = own
-                .filter_map(|tip| tip.raw.get(nth).copied().map(f64::from))
-                .collect();
-            let differs = counts.windows(2).any(|pair| pair.first() != pair.last());
-            Some(ChannelRest {
-                mean: mean(&counts)?,
-                is_dead: !differs && counts.len() >= TIP_READINGS,
-            })
-        };
-        let times: Vec<f64> = record.tips.iter().map(|tip| tip.at_s).collect();
         Self {
-            at_s: mean(&times).unwrap_or_else(|| record.told.secs()),
             zero_g: record.zeros(),
             noise_g: PerDof::from_fn(noise),
-            tips: PerFinger::from_fn(|finger| std::array::from_fn(|nth| channel(finger, nth))),
+            tips: TipsAtRest::of(&record.tips, record.told.secs()),
             warmth: PerDof::from_fn(|dof| record.warmth?[dof].map(f64::from)),
         }
     }
 }
 
-/// All figures.
-pub(crate) fn measured(figures: &Figures) -> Vec<Measured> {
+/// All figures. Which channels answer a press is one of them where that is asked for.
+pub(crate) fn measured(figures: &Figures, presses: bool) -> Vec<Measured> {
     let joints = Dof::ALL.into_iter().flat_map(|dof| {
         let all = joint(figures, dof).into_iter().chain(heat(figures, dof));
-        all.map(move |(what, value)| (what, Part::Joint(dof), value))
+        all.map(move |(what, value)| Measured::new(what, Part::Joint(dof), value))
     });
     let tips = Finger::ALL.into_iter().flat_map(|finger| {
-        let all = fingertip(figures, finger).into_iter();
-        all.map(move |(what, value)| (what, Part::Fingertip(finger), value))
+        let pressed = presses.then(|| pressed(figures, finger));
+        fingertip(figures, finger).into_iter().chain(pressed)
     });
     let together = slower_together(figures);
-    let hand = [(Subject::SlowerTogether, Part::Hand, together)];
-    let all = joints.chain(tips).chain(hand);
-    all.map(|(what, of, value)| Measured { what, of, value })
-        .collect()
+    let hand = Measured::new(Subject::SlowerTogether, Part::Hand, together);
+    joints.chain(tips).chain([hand]).collect()
 }
 
 fn heat(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 2] {
@@ -413,27 +427,27 @@ fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
     ]
 }
 
-fn fingertip(figures: &Figures, finger: Finger) -> [(Subject, Option<f64>); 2] {
-    let channels = figures.rests.first().map(|rest| rest.tips[finger]);
-    let known: Option<Vec<ChannelRest>> = channels.and_then(|all| all.into_iter().collect());
-    let dead = known.map(|all| {
-        let dead = all.iter().filter(|channel| channel.is_dead);
-        dead.map(|_| 1.0).sum()
-    });
-    let drift = figures.rests.first().zip(figures.rests.get(1));
-    let drift = drift.and_then(|(before, after)| {
-        let took = after.at_s - before.at_s;
-        let pairs = before.tips[finger].iter().zip(after.tips[finger].iter());
-        let each = pairs.filter_map(|(before, after)| {
-            let change = (*after)?.mean - (*before)?.mean;
-            Some((change / took).abs())
-        });
-        each.reduce(f64::max)
-    });
+fn fingertip(figures: &Figures, finger: Finger) -> [Measured; 3] {
+    let first = figures.rests.first().map(|rest| &rest.tips);
+    let dead = first.and_then(|tips| tips.dead(finger));
+    let noisy = first.and_then(|tips| tips.noisy(finger));
+    let last = figures.rests.get(1).map(|rest| &rest.tips);
+    let drift = first.zip(last);
+    let drift = drift.and_then(|(before, after)| before.drift(after, finger));
     [
-        (Subject::DeadChannels, dead),
-        (Subject::ChannelDrift, drift),
+        Measured::counted(Subject::DeadChannels, finger, dead),
+        Measured::counted(Subject::NoisyChannels, finger, noisy),
+        Measured::new(Subject::ChannelDrift, Part::Fingertip(finger), drift),
     ]
+}
+
+fn pressed(figures: &Figures, finger: Finger) -> Measured {
+    let mut presses = figures.presses.iter();
+    let own = presses.find(|(pressed, _)| *pressed == finger);
+    let silent = own
+        .zip(figures.unpressed())
+        .and_then(|((_, readings), unpressed)| unpressed.silent(readings, finger));
+    Measured::counted(Subject::SilentChannels, finger, silent)
 }
 
 /// Percent of their speed that the joints lose when all move.

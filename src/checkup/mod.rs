@@ -8,8 +8,13 @@ pub mod report;
 pub mod run;
 mod steps;
 pub mod subject;
+mod tips;
+pub mod trend;
+pub mod usage;
 
 pub use crate::checkup::check::Check;
 pub use crate::checkup::measure::Measured;
 pub use crate::checkup::run::Checkup;
+pub use crate::checkup::steps::{CheckupPlan, expected};
 pub use crate::checkup::subject::{Light, Part, Subject};
+pub use crate::checkup::tips::ChannelSet;

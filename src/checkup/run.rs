@@ -1,8 +1,8 @@
 //! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
 
-use crate::checkup::check::Check;
-use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, TipReading, measured};
-use crate::checkup::steps::{Step, steps};
+use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, measured};
+use crate::checkup::steps::{CheckupPlan, PRESS_WITHIN, REST, Step, steps};
+use crate::checkup::tips::TipReading;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
     Target, TemperatureReading,
@@ -11,6 +11,7 @@ use crate::trials::Limits;
 use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
 use crate::trials::series::{Series, SeriesOrder};
 use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// What ends it at once: an empty hand meets nothing, and warms little.
@@ -23,8 +24,8 @@ pub const LIMITS: Limits = Limits {
 const THRESHOLD_G: f64 = 150.0;
 /// No threshold is lower, whatever the zero, g: noise alone would stop a joint.
 const LEAST_G: i64 = 20;
-/// How long nothing moves where it rests.
-const REST: Duration = Duration::from_secs(3);
+/// A joint is not moved whose threshold cannot stand between these above its zero, g: it would stop at nothing, or press too hard.
+const OWN_STOP_G: RangeInclusive<f64> = 60.0..=200.0;
 /// How long the hand may take to confirm a speed and a threshold.
 const CONFIRMS_WITHIN: Duration = Duration::from_secs(3);
 /// A joint stands still that stayed so long within [`STILL`], and that had so long to begin.
@@ -34,8 +35,12 @@ const BEGINS_WITHIN: Duration = Duration::from_millis(1000);
 const STILL: i16 = 1;
 /// A joint this near to its target has arrived.
 const ARRIVED: i16 = 3;
+/// A joint this near to its open end did not begin to close.
+const STUCK_WITHIN: i16 = 10;
 /// The angle from which on a joint is in no other's way.
 const OPEN_ENOUGH: i16 = 900;
+/// A fingertip is let go so long after its last pressed reading.
+const LET_GO: Duration = Duration::from_millis(500);
 /// No stroke takes longer.
 const STROKE_MAX: Duration = Duration::from_secs(20);
 
@@ -48,6 +53,10 @@ pub struct CheckupView {
     pub total: usize,
     /// The joint that moves alone now.
     pub joint: Option<Dof>,
+    /// The fingertip that is to be pressed now; nothing moves, and the hand is not armed.
+    pub press: Option<Finger>,
+    /// About how long the rest takes from when this step began, if nothing ends it.
+    pub left: Duration,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -59,12 +68,18 @@ enum Stage {
     /// The targets were sent.
     Moving,
     Resting,
+    /// A fingertip is waited for, or was pressed last at this time.
+    Pressing {
+        last: Option<Moment>,
+    },
 }
 
 #[derive(Debug, Clone)]
 struct RunningStep {
     stage: Stage,
     record: StepRecord,
+    /// Where the joints go that move in it.
+    targets: PerDof<Option<Angle>>,
     /// The thresholds that were sent for it.
     forces: PerDof<Option<Force>>,
     /// Where all joints stand still, and since when.
@@ -74,8 +89,7 @@ struct RunningStep {
 impl RunningStep {
     /// A joint that should be open now and is far from it: the next would meet it on its way.
     fn blocked(&self) -> Option<Dof> {
-        let targets = self.record.step.targets();
-        let opens = |dof: &Dof| targets[*dof] == Some(Angle::MAX);
+        let opens = |dof: &Dof| self.targets[*dof] == Some(Angle::MAX);
         let is_open = |dof: &Dof| {
             let (_, pose) = self.pose.as_ref()?;
             (pose[*dof] >= OPEN_ENOUGH).then_some(())
@@ -93,21 +107,26 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
+    /// Joints that do not close below what their sensors say of nothing: their drives count that as force.
+    counts_zero: PerDof<bool>,
     figures: Figures,
+    plan: CheckupPlan,
     is_over: bool,
     aborted: Option<Abort>,
 }
 
 impl Checkup {
     /// Nothing is sent before the first tick.
-    pub fn start(epoch: ArmEpoch) -> Self {
-        let left = steps();
+    pub fn start(epoch: ArmEpoch, plan: CheckupPlan) -> Self {
+        let left = steps(plan);
         Self {
             epoch,
+            plan,
             total: left.len(),
             left,
             running: None,
             zero_g: PerDof::splat(None),
+            counts_zero: PerDof::splat(false),
             figures: Figures::default(),
             is_over: false,
             aborted: None,
@@ -117,26 +136,34 @@ impl Checkup {
     /// Where it stands.
     pub fn view(&self) -> CheckupView {
         let running = self.running.as_ref().map(|running| running.record.step);
-        let joint = match running {
-            Some(Step::Stroke(dof, _, _)) => Some(dof),
-            Some(Step::Open | Step::Rest | Step::Together(_)) | None => None,
+        let (joint, press) = match running {
+            Some(Step::Stroke(dof, _, _)) => (Some(dof), None),
+            Some(Step::Press(finger)) => (None, Some(finger)),
+            Some(Step::Open | Step::Rest | Step::Together(_)) | None => (None, None),
         };
         CheckupView {
             done: self.total - self.left.len() - usize::from(running.is_some()),
             total: self.total,
             joint,
+            press,
+            left: running
+                .iter()
+                .chain(&self.left)
+                .map(|own| own.expected())
+                .sum(),
         }
     }
 
     /// What was measured until now.
     pub fn measured(&self) -> Vec<Measured> {
-        measured(&self.figures)
+        measured(&self.figures, self.plan.press)
     }
 
-    /// What was measured until now, judged; `first` and `last` are of this hand's first and last check-up.
-    pub fn checks(&self, first: &[Measured], last: &[Measured]) -> Vec<Check> {
-        let measured = self.measured().into_iter();
-        measured.map(|own| Check::of(own, first, last)).collect()
+    /// The joints that were left alone, with their zeros: they could not be stopped gently.
+    pub fn left_alone(&self) -> Vec<(Dof, f64)> {
+        let known = |dof: Dof| Some((dof, self.zero_g[dof]?));
+        let all = Dof::ALL.into_iter().filter_map(known);
+        all.filter(|(dof, _)| !self.may_move(*dof)).collect()
     }
 
     fn fail(&mut self, why: Abort) -> SeriesOrder {
@@ -151,42 +178,77 @@ impl Checkup {
             self.is_over = true;
             return None;
         };
-        let record = StepRecord::new(step, now);
-        if step == Step::Rest {
-            self.running = Some(RunningStep {
-                stage: Stage::Resting,
-                record,
-                forces: PerDof::splat(None),
-                pose: None,
-            });
-            return None;
-        }
-        let moved = step.targets();
-        let forces = PerDof::from_fn(|dof| moved[dof].map(|_| self.threshold(dof)));
+        let may_move = |dof: Dof| step == Step::Open || self.may_move(dof);
+        let wanted = step.targets();
+        let targets = PerDof::from_fn(|dof| wanted[dof].filter(|_| may_move(dof)));
+        let force = |dof: Dof| match step.closes() && !self.counts_zero[dof] {
+            true => self.threshold(dof).min(threshold(0.0)),
+            false => self.threshold(dof),
+        };
+        let forces = PerDof::from_fn(|dof| targets[dof].map(|_| force(dof)));
+        let stands_still = targets.iter().all(|(_, target)| target.is_none());
+        let stage = match step {
+            Step::Rest => Stage::Resting,
+            Step::Press(_) => Stage::Pressing { last: None },
+            // A joint that is left alone.
+            Step::Open | Step::Stroke(..) | Step::Together(_) if stands_still => {
+                return self.next(now);
+            }
+            Step::Open | Step::Stroke(..) | Step::Together(_) => Stage::Confirming { since: now },
+        };
         self.running = Some(RunningStep {
-            stage: Stage::Confirming { since: now },
-            record,
+            stage,
+            record: StepRecord::new(step, now),
+            targets,
             forces,
             pose: None,
         });
-        Some(SeriesOrder::Set(Setpoints {
-            force: forces,
-            speed: moved.map(|target| target.map(|_| step.speed())),
-            ..Setpoints::none(self.epoch)
-        }))
+        match stage {
+            Stage::Confirming { .. } => Some(SeriesOrder::Set(Setpoints {
+                force: forces,
+                speed: targets.map(|target| target.map(|_| step.speed())),
+                ..Setpoints::none(self.epoch)
+            })),
+            // Nobody is to touch a hand that may move.
+            Stage::Pressing { .. } => Some(SeriesOrder::Disarm),
+            Stage::Moving | Stage::Resting => None,
+        }
+    }
+
+    /// Whether the threshold of a joint stops it early enough, whatever its sensor says of nothing.
+    fn may_move(&self, dof: Dof) -> bool {
+        let zero = self.zero_g[dof].unwrap_or_default();
+        OWN_STOP_G.contains(&(f64::from(self.threshold(dof).get()) - zero))
     }
 
     /// Above what the joint says of nothing.
     fn threshold(&self, dof: Dof) -> Force {
-        let zero = self.zero_g[dof].unwrap_or_default();
-        #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
-        let grams = (zero + THRESHOLD_G).round() as i64;
-        Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
+        threshold(self.zero_g[dof].unwrap_or_default())
+    }
+
+    /// Begins the step anew with thresholds above the zero, for joints that did not begin to close below it.
+    // Manual: whether a drive counts what its sensor says of nothing is not said. The lower threshold is gentle either way.
+    fn raise(&mut self, now: Moment) -> Option<SeriesOrder> {
+        let running = self.running.as_ref()?;
+        let (step, (_, pose)) = (running.record.step, running.pose?);
+        let stuck = |dof: Dof| {
+            let is_closing = step.closes() && running.targets[dof].is_some();
+            let is_open = pose[dof] >= Angle::MAX.get() - STUCK_WITHIN;
+            is_closing && is_open && running.forces[dof] != Some(self.threshold(dof))
+        };
+        let stuck = PerDof::from_fn(stuck);
+        if !stuck.iter().any(|(_, is_stuck)| *is_stuck) {
+            return None;
+        }
+        self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stuck[dof]);
+        self.left.push_front(step);
+        self.running = None;
+        self.next(now)
     }
 
     fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<SeriesOrder> {
         let running = self.running.as_ref()?;
-        let targets = running.record.step.targets();
+        let targets = running.targets;
         let speed = running.record.step.speed();
         let holds = |dof: Dof| {
             let speeds = sample.speed_set.filter(|own| own.asked >= since);
@@ -222,6 +284,69 @@ impl Checkup {
         }
         self.figures.add(&running.record);
     }
+
+    /// What a joint met that closes, where nothing should be.
+    fn met(&self) -> Option<Abort> {
+        let running = self.running.as_ref()?;
+        let closes = running.record.step.closes();
+        let mut closing = Dof::ALL
+            .into_iter()
+            .filter(|dof| closes && running.targets[*dof].is_some());
+        closing.find_map(|dof| {
+            let (angle, grams) = running.record.met(dof, self.zero_g[dof]?)?;
+            #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+            let (angle, grams) = (angle.round() as i16, grams.round() as i16);
+            Some(Abort::NotEmpty { dof, angle, grams })
+        })
+    }
+
+    /// The same while fingertips are pressed: nothing moves, so that only a lost link ends it.
+    fn tick_press(&mut self, link: LinkView, now: Moment) -> Option<SeriesOrder> {
+        if !link.state.is_live() {
+            return Some(self.fail(Abort::LinkLost));
+        }
+        let running = self.running.as_ref()?;
+        let Stage::Pressing { last } = running.stage else {
+            return None;
+        };
+        let is_let_go = last.is_some_and(|last| now.since(last) >= LET_GO);
+        if !is_let_go && now.since(running.record.told) < PRESS_WITHIN {
+            return None;
+        }
+        if let Some(running) = self.running.take() {
+            self.figures.add(&running.record);
+        }
+        match self.next(now) {
+            // It is not armed any more.
+            Some(SeriesOrder::Disarm) | None => None,
+            Some(order) => Some(order),
+        }
+    }
+
+    /// Takes a reading of the fingertip that is to be pressed.
+    fn take_press(&mut self, finger: Finger, sample: &HandSample, fresh: Groups) {
+        let fresh = fresh.contains(Group::Tactile(finger));
+        let Some(tip) = TipReading::of(sample, finger).filter(|_| fresh) else {
+            return;
+        };
+        let unpressed = self.figures.unpressed();
+        let is_pressed = unpressed.is_some_and(|unpressed| unpressed.is_pressed(&tip));
+        let asked = sample.tactile[finger].map(|block| block.asked);
+        let Some(running) = &mut self.running else {
+            return;
+        };
+        running.record.tips.push(tip);
+        if is_pressed {
+            running.stage = Stage::Pressing { last: asked };
+        }
+    }
+}
+
+/// So far above a zero.
+fn threshold(zero_g: f64) -> Force {
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let grams = (zero_g + THRESHOLD_G).round() as i64;
+    Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
 }
 
 impl Series for Checkup {
@@ -244,6 +369,9 @@ impl Series for Checkup {
             for (dof, reading) in force.value.iter() {
                 self.zero_g[dof].get_or_insert_with(|| f64::from(reading.raw()));
             }
+        }
+        if let Some(Step::Press(finger)) = self.running.as_ref().map(|own| own.record.step) {
+            return self.take_press(finger, sample, fresh);
         }
         let Some(running) = &mut self.running else {
             return;
@@ -273,6 +401,9 @@ impl Series for Checkup {
         if self.is_over {
             return None;
         }
+        if let Some(Step::Press(_)) = self.running.as_ref().map(|own| own.record.step) {
+            return self.tick_press(link, now);
+        }
         let seen = Feedback {
             sample,
             rest_g: &self.zero_g,
@@ -300,8 +431,9 @@ impl Series for Checkup {
         let is_over = match running.stage {
             Stage::Confirming { since } => return self.confirm(sample, since, now),
             Stage::Resting => now.since(told) >= REST,
+            Stage::Pressing { .. } => false,
             Stage::Moving => {
-                let targets = running.record.step.targets();
+                let targets = running.targets;
                 let still = running
                     .pose
                     .filter(|(since, _)| now.since(*since) >= STILL_FOR);
@@ -318,9 +450,16 @@ impl Series for Checkup {
         if !is_over {
             return None;
         }
-        if let Some(dof) = running.blocked() {
+        let blocked = running.blocked();
+        if let Some(order) = self.raise(now) {
+            return Some(order);
+        }
+        if let Some(dof) = blocked {
             let target = Angle::MAX.get();
             return Some(self.fail(Abort::Unreached { dof, target }));
+        }
+        if let Some(why) = self.met() {
+            return Some(self.fail(why));
         }
         self.close_step(sample);
         self.next(now)

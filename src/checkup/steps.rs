@@ -1,12 +1,29 @@
-//! What a check-up does, in order. One joint moves while the others are open, so that thumb and fingers never meet.
+//! What a check-up does, in order. One joint moves while the others are open, so that thumb and fingers never meet. Fingertips are
+//! pressed last, when nothing moves any more.
 
-use crate::hand::{Angle, Dof, PerDof, Speed};
+use crate::hand::{Angle, Dof, Finger, PerDof, Speed};
 use std::collections::VecDeque;
+use std::time::Duration;
 
 /// The two speeds at which each joint is moved.
 pub(crate) const SPEEDS: [i16; 2] = [200, 500];
 /// Where all six go to at once: far from where thumb and fingers meet.
 const TOGETHER: i16 = 700;
+/// How long nothing moves where it rests.
+pub(crate) const REST: Duration = Duration::from_secs(3);
+/// How long a fingertip may wait for its press.
+pub(crate) const PRESS_WITHIN: Duration = Duration::from_secs(12);
+/// Units of ANGLE_ACT a second for each unit of SPEED_SET, of the slower of the hands that were measured.
+const UNITS_PER_SPEED: f64 = 1.52;
+/// What confirming limits before a motion and standing still after it take.
+const AROUND_MOTION: Duration = Duration::from_millis(700);
+
+/// What is done besides the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CheckupPlan {
+    /// Ask for a press of each fingertip, once nothing moves any more and the hand is not armed.
+    pub press: bool,
+}
 
 /// Which way a joint goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +43,8 @@ pub(crate) enum Step {
     Stroke(Dof, Speed, Way),
     /// All six move a part of theirs at once.
     Together(Way),
+    /// A fingertip is to be pressed; the hand is not armed.
+    Press(Finger),
 }
 
 impl Step {
@@ -36,7 +55,7 @@ impl Step {
             Way::Opening => Angle::MAX,
         };
         match self {
-            Self::Rest => PerDof::splat(None),
+            Self::Rest | Self::Press(_) => PerDof::splat(None),
             Self::Open | Self::Together(Way::Opening) => PerDof::splat(Some(Angle::MAX)),
             Self::Together(Way::Closing) => PerDof::splat(Some(Angle::nearest(TOGETHER))),
             Self::Stroke(moved, _, way) => PerDof::from_fn(|dof| (dof == moved).then(|| end(way))),
@@ -47,8 +66,30 @@ impl Step {
     pub(crate) fn speed(self) -> Speed {
         match self {
             Self::Stroke(_, speed, _) => speed,
-            Self::Open | Self::Rest | Self::Together(_) => slow(),
+            Self::Open | Self::Rest | Self::Together(_) | Self::Press(_) => slow(),
         }
+    }
+
+    /// Whether joints close in it, which may meet something.
+    pub(crate) const fn closes(self) -> bool {
+        matches!(
+            self,
+            Self::Stroke(_, _, Way::Closing) | Self::Together(Way::Closing)
+        )
+    }
+
+    /// About how long it takes, if nothing ends it.
+    pub(crate) fn expected(self) -> Duration {
+        let way = match self {
+            Self::Rest => return REST,
+            Self::Press(_) => return PRESS_WITHIN,
+            // Mostly they are open.
+            Self::Open => 0,
+            Self::Stroke(..) => Angle::MAX.get(),
+            Self::Together(_) => Angle::MAX.get() - TOGETHER,
+        };
+        let a_second = UNITS_PER_SPEED * f64::from(self.speed().get());
+        AROUND_MOTION + Duration::from_secs_f64(f64::from(way) / a_second)
     }
 }
 
@@ -59,17 +100,24 @@ pub(crate) fn slow() -> Speed {
 }
 
 /// All steps.
-pub(crate) fn steps() -> VecDeque<Step> {
+pub(crate) fn steps(plan: CheckupPlan) -> VecDeque<Step> {
     let ways = [Way::Closing, Way::Opening];
     let strokes = Dof::ALL.into_iter().flat_map(|dof| {
         let speeds = SPEEDS.map(Speed::nearest).into_iter();
         speeds.flat_map(move |speed| ways.map(|way| Step::Stroke(dof, speed, way)))
     });
     let together = ways.map(Step::Together);
+    let pressed = Finger::ALL.into_iter().rev().filter(|_| plan.press);
     [Step::Open, Step::Rest]
         .into_iter()
         .chain(strokes)
         .chain(together)
         .chain([Step::Rest])
+        .chain(pressed.map(Step::Press))
         .collect()
+}
+
+/// About how long all of it takes.
+pub fn expected(plan: CheckupPlan) -> Duration {
+    steps(plan).into_iter().map(Step::expected).sum()
 }

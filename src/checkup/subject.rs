@@ -27,7 +27,9 @@ pub enum Subject {
     WarmerThanOthers,
     WarmedBy,
     DeadChannels,
+    NoisyChannels,
     ChannelDrift,
+    SilentChannels,
     SlowerTogether,
 }
 
@@ -161,6 +163,12 @@ impl Subject {
             Self::DeadChannels => row("channels that never change", TIP)
                 .good(0.0, 0.0)
                 .bearable(0.0, 0.0),
+            Self::NoisyChannels => row("channels that scatter at rest", TIP)
+                .good(0.0, 0.0)
+                .bearable(0.0, 7.0),
+            Self::SilentChannels => row("channels that do not answer a press", TIP)
+                .good(0.0, 0.0)
+                .bearable(0.0, 0.0),
             Self::ChannelDrift => row("drift of the channels", TIP)
                 .good(0.0, 1000.0)
                 .bearable(0.0, 20_000.0)
@@ -248,6 +256,14 @@ impl SubjectRow {
 }
 
 impl Part {
+    /// The joint that it is, if it is one.
+    pub const fn joint(self) -> Option<Dof> {
+        match self {
+            Self::Joint(dof) => Some(dof),
+            Self::Fingertip(_) | Self::Hand => None,
+        }
+    }
+
     /// The joint's or the finger's name.
     pub const fn name(self) -> &'static str {
         match self {

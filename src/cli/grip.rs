@@ -5,7 +5,6 @@ use crate::cli::out::{Out, say};
 use crate::cli::parse::{force, hand, speed};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
-use crate::cli::trial::output::stop_words;
 use crate::hand::PerDof;
 use crate::hand::gap::{Gap, GripKind, HeldSize, SizeBlocks};
 use crate::hand::{Force, Speed};
@@ -13,6 +12,7 @@ use crate::link::ArmRequest;
 use crate::poses::player::PlayEnd;
 use crate::tasks::grip::{self, GripEnd, GripReport, GripStart};
 use crate::tasks::series::Stop;
+use crate::tasks::series::{STOP_LOST, stop_words};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use clap::Args;
@@ -171,7 +171,7 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
 const fn broken(why: PlayEnd) -> &'static str {
     match why {
         PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
-        PlayEnd::LinkLost => session::STOP_LOST,
+        PlayEnd::LinkLost => STOP_LOST,
         PlayEnd::TakenOver => "another moves the hand now",
         PlayEnd::Finished
         | PlayEnd::Person

@@ -4,7 +4,7 @@ use crate::app::connect::SimDial;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
 };
-use crate::tasks::series::{self, Stop};
+use crate::tasks::series::{self, STOP_LOST, Stop};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;
@@ -19,8 +19,6 @@ const LOOK_EACH: Duration = Duration::from_millis(10);
 /// What is told where feedback does not show that a stopped hand rests, and where none comes any more.
 pub(crate) const NOT_CONFIRMED: &str =
     "STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply";
-pub(crate) const STOP_LOST: &str =
-    "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves";
 
 /// A link that asks for nothing by itself: the line belongs to what a command asks.
 pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {

@@ -64,6 +64,7 @@ impl DesktopApp {
         }
         match self.window.view() {
             View::Device => self.app.look_at_params(now),
+            View::Checkup => self.app.look_at_checkups(),
             // What was tried may be made the default, which is compared with what the hand keeps.
             View::Tune | View::Compare if self.app.may_keep_tried() => {
                 self.app.look_at_params(now);

@@ -4,6 +4,7 @@
 
 pub mod apply;
 pub mod calibrate;
+pub mod checkup;
 pub mod exhibit;
 pub mod follow;
 pub mod grip;

@@ -128,6 +128,9 @@ pub async fn run<H: TaskHand, S: Series>(
             // A lease that ended has disarmed too, and that ends the series.
             let _set = hand.set(lease, setpoints);
         }
+        if order == Some(SeriesOrder::Disarm) {
+            hand.disarm();
+        }
         if !tell(&mut series) {
             order = series.end(Abort::NotKept, clock.now()).or(order);
         }
@@ -166,6 +169,23 @@ fn tell_news(
 fn tell_search(series: &TrialSeries, tell: &mut impl FnMut(SeriesStep) -> bool) -> bool {
     let progress = series.settings_search().map(SettingsSearch::progress);
     progress.is_none_or(|progress| tell(SeriesStep::Search(Box::new(progress))))
+}
+
+/// What is told where no feedback comes any more.
+pub const STOP_LOST: &str =
+    "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves";
+
+/// What feedback says of a stop that followed an early end, after its reason.
+pub fn stop_words(stop: Option<Stop>) -> String {
+    match stop {
+        None => String::new(),
+        Some(Stop::Confirmed { after }) => {
+            let after_s = after.as_secs_f64();
+            format!("; stopped: feedback shows rest after {after_s:.2} s")
+        }
+        Some(Stop::NotConfirmed) => "; the stop is not confirmed by feedback".into(),
+        Some(Stop::LinkLost) => format!("; {STOP_LOST}"),
+    }
 }
 
 /// Holds, and waits for what feedback says of it.

@@ -92,6 +92,16 @@ pub enum Abort {
     /// The samples could not be stored or shown.
     #[error("the samples could not be stored or shown")]
     NotKept,
+    /// A joint of a hand that should be empty pressed on something.
+    #[error("the hand is not empty, or something is in its way: {} pressed with {grams} g at {angle}", dof.name())]
+    NotEmpty {
+        /// The joint.
+        dof: Dof,
+        /// Where, units of ANGLE_ACT.
+        angle: i16,
+        /// Force above its reading at rest.
+        grams: i16,
+    },
     /// The slow trial that should measure the contact found none.
     #[error("{} found no contact to approach", dof.name())]
     NoContact {

@@ -37,6 +37,8 @@ pub enum SeriesOrder {
     Set(Setpoints),
     /// Hold now, before anything else.
     Stop,
+    /// Let no setpoint pass any more; the series goes on with a hand that does not move.
+    Disarm,
 }
 
 #[derive(Debug, Clone, Copy)]

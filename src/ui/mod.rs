@@ -1,5 +1,6 @@
 //! The window: reads [`crate::app::state::State`], draws it with egui, returns actions. No clock, file, thread or wire.
 
+mod checkup;
 mod connection;
 mod exhibit;
 mod faults;

@@ -1,6 +1,6 @@
 //! The places of the window, and the views in them.
 
-use crate::ui::text::{Text, inputs, main, recordings, window};
+use crate::ui::text::{Text, checkup, inputs, main, recordings, window};
 
 /// One of the five places between which the header switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Place {
             Self::Live => &[View::Live, View::Touch, View::Poses, View::Faults],
             Self::Tune => &[View::Tune, View::Compare],
             Self::Recordings => &[View::Recordings],
-            Self::Hand => &[View::Connection, View::Device, View::Traffic],
+            Self::Hand => &[View::Connection, View::Device, View::Checkup, View::Traffic],
             Self::Share => &[View::Inputs],
         }
     }
@@ -67,6 +67,8 @@ pub enum View {
     Poses,
     /// What the hand keeps: live, staged, saved; its flash.
     Device,
+    /// A check-up of the hand, and what the last one came to.
+    Checkup,
     /// The link and its settings.
     Connection,
     /// What besides the window may move the hand, and who uses it.
@@ -79,7 +81,7 @@ pub enum View {
 
 impl View {
     /// All; the order in which they are listed and drawn.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Live,
         Self::Touch,
         Self::Tune,
@@ -87,6 +89,7 @@ impl View {
         Self::Faults,
         Self::Poses,
         Self::Device,
+        Self::Checkup,
         Self::Connection,
         Self::Inputs,
         Self::Traffic,
@@ -111,6 +114,7 @@ impl View {
             Self::Faults => ("faults", main::TAB_FAULTS),
             Self::Poses => ("poses", main::TAB_POSES),
             Self::Device => ("device", main::TAB_DEVICE),
+            Self::Checkup => ("checkup", checkup::TITLE),
             Self::Connection => ("connection", main::TAB_CONNECTION),
             Self::Inputs => ("inputs", inputs::TITLE),
             Self::Traffic => ("traffic", main::TAB_TRAFFIC),
@@ -124,7 +128,7 @@ impl View {
             Self::Live | Self::Touch | Self::Poses | Self::Faults => Place::Live,
             Self::Tune | Self::Compare => Place::Tune,
             Self::Recordings => Place::Recordings,
-            Self::Connection | Self::Device | Self::Traffic => Place::Hand,
+            Self::Connection | Self::Device | Self::Checkup | Self::Traffic => Place::Hand,
             Self::Inputs => Place::Share,
         }
     }

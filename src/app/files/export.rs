@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::env::day_folder;
 use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
+use crate::checkup::report::CheckupReport;
 use crate::hand::overshoot::OvershootMap;
 use crate::history::Table;
 use crate::link::Traffic;
@@ -15,6 +16,7 @@ use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
 use crate::store::{BackgroundJob, on_thread, write_private};
 use crate::trials::hand_map;
+use std::io;
 use std::sync::Arc;
 
 /// The form of an exported list of frames.
@@ -37,6 +39,8 @@ pub enum Export {
     Recording(Table),
     /// A finished picture of the plots, as the bytes of a PNG file.
     Picture(Vec<u8>),
+    /// The page of a check-up.
+    Checkup(Box<CheckupReport>),
     /// Poses and sequences.
     Poses(PoseLibrary),
     /// What a hand keeps, as it was read.
@@ -54,6 +58,7 @@ impl Export {
             Self::Plots(_) => "handscope-plots.csv",
             Self::Recording(_) => "handscope-fault.csv",
             Self::Picture(_) => "handscope-plots.png",
+            Self::Checkup(_) => "handscope-check.html",
             Self::Poses(_) => pose_file::FILE_NAME,
             Self::Params(_) => params::file::FILE_NAME,
             Self::Overshoot(_) => "handscope-overshoot.csv",
@@ -65,6 +70,7 @@ impl Export {
         match self {
             Self::Traffic(_, frames) => frames.len(),
             Self::Plots(table) | Self::Recording(table) => table.rows(),
+            Self::Checkup(report) => report.checks.len(),
             Self::Picture(bytes) => usize::from(!bytes.is_empty()),
             Self::Poses(library) => library.poses.len() + library.sequences.len(),
             Self::Params(file) => file.params.iter().count(),
@@ -72,10 +78,11 @@ impl Export {
         }
     }
 
-    fn bytes(&self) -> std::io::Result<Vec<u8>> {
+    fn bytes(&self) -> io::Result<Vec<u8>> {
         Ok(match self {
             Self::Traffic(form, frames) => frame_lines(*form, frames).into_bytes(),
             Self::Plots(table) | Self::Recording(table) => table.csv().into_bytes(),
+            Self::Checkup(report) => report.html().map_err(io::Error::other)?.into_bytes(),
             Self::Picture(bytes) => bytes.clone(),
             Self::Poses(library) => pose_file::text(library)?.into_bytes(),
             Self::Params(file) => file.to_toml().into_bytes(),

@@ -9,7 +9,7 @@ pub enum Activity {
     Leaving,
     /// A card is open: its place is changed, its parameters are reset, or its force sensors are calibrated.
     Procedure,
-    /// A series of trials runs.
+    /// A series of trials or a check-up runs.
     Series,
     /// It follows another than this window, which the user let.
     Following(Owner),

@@ -1,5 +1,6 @@
 //! One hand, composed: the parts own their state and know nothing of each other; what takes several of them is here.
 
+use crate::app::checkup::HandCheckup;
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
@@ -17,6 +18,7 @@ use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
 use crate::app::trials::work::start_refusal;
 use crate::app::trials::{HandMap, SeriesPlan, SeriesRun, StartRefusal};
+use crate::checkup::CheckupPlan;
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
@@ -38,6 +40,15 @@ pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
 /// Commands to a sequence that may wait: the user cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
 
+/// A series that begins once the hand is armed for it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AskedSeries {
+    /// Trials.
+    Trials(SeriesPlan),
+    /// A check-up.
+    Checkup(CheckupPlan),
+}
+
 /// Everything about one hand.
 #[derive(Debug, Default)]
 pub struct Hand {
@@ -53,10 +64,12 @@ pub struct Hand {
     pub sequence: Option<SequenceRun>,
     /// The series of trials that runs.
     pub series: Option<SeriesRun>,
-    /// The plan that begins once the arming that was asked for with it holds, and when that was.
-    pub series_asked: Option<(SeriesPlan, Moment)>,
+    /// What begins once the arming that was asked for with it holds, and when that was.
+    pub series_asked: Option<(AskedSeries, Moment)>,
     /// What trials measured of it.
     pub overshoot: HandMap,
+    /// The check-up that runs, and the last one.
+    pub checkup: HandCheckup,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
     /// What besides the window may move the hand, and who uses it.
@@ -80,7 +93,7 @@ impl Hand {
             Activity::Leaving
         } else if self.procedures.card.is_some() {
             Activity::Procedure
-        } else if self.series.is_some() {
+        } else if self.runs_series() {
             Activity::Series
         } else if let Some(owner) = self.connection.outside_owner() {
             Activity::Following(owner)
@@ -95,7 +108,31 @@ impl Hand {
     pub fn series_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
         let armed = self.connection.status.armed;
         let armed = armed.filter(|_| self.connection.is_armed());
-        start_refusal(plan, self.series.is_some(), armed, &self.controls.locked())
+        start_refusal(plan, self.runs_series(), armed, &self.controls.locked())
+    }
+
+    /// Whether a series of trials or a check-up runs.
+    pub const fn runs_series(&self) -> bool {
+        self.series.is_some() || self.checkup.run.is_some()
+    }
+
+    /// Why a check-up cannot begin now.
+    pub fn checkup_refusal(&self) -> Option<StartRefusal> {
+        if self.runs_series() {
+            return Some(StartRefusal::Runs);
+        }
+        let locked = self.controls.locked();
+        let locked = Dof::ALL.into_iter().find(|dof| locked[*dof]);
+        let is_armed = self.connection.is_armed() && self.connection.status.armed.is_some();
+        let not_armed = (!is_armed).then_some(StartRefusal::NotArmed);
+        locked.map(StartRefusal::Locked).or(not_armed)
+    }
+
+    fn refusal(&self, asked: &AskedSeries) -> Option<StartRefusal> {
+        match asked {
+            AskedSeries::Trials(plan) => self.series_refusal(&plan.trials()),
+            AskedSeries::Checkup(_) => self.checkup_refusal(),
+        }
     }
 
     /// What a live hand holds of a joint, where that is not what was set.
@@ -193,6 +230,7 @@ impl Hand {
             sequence: None,
             series: None,
             series_asked: None,
+            checkup: HandCheckup::default(),
             inputs: HandInputs::default(),
             recording: None,
             recorded: None,
@@ -305,14 +343,14 @@ impl Hand {
     }
 
     /// Arms the hand for a series, which begins once that holds. Whatever refuses, stops or disarms ends the wish.
-    pub(crate) fn arm_for_series(&mut self, plan: SeriesPlan, ctx: &mut Ctx<'_>) {
-        let refusal = self.series_refusal(&plan.trials());
+    pub(crate) fn arm_for_series(&mut self, asked: AskedSeries, ctx: &mut Ctx<'_>) {
+        let refusal = self.refusal(&asked);
         if refusal.is_some_and(|why| why != StartRefusal::NotArmed) {
             return;
         }
         let may_arm = self.activity().lets_arm() && self.arm_refusal(ctx.now).is_none();
         self.arm(ctx);
-        self.series_asked = may_arm.then_some((plan, ctx.now));
+        self.series_asked = may_arm.then_some((asked, ctx.now));
     }
 
     /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
@@ -323,6 +361,9 @@ impl Hand {
             self.measured.history.mark(ctx.now, MarkKind::StopNotSent);
         }
         if let Some(run) = &mut self.series {
+            run.end(Abort::Person);
+        }
+        if let Some(run) = &mut self.checkup.run {
             run.end(Abort::Person);
         }
         self.series_asked = None;

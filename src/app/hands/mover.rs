@@ -18,6 +18,8 @@ pub enum Mover {
     Calibration,
     /// A series of trials: the trial, and how many there are.
     Series(usize, usize),
+    /// A check-up: its step, and how many there are.
+    Checkup(usize, usize),
     /// An entry of the library that is played, and its step, 0 the first.
     Playing(EntryId, usize),
     /// A stored gesture.
@@ -60,6 +62,9 @@ impl Mover {
         }
         if let Some(run) = &hand.series {
             return Some(Self::Series(run.view.number, run.view.total));
+        }
+        if let Some(run) = &hand.checkup.run {
+            return Some(Self::Checkup(run.view.done + 1, run.view.total));
         }
         if let Some(run) = hand.sequence.as_ref().filter(|run| run.is_running()) {
             return Some(Self::Playing(run.entry, run.view.at));

@@ -37,7 +37,7 @@ impl Closing {
 
 /// What would be lost if the window closed now, if something would.
 pub(super) fn question(hands: &HandList) -> Option<LeaveQuestion> {
-    let series = hands.iter().any(|hand| hand.series.is_some());
+    let series = hands.iter().any(Hand::runs_series);
     let staged = |hand: &Hand| hand.params.all_staged().iter().count();
     let edits = hands.iter().map(staged).sum();
     (series || edits > 0).then_some(LeaveQuestion { series, edits })

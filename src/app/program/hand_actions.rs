@@ -1,7 +1,9 @@
 //! What the user does with the hand that is shown.
 
+use crate::app::checkup::CheckupAction;
 use crate::app::env::Env;
-use crate::app::program::hand_tick::record_event;
+use crate::app::hands::hand::AskedSeries;
+use crate::app::program::hand_tick::{record_event, start_checkup};
 use crate::app::program::hands;
 use crate::app::program::taring;
 use crate::app::state::State;
@@ -29,6 +31,16 @@ pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
         hand.procedures.close();
         hand.leave(to, ctx);
         hand.apply_settings(settings);
+    });
+}
+
+/// Begins a check-up, in the arming of now or in one for it.
+pub(super) fn checkup(state: &mut State, action: CheckupAction, env: &Env) {
+    hands::with_shown(state, env, |hand, settings, ctx| match action {
+        CheckupAction::Start(plan) => start_checkup(hand, plan, settings, ctx),
+        CheckupAction::ArmAndStart(plan) => {
+            hand.arm_for_series(AskedSeries::Checkup(plan), ctx);
+        }
     });
 }
 

@@ -1,8 +1,11 @@
 //! What is done at each hand in each frame: news are taken in, and what was begun goes on.
 
+use crate::app::checkup::CheckupRun;
+use crate::app::checkup::work::files;
 use crate::app::ctx::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
+use crate::app::hands::hand::AskedSeries;
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamsHand;
 use crate::app::poses::PoseState;
@@ -13,6 +16,7 @@ use crate::app::recordings::recording::{HandRecording, RecordingTarget};
 use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;
 use crate::app::trials::{SeriesPlan, SeriesRun, TrialsState};
+use crate::checkup::CheckupPlan;
 use crate::hand::{Moment, Status};
 use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::record::EventKind;
@@ -56,9 +60,10 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     }
     let of = ParamsHand(&hand.connection, &hand.overshoot.map);
     hand.params.tick(of, ctx);
-    start_asked(hand, shared.trials, ctx);
+    start_asked(hand, shared, ctx);
     tick_series(hand, shared.trials, ctx);
     hand.overshoot.tick(hand.connection.endpoint.as_ref(), ctx);
+    tick_checkup(hand, ctx);
     tick_procedure(hand, shared.settings, ctx);
     if let Some(link) = hand.connection.link() {
         link.read_first(shared.settings.read_first);
@@ -93,41 +98,69 @@ pub(super) fn start_series(
     if is_refused || trials.running.is_some() {
         return;
     }
-    hand.take_over();
-    let connection = &mut hand.connection;
-    let (Some(epoch), Some(open)) = (connection.status.armed, &mut connection.open) else {
+    if let Some(at) = lend(hand) {
+        hand.series = SeriesRun::begin(at, plan, trials, ctx);
+    }
+}
+
+/// Begins a check-up, in the arming of now. Without one nothing happens.
+pub(super) fn start_checkup(
+    hand: &mut Hand,
+    plan: CheckupPlan,
+    settings: &Settings,
+    ctx: &Ctx<'_>,
+) {
+    let endpoint = hand.connection.endpoint.clone();
+    let Some(endpoint) = endpoint.filter(|_| hand.checkup_refusal().is_none()) else {
         return;
     };
+    let files = files(&endpoint, settings, ctx.env);
+    if let Some(at) = lend(hand) {
+        hand.checkup.run = Some(CheckupRun::begin(at, plan, files, ctx));
+    }
+}
+
+/// Gives a hand that is armed to a series.
+fn lend(hand: &mut Hand) -> Option<SeriesHand<'_>> {
+    hand.take_over();
+    let connection = &mut hand.connection;
+    let (epoch, open) = (connection.status.armed?, connection.open.as_mut()?);
     let (link, lease) = (open.link.clone(), open.lend_lease());
     hand.controls.let_go();
     connection.commanded = true;
-    let at = SeriesHand {
+    Some(SeriesHand {
         link,
         lease,
         epoch,
         seen: hand.readings.sample,
         connection,
-    };
-    hand.series = SeriesRun::begin(at, plan, trials, ctx);
+    })
 }
 
 /// Begins the series that the hand was to be armed for, once it is. One that was not armed in time, or for which another
 /// plan is written by now, does not begin.
-fn start_asked(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
+fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
+    let trials = &mut *shared.trials;
     let is_armed = hand.connection.is_armed();
     let now = ctx.now;
     let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
-    let is_other = |plan: &SeriesPlan| *plan != trials.planned(plan.kind());
+    let is_other = |asked: &AskedSeries| match asked {
+        AskedSeries::Trials(plan) => *plan != trials.planned(plan.kind()),
+        AskedSeries::Checkup(_) => false,
+    };
     let is_over =
-        |(plan, at): &mut (SeriesPlan, Moment)| is_armed || is_late(*at) || is_other(plan);
-    let Some((plan, at)) = hand.series_asked.take_if(is_over) else {
+        |(asked, at): &mut (AskedSeries, Moment)| is_armed || is_late(*at) || is_other(asked);
+    let Some((asked, at)) = hand.series_asked.take_if(is_over) else {
         return;
     };
     // A window that hung meanwhile moves nothing late.
-    if is_armed && !is_late(at) && !is_other(&plan) {
-        start_series(hand, plan, trials, ctx);
+    if is_armed && !is_late(at) && !is_other(&asked) {
+        match asked {
+            AskedSeries::Trials(plan) => start_series(hand, plan, trials, ctx),
+            AskedSeries::Checkup(plan) => start_checkup(hand, plan, shared.settings, ctx),
+        }
     }
-    if hand.series.is_none() {
+    if !hand.runs_series() {
         ctx.tell(NoticeKind::SeriesNotBegun);
     }
 }
@@ -145,6 +178,17 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
         ctx.tell(told);
         hand.series = None;
         // The task disarmed the hand, or stopped it.
+        if hand.connection.status.armed == Some(epoch) {
+            hand.disarm(ctx.now);
+        }
+    }
+}
+
+/// Takes in what the check-up did, and what was read of kept ones.
+fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
+    hand.checkup.tick();
+    if let Some((epoch, told)) = hand.checkup.news() {
+        told.into_iter().for_each(|told| ctx.tell(told));
         if hand.connection.status.armed == Some(epoch) {
             hand.disarm(ctx.now);
         }

@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
 use crate::app::files::pose_file;
+use crate::app::hands::hand::AskedSeries;
 use crate::app::notices::NoticeKind;
 use crate::app::params::{ParamAction, ParamsHand};
 use crate::app::program::hand_tick::start_series;
@@ -113,7 +114,9 @@ impl Jobs {
             TrialAction::ArmAndStart(kind) => {
                 let plan = trials.planned(kind);
                 if trials.running.is_none() && plan.is_sound() {
-                    hands::with_shown(state, env, |hand, _, ctx| hand.arm_for_series(plan, ctx));
+                    hands::with_shown(state, env, |hand, _, ctx| {
+                        hand.arm_for_series(AskedSeries::Trials(plan), ctx)
+                    });
                 }
             }
             TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}

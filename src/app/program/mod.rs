@@ -16,6 +16,7 @@ mod start;
 mod taring;
 
 use crate::app::action::Action;
+use crate::app::checkup::work::files;
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::Exhibition;
@@ -177,7 +178,7 @@ impl App {
         if self.state.exhibit.is_some() && !action.effect().passes_in_exhibit() {
             return;
         }
-        if self.state.hand().series.is_some() && !action.effect().passes_in_series() {
+        if self.state.hand().runs_series() && !action.effect().passes_in_series() {
             self.tell(NoticeKind::SeriesRuns, now);
             return;
         }
@@ -248,6 +249,7 @@ impl App {
             Action::Exhibit(action) => self.leaves |= self.exhibit.act(action, state, env),
             Action::Input(action) => inputs::act(state, action, env),
             Action::Trial(action) => self.jobs.trial_action(action, state, env),
+            Action::Checkup(action) => hand_actions::checkup(state, action, env),
             Action::ImportPoses(typed) => self.jobs.import_poses(typed, state, env),
             Action::ExportPoses => {
                 let library = state.poses.library.clone();
@@ -365,6 +367,20 @@ impl App {
         hand.params.look_at(of, &self.env, now);
     }
 
+    /// Reads the check-ups that were kept of the shown hand because somebody looks at them. Called while they do.
+    pub fn look_at_checkups(&mut self) {
+        let State {
+            hands, settings, ..
+        } = &mut self.state;
+        let hand = hands.shown_mut();
+        if self.recorded.player.is_none()
+            && let Some(endpoint) = &hand.connection.endpoint
+        {
+            let files = files(endpoint, settings, &self.env);
+            hand.checkup.look(files, &self.env);
+        }
+    }
+
     /// Whether something was tried, and reading what the hand keeps comes between nothing and the hand.
     pub fn may_keep_tried(&self) -> bool {
         let hand = self.state.hand();
@@ -419,7 +435,9 @@ impl App {
         let rests = closing.is_at_rest(&state.hands);
         let reported = self.exhibit.flush(state, now);
         let trials = &state.trials;
-        let tried = trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
+        let checks = state.hands.iter().any(|hand| hand.checkup.run.is_some());
+        let tried =
+            checks || trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
         let is_kept = reported && !tried && self.recorded.is_written();
         let waited = now.since(closing.since);
         let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);

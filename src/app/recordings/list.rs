@@ -19,8 +19,6 @@ pub const SESSIONS_MAX: usize = 2000;
 pub(crate) const OWN_MAX: usize = 100;
 /// A file that is being recorded is read again once it grew by this part of itself.
 const GROWS_BY: u64 = 10;
-/// Folders of days that are looked into.
-const FOLDERS_MAX: usize = 4000;
 
 /// A recording made since the program began.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -107,7 +105,7 @@ pub(crate) fn look(
 }
 
 fn find(folder: &Path, known: &[RecordingItem]) -> Looked {
-    let mut recordings = parts::recordings(files(folder));
+    let mut recordings = parts::recordings(parts::files(folder));
     recordings.sort_by(|one, two| two.cmp(one));
     recordings.truncate(SESSIONS_MAX);
     let (mut items, mut unread) = (Vec::new(), Vec::new());
@@ -159,26 +157,4 @@ fn is_ended(path: &Path) -> io::Result<bool> {
     file.seek(SeekFrom::End(-8))?;
     file.read_exact(&mut last)?;
     Ok(first == last)
-}
-
-/// The MCAP files in a folder and in the folders in it.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let entries = |folder: &Path| {
-        let read = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        read.map(|entry| entry.path())
-    };
-    let (mut files, mut folders) = (Vec::new(), Vec::new());
-    for path in entries(folder) {
-        if path.is_dir() {
-            folders.push(path)
-        } else {
-            files.push(path)
-        }
-    }
-    folders.sort();
-    for folder in folders.iter().rev().take(FOLDERS_MAX) {
-        files.extend(entries(folder));
-    }
-    files.retain(|path| path.extension().is_some_and(|end| end == "mcap"));
-    files
 }

@@ -391,7 +391,7 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
 fn is_busy(state: &State) -> bool {
     let is_busy = |hand: &Hand| {
         let asks = hand.procedures.card.is_some() || hand.params.question.is_some();
-        hand.series.is_some() || asks
+        hand.runs_series() || asks
     };
     state.hands.iter().any(is_busy) || state.exhibit.is_some()
 }

@@ -1,56 +1,137 @@
-//! A check-up as one HTML page, with nothing from elsewhere. Writes no file itself.
+//! What a check-up came to, and its page: one HTML file with nothing from elsewhere. Writes no file itself.
+
+mod json;
+pub mod line;
 
 use crate::checkup::check::Check;
 use crate::checkup::subject::Light;
+use crate::checkup::usage::Usage;
+use crate::hand::Dof;
+use crate::store::calendar::day;
+use crate::trials::Abort;
 use askama::Template;
+use std::time::Duration;
 
-/// What a report begins with.
-#[derive(Debug, Clone)]
-pub struct ReportHead {
+/// The file of the page in the folder of a check-up, of its figures, and of its recording.
+pub const PAGE_FILE: &str = "report.html";
+pub const JSON_FILE: &str = "check.json";
+pub const RECORDING_FILE: &str = "check.mcap";
+
+/// Whether a check-up is kept for the next ones to be compared with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Keeping {
+    /// It is kept, after so many others.
+    Kept { earlier: usize },
+    /// The built-in hand is another each time.
+    BuiltIn,
+    /// It ended early.
+    Partial,
+    /// It would be the first, the birth record, and this joint did not go through its stroke: something may stand in the hand.
+    NotAsFirst { dof: Dof },
+    /// What the system says.
+    Failed { error: String },
+}
+
+/// What a check-up came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckupReport {
     /// The hand, as an endpoint.
     pub hand: String,
     pub simulated: bool,
     /// When, universal time.
     pub at: String,
-    /// Why it is partial, if it is.
-    pub aborted: Option<String>,
+    /// Why it is partial, if it is, and in English with what became of the stop.
+    pub aborted: Option<Abort>,
+    pub aborted_words: Option<String>,
     /// How many check-ups of this hand were kept before.
     pub earlier: usize,
-    /// How many figures are fine, and how many not.
-    pub summary: String,
+    pub checks: Vec<Check>,
+    /// Joints that were not moved, with their zeros, g: they could not have been stopped gently.
+    pub left_alone: Vec<(Dof, f64)>,
+    pub keeping: Keeping,
+    /// How much the hand was used, as far as there are recordings of it.
+    pub usage: Option<Usage>,
+    /// Whether what was read and written is recorded beside it.
+    pub recorded: bool,
 }
 
 #[derive(Template)]
 #[template(path = "report.html", config = "src/checkup/report/askama.toml")]
 struct ReportPage<'a> {
-    head: &'a ReportHead,
-    checks: &'a [Check],
+    report: &'a CheckupReport,
 }
 
-/// The page.
-///
-/// # Errors
-/// What the template says.
-pub fn html(head: &ReportHead, checks: &[Check]) -> Result<String, askama::Error> {
-    ReportPage { head, checks }.render()
+impl CheckupReport {
+    /// The page.
+    ///
+    /// # Errors
+    /// What the template says.
+    pub fn html(&self) -> Result<String, askama::Error> {
+        ReportPage { report: self }.render()
+    }
+
+    /// How many figures are of a light.
+    pub fn count(&self, light: Light) -> usize {
+        self.checks.iter().filter(|own| own.light == light).count()
+    }
+
+    /// How many are of each light, in words.
+    pub fn summary(&self) -> String {
+        let [fine, watch, act, unknown] =
+            [Light::Fine, Light::Watch, Light::Act, Light::Unknown].map(|light| self.count(light));
+        let all = self.checks.len();
+        format!(
+            "{all} figures: {fine} as they should be, {watch} to watch, {act} to act on, {unknown} not measured"
+        )
+    }
+
+    /// What is to be known of it besides its figures, in sentences.
+    pub fn remarks(&self) -> Vec<String> {
+        let left_alone = self.left_alone.iter().map(|(dof, zero_g)| {
+            format!(
+                "{} was left alone: its sensor says {zero_g:.0} g of nothing, so that it could not be stopped gently; calibrate the force sensors with an empty hand (Hand > Device), and check again",
+                dof.name()
+            )
+        });
+        left_alone.chain(self.keeping.words()).collect()
+    }
+
+    /// How much the hand was used, in a sentence.
+    pub fn usage_words(&self) -> String {
+        let Some(usage) = &self.usage else {
+            return "Hours in use, closes and stalls: not known, there are no recordings of this hand".into();
+        };
+        let [read, moved] = usage.hours();
+        let (dof, closes) = usage.most_closed();
+        format!(
+            "Recorded since {}: {read} hours, {moved} of them moving; {} closed most, {closes} times; {} stalls ({} recordings)",
+            day(Duration::from_secs(usage.since_1970_s)),
+            dof.name(),
+            usage.stalls,
+            usage.recordings,
+        )
+    }
 }
 
-/// How many are of each light, in words.
-pub fn summary(checks: &[Check]) -> String {
-    let number = |light| checks.iter().filter(|own| own.light == light).count();
-    let [fine, watch, act, unknown] =
-        [Light::Fine, Light::Watch, Light::Act, Light::Unknown].map(number);
-    let all = checks.len();
-    format!(
-        "{all} figures: {fine} as they should be, {watch} to watch, {act} to act on, {unknown} not measured"
-    )
+impl Keeping {
+    /// Why it is not kept, if that is news.
+    fn words(&self) -> Option<String> {
+        match self {
+            Self::Kept { .. } | Self::BuiltIn | Self::Partial => None,
+            Self::NotAsFirst { dof } => Some(format!(
+                "It is not kept as this hand's first: {} did not go through its stroke; take out what is in the hand, and check again",
+                dof.name()
+            )),
+            Self::Failed { error } => Some(format!("It is not kept: {error}")),
+        }
+    }
 }
 
 impl<'a> ReportPage<'a> {
     /// The checks of each joint, fingertip and the hand, in their order.
     fn groups(&self) -> Vec<(&'static str, &'a [Check])> {
         let same = |a: &Check, b: &Check| a.measured.of == b.measured.of;
-        let groups = self.checks.chunk_by(same);
+        let groups = self.report.checks.chunk_by(same);
         let named = groups.filter_map(|own| Some((own.first()?.measured.of.name(), own)));
         named.collect()
     }
@@ -60,40 +141,104 @@ impl<'a> ReportPage<'a> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
+    use crate::checkup::check::checks;
+    use crate::checkup::kept::Kept;
     use crate::checkup::measure::Measured;
     use crate::checkup::subject::{Part, Subject};
-    use crate::hand::Dof;
+    use crate::hand::PerDof;
+
+    fn report(values: [Option<f64>; 3], earlier: &[Kept]) -> CheckupReport {
+        let of = Part::Joint(Dof::Index);
+        let [backlash, dead, open] = values;
+        let measured = vec![
+            Measured::new(Subject::Backlash, of, backlash),
+            Measured::new(Subject::DeadTime, of, dead),
+            Measured::new(Subject::OpenEnd, of, open),
+        ];
+        CheckupReport {
+            hand: "tcp:<b>".into(),
+            simulated: false,
+            at: "2026-11-25T10:00:00Z".into(),
+            aborted: None,
+            aborted_words: None,
+            earlier: earlier.len(),
+            checks: checks(measured, "2026-11-25T10:00:00Z", earlier),
+            left_alone: Vec::new(),
+            keeping: Keeping::Partial,
+            usage: None,
+            recorded: false,
+        }
+    }
+
+    fn kept(day: u32, backlash: f64) -> Kept {
+        let of = Part::Joint(Dof::Index);
+        Kept {
+            at: format!("2026-11-{day:02}T10:00:00Z"),
+            hand: "tcp:<b>".into(),
+            figures: vec![Measured::new(Subject::Backlash, of, Some(backlash))],
+            report: None,
+        }
+    }
 
     #[test]
     fn the_page_says_what_is_worn_what_is_not_known_and_that_it_is_partial() {
-        let of = Part::Joint(Dof::Index);
-        let measured = |what, value| Measured { what, of, value };
-        let checks = [
-            measured(Subject::Backlash, Some(48.0)),
-            measured(Subject::DeadTime, None),
-            measured(Subject::OpenEnd, Some(1000.0)),
-        ];
-        let first = [measured(Subject::Backlash, Some(4.0))];
-        let checks = checks.map(|own| Check::of(own, &first, &[]));
-        let head = ReportHead {
-            hand: "tcp:<b>".into(),
-            simulated: false,
-            at: "2026-11-25 10:00:00".into(),
-            aborted: Some("ended by a person".into()),
-            earlier: 1,
-            summary: summary(&checks),
+        let report = CheckupReport {
+            aborted: Some(Abort::Person),
+            aborted_words: Some("ended by a person".into()),
+            left_alone: vec![(Dof::Ring, -600.0)],
+            keeping: Keeping::NotAsFirst { dof: Dof::Index },
+            ..report([Some(48.0), None, Some(1000.0)], &[kept(1, 4.0)])
         };
-        let page = html(&head, &checks).unwrap();
+        let page = report.html().unwrap();
         for wanted in [
-            "<td class=\"act\">48 counts</td><td>-8 to 14</td><td>4 counts</td><td>-</td><td>look at the linkage",
+            "<td class=\"act\">48 counts</td><td>-8 to 14</td><td>4 counts</td><td>4 counts</td>",
+            "<td>look at the linkage",
             "<td class=\"unknown\">-</td>",
-            "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td><td></td>",
+            "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td>",
             "Partial: it ended early, ended by a person",
             "3 figures: 1 as they should be, 0 to watch, 1 to act on, 1 not measured",
             "<h2>index</h2>",
+            "ring was left alone: its sensor says -600 g of nothing",
+            "not kept as this hand&#39;s first: index did not go through its stroke",
+            "there are no recordings of this hand",
         ] {
             assert!(page.contains(wanted), "{wanted}\n{page}");
         }
         assert!(!page.contains("<b>"));
+    }
+
+    #[test]
+    fn a_figure_that_drifts_is_drawn_over_the_days_and_told_with_them() {
+        let earlier: Vec<Kept> = (1..=5_u32)
+            .map(|day| kept(day, f64::from(day) + 1.0))
+            .collect();
+        let usage = Usage {
+            recordings: 3,
+            since_1970_s: 1_795_219_200,
+            read_s: 7200,
+            moved_s: 1800,
+            closes: PerDof::from_fn(|dof| if dof == Dof::Middle { 40 } else { 3 }),
+            stalls: 2,
+        };
+        let report = CheckupReport {
+            usage: Some(usage),
+            ..report([Some(7.0), None, None], &earlier)
+        };
+        let page = report.html().unwrap();
+        for wanted in [
+            "<polyline points=\"",
+            "<title>2026-11-01: 2 counts\n",
+            "2026-11-25: 7 counts</title>",
+            "drifts from 2 counts to 7 counts over 6 check-ups since 2026-11-01",
+            "Recorded since 2026-11-21: 2.0 hours, 0.5 of them moving; middle closed most, 40 times; 2 stalls (3 recordings)",
+        ] {
+            assert!(page.contains(wanted), "{wanted}\n{page}");
+        }
+        let json = report.json();
+        let check = &json["check"]["checks"][0];
+        assert_eq!(check["past"].as_array().unwrap().len(), 6);
+        assert_eq!(check["drift"]["since"], "2026-11-01");
+        assert_eq!(json["check"]["usage"]["stalls"], 2);
+        assert_eq!(json["check"]["usage"]["closes"]["middle"], 40);
     }
 }

@@ -5,44 +5,41 @@ mod output;
 
 pub(crate) use args::CheckArgs;
 
+use crate::app::env::day_folder;
 use crate::app::files::settings_file;
-use crate::checkup::check::Check;
-use crate::checkup::kept::{self, Kept};
-use crate::checkup::report::{ReportHead, html, summary};
 use crate::checkup::subject::Light;
-use crate::checkup::{Checkup, Measured};
-use crate::cli::out::{Out, end, say};
+use crate::checkup::{Checkup, CheckupPlan, expected};
+use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
-use crate::cli::trial::output::stop_words;
-use crate::hand::{Force, PerDof, Speed};
-use crate::link::ArmRequest;
-use crate::store;
-use crate::store::calendar::{since_1970, stamp};
+use crate::store::{self, on_thread};
+use crate::tasks::checkup::{CheckupFiles, EndedCheckup, arm_limits};
 use anyhow::{Context as _, bail};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Runs the check-up. Fails if it ended early, or if something is to be done.
 pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
+    let plan = CheckupPlan { press: args.press };
     if !args.arm {
         bail!(
-            "nothing was moved: a check-up bends and opens each joint of the hand at {} for about 75 seconds; when the hand is empty and nothing is in its way, add --arm",
-            args.hand
+            "nothing was moved: a check-up bends and opens each joint of the hand at {} for about {} seconds; when the hand is empty and nothing is in its way, add --arm",
+            args.hand,
+            expected(CheckupPlan::default()).as_secs()
         );
     }
-    let file = file(args)?;
-    let earlier = earlier(file.as_deref())?;
-    if let Some(folder) = &args.out {
-        store::create_empty_folder(folder)
-            .with_context(|| format!("cannot store the report in {}", folder.display()))?;
-    }
-    let limits = ArmRequest {
-        speed: PerDof::splat(Speed::GENTLE),
-        force: PerDof::splat(Force::GENTLE),
+    let files = files(args)?;
+    prepare(&files)?;
+    let mut hand = ArmedHand::ready(&args.hand, arm_limits()).await?;
+    let recording = match files.record(hand.link.observe(), hand.clock) {
+        Ok(recording) => recording,
+        Err(error) => {
+            hand.disarm().await;
+            bail!("the check-up cannot be recorded: {error}");
+        }
     };
-    let mut hand = ArmedHand::ready(&args.hand, limits).await?;
     let mut told = None;
-    let (checkup, ended) = hand
-        .run(Checkup::start(hand.epoch), |checkup: &mut Checkup| {
+    let checkup = Checkup::start(hand.epoch, plan);
+    let (checkup, report) = hand
+        .run(checkup, |checkup: &mut Checkup| {
             let view = checkup.view();
             if told.replace(view) != Some(view) && !args.json {
                 output::progress(view);
@@ -50,86 +47,58 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
             true
         })
         .await;
-    let figures = |nth: Option<&Kept>| nth.map(|kept| kept.figures.clone()).unwrap_or_default();
-    let (first, last) = (figures(earlier.first()), figures(earlier.last()));
-    let checks = checkup.checks(&first, &last);
-    let aborted = ended
-        .aborted
-        .map(|why| format!("{why}{}", stop_words(ended.stop)));
-    let head = ReportHead {
-        hand: args.hand.to_string(),
-        simulated: args.hand.is_sim(),
-        at: stamp(since_1970()),
-        aborted,
-        earlier: earlier.len(),
-        summary: summary(&checks),
+    let ended = EndedCheckup {
+        checkup,
+        report,
+        recording,
     };
-    if let (Some(file), None) = (&file, &head.aborted) {
-        keep(file, &head, checkup.measured());
-    }
-    out.result(
-        args.json,
-        &output::json(&head, &checks),
-        output::lines(&head, &checks),
-    )?;
+    let done = on_thread(move || Ok(files.conclude(ended))).await?;
+    let report = done.report;
+    out.result(args.json, &report.json(), output::lines(&report))?;
     out.flush()?;
-    if let Some(folder) = &args.out {
-        write(folder, &head, &checks)?;
+    if let Some(Err(error)) = done.written {
+        bail!("the report cannot be written: {error}");
     }
-    match &head.aborted {
+    match &report.aborted_words {
         Some(why) => bail!("the check-up ended early, its report is partial: {why}"),
-        None => end(checks.iter().all(|check| check.light != Light::Act)),
+        None => end(report.count(Light::Act) == 0),
     }
 }
 
-/// Where the check-ups of this hand are kept; nowhere for the built-in one, which is another each time.
-fn file(args: &CheckArgs) -> anyhow::Result<Option<PathBuf>> {
-    if args.hand.is_sim() {
-        return Ok(None);
-    }
-    let beside = || settings_file::default_path().map(|path| path.with_file_name("checks"));
+fn files(args: &CheckArgs) -> anyhow::Result<CheckupFiles> {
+    let settings = settings_file::default_path();
+    let beside = || settings.as_ref().map(|path| path.with_file_name("checks"));
     let folder = args.folder.clone().or_else(beside);
     let folder = folder.context("no home folder for check-ups: name one with --folder")?;
-    Ok(Some(kept::file_of(&folder, &args.hand)))
+    let as_in_window = || {
+        let settings = settings_file::load(settings.as_deref()?).settings;
+        settings.recordings_folder(day_folder::documents().as_deref())
+    };
+    Ok(CheckupFiles {
+        hand: args.hand.clone(),
+        kept: CheckupFiles::kept_in(&folder, &args.hand),
+        report: args.out.clone(),
+        recordings: args.recordings.clone().or_else(as_in_window),
+    })
 }
 
-/// The earlier check-ups in a file, whose folder is made: nothing moves where a check-up could not be kept.
-fn earlier(file: Option<&Path>) -> anyhow::Result<Vec<Kept>> {
-    let Some(file) = file else {
-        return Ok(Vec::new());
-    };
-    let earlier = kept::read(file).with_context(|| {
-        let name = file.display();
+/// Nothing moves where a check-up could not be kept or its report not be written.
+fn prepare(files: &CheckupFiles) -> anyhow::Result<()> {
+    files.earlier().with_context(|| {
+        let name = name(files.kept.as_deref());
         format!("the earlier check-ups of this hand in {name} cannot be read; move the file away, or name another folder with --folder")
     })?;
-    let folder = file.parent().unwrap_or(file);
-    store::create_folder(folder).with_context(|| {
-        let name = folder.display();
+    files.prepare().with_context(|| {
+        let name = name(files.kept.as_deref().and_then(Path::parent));
         format!("check-ups cannot be kept in {name}; name another folder with --folder")
     })?;
-    Ok(earlier)
-}
-
-/// Keeps a check-up that was done to its end. One that cannot be kept is told all the same.
-fn keep(file: &Path, head: &ReportHead, figures: Vec<Measured>) {
-    let own = Kept {
-        at: head.at.clone(),
-        hand: head.hand.clone(),
-        figures,
-    };
-    if let Err(error) = kept::add(file, own) {
-        let name = file.display();
-        say(&format!("this check-up is not kept in {name}: {error}"));
-    }
-}
-
-fn write(folder: &Path, head: &ReportHead, checks: &[Check]) -> anyhow::Result<()> {
-    let page = html(head, checks)?;
-    let json = format!("{}\n", output::json(head, checks));
-    for (name, text) in [("report.html", page), ("check.json", json)] {
-        let path = folder.join(name);
-        store::replace(&path, text.as_bytes())
-            .with_context(|| format!("cannot write {}", path.display()))?;
+    if let Some(folder) = &files.report {
+        store::create_empty_folder(folder)
+            .with_context(|| format!("cannot store the report in {}", folder.display()))?;
     }
     Ok(())
+}
+
+fn name(path: Option<&Path>) -> String {
+    path.unwrap_or(Path::new("")).display().to_string()
 }

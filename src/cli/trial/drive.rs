@@ -5,13 +5,12 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
-use crate::cli::trial::output;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{ArmEpoch, HandSample};
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
-use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop};
+use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop, stop_words};
 use crate::transport::Endpoint;
 use crate::trials::series::Series;
 use crate::trials::{Abort, TrialPlan, TrialSeries};
@@ -70,7 +69,7 @@ impl ArmedHand {
             let stop = series::hold(&link, &mut records).await;
             bail!(
                 "ended by a person before anything moved{}",
-                output::stop_words(Some(stop))
+                stop_words(Some(stop))
             );
         };
         Ok(Self {

@@ -8,6 +8,7 @@ pub(crate) mod results;
 pub(crate) use args::TrialArgs;
 
 use crate::cli::out::{Out, WrongUsage};
+use crate::tasks::series::stop_words;
 use anyhow::bail;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.
@@ -26,7 +27,7 @@ pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     out.result(args.json, &outcome.json(args), outcome.lines())?;
     out.flush()?;
     if let Some(why) = outcome.aborted_words() {
-        bail!("{why}{}", output::stop_words(outcome.report.stop));
+        bail!("{why}{}", stop_words(outcome.report.stop));
     }
     if let Some(why) = outcome.dead_words() {
         bail!(why);

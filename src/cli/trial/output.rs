@@ -1,6 +1,5 @@
 //! Trials and series as JSON, a contract with scripts, and as lines of text. Pure.
 
-use crate::cli::session::STOP_LOST;
 use crate::cli::trial::args::TrialArgs;
 use crate::hand::Dof;
 use crate::tasks::series::{SeriesReport, Stop};
@@ -117,19 +116,6 @@ pub(crate) fn trial_json(trial: &TrialSummary) -> Value {
         line.insert("joints".into(), joints);
     }
     json!({"trial": line})
-}
-
-/// What feedback showed after a stop, to follow a sentence.
-pub(crate) fn stop_words(stop: Option<Stop>) -> String {
-    match stop {
-        None => String::new(),
-        Some(Stop::Confirmed { after }) => {
-            let after_s = after.as_secs_f64();
-            format!("; stopped: feedback shows rest after {after_s:.2} s")
-        }
-        Some(Stop::NotConfirmed) => "; the stop is not confirmed by feedback".into(),
-        Some(Stop::LinkLost) => format!("; {STOP_LOST}"),
-    }
 }
 
 /// The joints that close, in words.

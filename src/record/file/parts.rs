@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// Files of one folder that are looked at.
 const FILES_MAX: usize = 4096;
+/// Folders of days that are looked into.
+const FOLDERS_MAX: usize = 4000;
 /// What a file says of itself stands in so many bytes at its beginning, unless another program rewrote it.
 const SAID_WITHIN: u64 = 4096;
 
@@ -69,6 +71,33 @@ pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
     let together = all.into_values();
     alone.extend(together.map(|files| files.into_values().collect()));
     alone
+}
+
+/// The hand that a file says it is of, as an endpoint.
+pub fn hand(path: &Path) -> Option<String> {
+    said(path).map(|opening| opening.hand)
+}
+
+/// The MCAP files in a folder and in the folders in it.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = |folder: &Path| {
+        let read = fs::read_dir(folder).into_iter().flatten().flatten();
+        read.map(|entry| entry.path())
+    };
+    let (mut files, mut folders) = (Vec::new(), Vec::new());
+    for path in entries(folder) {
+        if path.is_dir() {
+            folders.push(path);
+        } else {
+            files.push(path);
+        }
+    }
+    folders.sort();
+    for folder in folders.iter().rev().take(FOLDERS_MAX) {
+        files.extend(entries(folder));
+    }
+    files.retain(|path| path.extension().is_some_and(|end| end == "mcap"));
+    files
 }
 
 /// What a file says of itself, as far as that is seen without opening it as a recording.

@@ -63,7 +63,7 @@ impl ConnectionForm {
             self.filled_from = Some(endpoint.clone());
             self.typed = shortest(endpoint, ports);
         }
-        let may_look = pane.recorded().is_none() && pane.state.hand().series.is_none();
+        let may_look = pane.recorded().is_none() && !pane.state.hand().runs_series();
         if may_look && !std::mem::replace(&mut self.has_looked, true) && ports.is_empty() {
             pane.actions.push(Action::FindPorts);
         }

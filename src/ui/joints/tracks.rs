@@ -211,7 +211,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Each trial of a series sets its own force and speed: what the user set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
-    let runs = pane.state.hand().series.is_some();
+    let runs = pane.state.hand().runs_series();
     runs.then(|| pane.look.say(main::SERIES_RUNS))
 }
 

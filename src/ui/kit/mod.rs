@@ -10,6 +10,7 @@ mod field;
 mod pane;
 pub(crate) mod path_field;
 pub(crate) mod reorder;
+mod start;
 
 pub(crate) use crate::ui::style::{Look, format};
 pub(crate) use card::{ButtonRole, Card, CardView, Choice};
@@ -21,3 +22,4 @@ pub(crate) use controls::{
 pub(crate) use drive_words::DriveWords;
 pub(crate) use field::{NumberField, TextField};
 pub(crate) use pane::{Pane, Typing, ViewRequest};
+pub(crate) use start::{StartButton, StartWish, start_refused};

@@ -69,7 +69,7 @@ impl Pane<'_> {
         if let Some(recorded) = self.recorded() {
             return Some(recorded);
         }
-        if self.state.hand().series.is_some() {
+        if self.state.hand().runs_series() {
             return Some(self.look.say(main::SERIES_RUNS));
         }
         if self.state.hand().connection.outside_owner().is_some() {

@@ -81,13 +81,14 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, device, exhibit, inputs, main, notices, panels, poses, recordings, scan, traffic,
-        tune, window,
+        cards, checkup, device, exhibit, inputs, main, notices, panels, poses, recordings, scan,
+        traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
         let lists = [
             cards::ALL,
+            checkup::ALL,
             device::ALL,
             exhibit::ALL,
             tune::search::ALL,

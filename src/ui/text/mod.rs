@@ -1,6 +1,7 @@
 //! Every sentence of the window, in English and Chinese. No layout, no numbers.
 
 pub(crate) mod cards;
+pub(crate) mod checkup;
 pub(crate) mod device;
 pub(crate) mod errors;
 pub(crate) mod exhibit;

@@ -10,7 +10,9 @@ use crate::record::file::{OpenError, RecorderNotice};
 use crate::record::quirk_sheet::FactDifference;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::style::{Look, format};
-use crate::ui::text::{errors, inputs, main, panels, poses, recordings, scan, tune, window, words};
+use crate::ui::text::{
+    checkup, errors, inputs, main, panels, poses, recordings, scan, tune, window, words,
+};
 use std::path::Path;
 
 texts! {
@@ -238,6 +240,14 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
+        },
+        NoticeKind::CheckupEnded {
+            act,
+            watch,
+            aborted,
+        } => match aborted {
+            None => look.fill(checkup::ENDED, &[act, watch]),
+            Some(why) => look.fill(checkup::ENDED_EARLY, &[&tune::abort(look, *why)]),
         },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
         // The words of the graphics driver help whoever mends it.

@@ -90,6 +90,7 @@ texts! {
     DEVICE_WORDS: "flash save default parameter speed force id baud reset calibrate backup", "闪存 保存 默认 参数 速度 力 复位 校准 备份";
     CONNECTION_WORDS: "connect disconnect address port scan hand add", "连接 断开 地址 端口 扫描 添加";
     INPUTS_WORDS: "gateway stream program dds foxglove gamepad follow exhibition", "网关 数据流 程序 手柄 跟随 展示";
+    CHECKUP_WORDS: "check health wear backlash friction worn report trend hours stall fingertip press", "检查 健康 磨损 间隙 摩擦 报告 趋势 小时 堵转 指尖 按压";
     TRAFFIC_WORDS: "frames bytes wire modbus export", "报文 字节 总线 导出";
     RECORDINGS_WORDS: "export csv save file replay import", "导出 保存 文件 回放 导入";
     HAND_WORDS: "connect disconnect address port scan flash save default parameter traffic", "连接 断开 地址 端口 扫描 闪存 保存 默认 参数 报文";

@@ -12,7 +12,6 @@ pub(crate) mod compare_tests;
 pub(crate) mod hand_map;
 pub(crate) mod promotion;
 pub(crate) mod search_form;
-pub(crate) mod start;
 pub(crate) mod tune;
 pub(crate) mod tune_form;
 pub(crate) mod tune_live;

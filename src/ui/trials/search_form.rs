@@ -20,7 +20,7 @@ use std::ops::RangeInclusive;
 /// Draws it over all of `ui`.
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.state.hand();
-    let runs = hand.series.is_some() || hand.series_asked.is_some();
+    let runs = hand.runs_series() || hand.series_asked.is_some();
     ScrollArea::vertical()
         .id_salt("search")
         .auto_shrink(false)

@@ -1,15 +1,17 @@
 //! The view of grasp trials: the plan at the left, what came and comes of it at the right. Holds text in progress only.
 
-use crate::app::trials::SeriesKind;
+use crate::app::action::Action;
+use crate::app::trials::{SeriesKind, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
-use crate::ui::kit::{self, Button, Pane, ViewRequest, Weight, format};
+use crate::ui::kit::{
+    self, Button, Pane, StartButton, StartWish, ViewRequest, Weight, format, start_refused,
+};
 use crate::ui::text::tune::search;
 use crate::ui::text::{Text, tune};
 use crate::ui::theme::{self, Icon};
 use crate::ui::trials::compare::ResultsView;
 use crate::ui::trials::search_form;
-use crate::ui::trials::start::StartButton;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::view::View;
 use egui::{Frame, Panel, Ui};
@@ -49,7 +51,7 @@ impl TuneView {
                     if self.kind == SeriesKind::Grid {
                         meaning_ui(ui, pane);
                     }
-                    self.start.ui(ui, pane, self.kind);
+                    self.start.ui(ui, pane, start_wish(pane, self.kind));
                 });
                 match self.kind {
                     SeriesKind::Search => search_form::ui(ui, pane),
@@ -65,6 +67,21 @@ impl TuneView {
         self.results.ui(ui, pane, |ui, pane| {
             fold_ui(ui, pane, (theme::TO_RIGHT, tune::SHOW_PLAN), View::Tune);
         });
+    }
+}
+
+/// What the button begins.
+fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
+    let wanted = pane.state.trials.planned(kind);
+    let unsound = (!wanted.is_sound()).then_some(tune::PLAN_WRONG);
+    let refusal = pane.state.hand().series_refusal(&wanted.trials());
+    StartWish {
+        refused: start_refused(pane, unsound, refusal),
+        start: (tune::START_BUTTON, Action::Trial(TrialAction::Start(kind))),
+        arm_and_start: (
+            tune::ARM_AND_START,
+            Action::Trial(TrialAction::ArmAndStart(kind)),
+        ),
     }
 }
 

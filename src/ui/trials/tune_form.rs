@@ -116,7 +116,7 @@ impl TuneForm {
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
         let hand = pane.state.hand();
-        let runs = hand.series.is_some() || hand.series_asked.is_some();
+        let runs = hand.runs_series() || hand.series_asked.is_some();
         let mut pass = Pass {
             wrong,
             pane,

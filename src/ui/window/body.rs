@@ -3,6 +3,7 @@
 use crate::app::layout::WindowRoom;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
+use crate::ui::checkup::CheckupView;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::FaultsView;
 use crate::ui::hands::beside::BesideView;
@@ -71,6 +72,7 @@ pub(super) struct HandViews {
     pub(super) faults: FaultsView,
     pub(super) status: StatusLine,
     pub(super) device: DeviceView,
+    pub(super) checkup: CheckupView,
     pub(super) connection: ConnectionForm,
     pub(super) inputs: InputsView,
     pub(super) touch: TouchView,
@@ -181,6 +183,7 @@ impl Body {
             View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.tune.results_ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
+            View::Checkup => self.own.checkup.ui(ui, pane),
             View::Connection => self.own.connection.ui(ui, pane),
             View::Inputs => self.own.inputs.ui(ui, pane),
             View::Traffic => self.own.traffic.ui(ui, pane),

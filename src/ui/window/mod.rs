@@ -27,7 +27,7 @@ mod stop_first;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
-use crate::app::hands::rests;
+use crate::app::hands::{Hand, rests};
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;
@@ -129,7 +129,7 @@ impl Window {
         }
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
-        let mut wishes = if state.hands.iter().any(|hand| hand.series.is_some()) {
+        let mut wishes = if state.hands.iter().any(Hand::runs_series) {
             keys::take_any(ui)
         } else {
             keys::take(ui, escape)

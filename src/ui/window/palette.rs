@@ -255,6 +255,7 @@ const fn view_words(view: View) -> Text {
         View::Faults => window::FAULTS_WORDS,
         View::Poses => window::POSES_WORDS,
         View::Device => window::DEVICE_WORDS,
+        View::Checkup => window::CHECKUP_WORDS,
         View::Connection => window::CONNECTION_WORDS,
         View::Inputs => window::INPUTS_WORDS,
         View::Traffic => window::TRAFFIC_WORDS,

@@ -15,7 +15,7 @@ use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, errors, main, notices, panels, poses, tune, window, words};
+use crate::ui::text::{Text, checkup, errors, main, notices, panels, poses, tune, window, words};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{Color32, Frame, Key, TextEdit, Ui, vec2};
@@ -256,6 +256,10 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
         Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
             let words = format!("{} {number} / {total}", look.say(tune::COLUMN_TRIAL));
+            (words, Some(Action::Stop))
+        }
+        Mover::Checkup(step, total) => {
+            let words = format!("{} {step} / {total}", look.say(checkup::TITLE));
             (words, Some(Action::Stop))
         }
         Mover::Playing(entry, step) => {

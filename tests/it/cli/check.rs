@@ -3,6 +3,7 @@
 use crate::cli::refuses_unarmed;
 use crate::setup::process::{run, sim_on_link, sim_on_tcp, start};
 use handscope::checkup::kept::file_of;
+use handscope::record::file::RecordingFile;
 use nix::sys::signal::Signal;
 
 #[test]
@@ -56,6 +57,8 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
         kept.to_str().unwrap(),
         "--out",
         out.to_str().unwrap(),
+        "--recordings",
+        folder.path().to_str().unwrap(),
     ]);
     while !checks.complaint().contains("3 of 29") {}
     checks.signal(Signal::SIGINT);
@@ -68,6 +71,11 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
     let json = std::fs::read_to_string(out.join("check.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["check"]["complete"], false);
+    assert_eq!(json["check"]["kept"], false);
+    assert!(json["check"]["usage"].is_null(), "there are no recordings");
+    let recorded = RecordingFile::open(&out.join("check.mcap")).unwrap();
+    assert!(recorded.is_closed() && recorded.overview().counts.writes > 0);
+    assert_eq!(recorded.opening().hand, hand);
     let files = std::fs::read_dir(&kept).unwrap().count();
     assert_eq!(files, 0, "nothing partial is kept");
 }

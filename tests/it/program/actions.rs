@@ -4,6 +4,7 @@
 use crate::program::{ANGLE_SET, Bench, shorts};
 use crate::setup::recorded;
 use handscope::app::action::Action;
+use handscope::app::checkup::CheckupAction;
 use handscope::app::effect::Effect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
@@ -18,6 +19,7 @@ use handscope::app::recordings::{RecordingAction, RecordingExport, RecordingForm
 use handscope::app::scan::ScanTarget;
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SeriesKind, SessionId, TrialAction};
+use handscope::checkup::CheckupPlan;
 use handscope::exhibit::run::ExhibitWish;
 use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
@@ -113,6 +115,11 @@ fn trials() -> Vec<TrialAction> {
         TrialAction::Open(Some("/dev/null/none".into())),
         TrialAction::Save(id, None),
     ]
+}
+
+fn checkups() -> [CheckupAction; 2] {
+    let plan = CheckupPlan { press: true };
+    [CheckupAction::Start(plan), CheckupAction::ArmAndStart(plan)]
 }
 
 fn sessions() -> Vec<RecordingAction> {
@@ -261,6 +268,7 @@ fn all(things: Things) -> Vec<Action> {
     all.extend(params().into_iter().map(Action::Param));
     all.extend(procedures().into_iter().map(Action::Procedure));
     all.extend(trials().into_iter().map(Action::Trial));
+    all.extend(checkups().map(Action::Checkup));
     all.extend(sessions().into_iter().map(Action::Recording));
     all.extend(exhibits().into_iter().map(Action::Exhibit));
     all.extend(hands().into_iter().map(Action::Hands));
@@ -284,6 +292,7 @@ fn each_action_there_is_is_tried() {
     check(params());
     check(procedures());
     check(trials());
+    check(checkups());
     check(sessions());
     check(exhibits());
     check(hands());

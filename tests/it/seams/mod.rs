@@ -53,6 +53,7 @@ impl Try {
                 Start::Window(Window::series),
                 Start::Window(Window::armed_series),
                 Start::Window(Window::search),
+                Start::Window(Window::checkup),
             ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],

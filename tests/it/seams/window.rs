@@ -8,6 +8,7 @@ use crate::setup::link::{self, Client};
 use crate::setup::program::{Program, env};
 use crate::setup::time::Time;
 use handscope::app::action::Action;
+use handscope::app::checkup::CheckupAction;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
 use handscope::app::hands::action::HandsAction;
@@ -15,6 +16,7 @@ use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;
 use handscope::app::trials::{SeriesKind, TrialAction};
+use handscope::checkup::CheckupPlan;
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
@@ -172,6 +174,16 @@ impl Window {
         };
         self.act(Action::Trial(TrialAction::Goal(Box::new(goal))));
         self.act(Action::Trial(TrialAction::ArmAndStart(SeriesKind::Search)));
+        self.until("it closes", |window| window.hand.angles()[3] < 980);
+        self
+    }
+
+    /// A check-up by the one button that arms and starts; the index has its turn late.
+    pub(super) fn checkup(mut self) -> Self {
+        let plan = CheckupPlan::default();
+        self.act(Action::Checkup(CheckupAction::ArmAndStart(plan)));
+        // Three joints have their turn before it.
+        self.run(30_000);
         self.until("it closes", |window| window.hand.angles()[3] < 980);
         self
     }

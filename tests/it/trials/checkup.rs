@@ -1,14 +1,21 @@
 //! A check-up on bodies that it does not know: healthy ones, and each kind of wear at the size that it is to be found at.
 
 use crate::trials::virtual_hand::{VirtualHand, object};
-use crate::trials::worn::{JOINT, WEARS, checked, finds, told};
-use handscope::checkup::run::LIMITS;
-use handscope::checkup::{Checkup, Light, Part, Subject};
-use handscope::hand::{ArmEpoch, Dof, Fault};
+use crate::trials::worn::{JOINT, WEARS, checked, finds, started, told};
+use handscope::checkup::check::{checks, stopped_early};
+use handscope::checkup::report::{CheckupReport, Keeping};
+use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
+use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
+use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
+use handscope::tasks::series::SeriesReport;
+use handscope::transport::Endpoint;
 use handscope::trials::Abort;
 use handscope::trials::series::Series;
+
+/// FORCE_SET (manual 2.6.12).
+const FORCE_SET: u16 = 1498;
 
 #[test]
 fn healthy_bodies_are_told_to_be_healthy() {
@@ -18,7 +25,7 @@ fn healthy_bodies_are_told_to_be_healthy() {
         figures += checks.len();
         wrong.extend(told(&checks));
     }
-    assert_eq!(figures, 25 * (6 * 16 + 5 * 2 + 1));
+    assert_eq!(figures, 25 * (6 * 16 + 5 * 3 + 1));
     assert!(wrong.len() * 50 < 25, "{wrong:?}");
 }
 
@@ -53,9 +60,9 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
 }
 
 #[test]
-fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
+fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, _) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, _) = hand.run(started(), |_, _| ());
     assert_eq!(checkup.aborted(), None);
     for entry in hand.hand.journal() {
         let (shorts, _) = entry.bytes.as_chunks::<2>();
@@ -69,18 +76,8 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
             assert!((-1..=most).contains(&raw), "{entry:?}");
         }
     }
-    let block = object(13.0, None);
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &block);
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
-    let Some(Abort::Ceiling { grams, .. }) = checkup.aborted() else {
-        panic!("{:?}", checkup.aborted());
-    };
-    assert!(
-        stopped && grams < 2 * i32::from(LIMITS.ceiling_g),
-        "{grams}"
-    );
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         if checkup.view().joint == Some(Dof::Index) {
             hand.inject_fault(Dof::Index, Fault::OverCurrent);
         }
@@ -96,7 +93,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
             )
     );
     // What was not measured is not known, and is not called good.
-    let checks = checkup.checks(&[], &[]);
+    let checks = checks(checkup.measured(), "", &[]);
     let supply = checks
         .iter()
         .find(|check| check.measured.what == Subject::SlowerTogether);
@@ -106,7 +103,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_or_an_object_ends_it() {
 #[test]
 fn no_joint_moves_while_another_does_not_open() {
     let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |hand, checkup| {
+    let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         let is_bent = hand.true_angles()[Dof::Index] < 500.0;
         if is_bent && checkup.view().joint == Some(Dof::Index) {
             hand.set_dead(Dof::Index, true);
@@ -116,4 +113,232 @@ fn no_joint_moves_while_another_does_not_open() {
     let dof = Dof::Index;
     assert_eq!(checkup.aborted(), Some(Abort::Unreached { dof, target }));
     assert!(stopped && hand.hand.true_angles()[Dof::ThumbBend] > 990.0);
+}
+
+/// The most that a fingertip was pressed with in a check-up of a hand with something in it, and how it ended, g.
+fn pressed(zero_g: f64, stiffness: f64) -> (f64, Checkup, VirtualHand) {
+    let mut body = BodyParams::default();
+    for (_, joint) in body.joints.iter_mut() {
+        joint.force_zero_g = zero_g;
+    }
+    let mut hand = VirtualHand::new(body, 1, &object(stiffness, None));
+    let mut most = 0.0_f64;
+    let (checkup, _) = hand.run(started(), |hand, _| {
+        let loads = hand.true_loads();
+        most = loads.iter().map(|(_, grams)| *grams).fold(most, f64::max);
+    });
+    (most, checkup, hand)
+}
+
+#[test]
+fn what_stands_in_the_hand_ends_it_at_once_whatever_the_sensors_say_of_nothing() {
+    for zero_g in [-170.0, -50.0, 0.0, 240.0, 400.0] {
+        for stiffness in [0.3, 1.0, 3.0] {
+            let (most, checkup, hand) = pressed(zero_g, stiffness);
+            // What is too soft to be felt stops a joint early all the same.
+            let why = checkup.aborted();
+            let said = matches!(why, Some(Abort::NotEmpty { .. } | Abort::Ceiling { .. }));
+            let all = checks(checkup.measured(), "", &[]);
+            let early = stopped_early(&all).is_some();
+            assert!(said || early, "{zero_g} {stiffness}: {why:?}");
+            assert!(said || zero_g < -100.0, "{zero_g} {stiffness}");
+            assert!(most <= 300.0, "{zero_g} {stiffness}: {most}");
+            let highest = forces_written(&hand).into_iter().max();
+            let limit = (zero_g + 165.0).clamp(20.0, 150.0);
+            assert!(
+                f64::from(highest.unwrap()) <= limit,
+                "{zero_g}: {highest:?}"
+            );
+        }
+    }
+}
+
+/// The force thresholds that were sent for closing: for the little finger, which closes first.
+fn forces_written(hand: &VirtualHand) -> Vec<i16> {
+    let journal = hand.hand.journal().iter();
+    let forces = journal.filter(|own| (1498..1510).contains(&own.address));
+    let all = forces.map(|own| {
+        let (shorts, _) = own.bytes.as_chunks::<2>();
+        let shorts = shorts.iter().map(|short| i16::from_le_bytes(*short));
+        shorts.collect::<Vec<_>>()
+    });
+    // The first write is for opening from wherever the joints are.
+    all.skip(1).flatten().collect()
+}
+
+#[test]
+fn a_drive_that_counts_its_zero_gets_its_threshold_above_that_once_it_does_not_begin() {
+    let mut body = BodyParams::default();
+    body.joints[JOINT].force_zero_g = 200.0;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let (checkup, stopped) = hand.run(started(), |hand, _| {
+        let at = FORCE_SET + 2 * u16::try_from(JOINT.index()).unwrap();
+        let set = hand.journal().iter().rev().find_map(|own| {
+            let from = usize::from(at.checked_sub(own.address)?);
+            let bytes = own.bytes.get(from..from + 2)?;
+            let set = i16::from_le_bytes([bytes[0], bytes[1]]);
+            (own.address >= FORCE_SET && set >= 0).then_some(set)
+        });
+        hand.set_dead(JOINT, set.is_some_and(|set| set < 200));
+    });
+    assert_eq!((checkup.aborted(), stopped), (None, false));
+    assert_eq!(told(&checks(checkup.measured(), "", &[])), []);
+}
+
+#[test]
+fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
+    for zero_g in [-600.0, -300.0, 700.0] {
+        let (most, checkup, _) = pressed(zero_g, 3.0);
+        assert!(most < 1.0, "{zero_g}: {most}");
+        assert_eq!(checkup.left_alone().len(), 6, "{zero_g}");
+        let all = checks(checkup.measured(), "", &[]);
+        assert_eq!(stopped_early(&all), Some(Dof::Little), "no birth record");
+    }
+    let mut body = BodyParams::default();
+    body.joints[JOINT].force_zero_g = -600.0;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let (checkup, stopped) = hand.run(started(), |hand, _| {
+        assert!(hand.true_angles()[JOINT] > 990.0);
+    });
+    assert_eq!((checkup.aborted(), stopped), (None, false));
+    let [(dof, _)] = checkup.left_alone()[..] else {
+        panic!("{:?}", checkup.left_alone());
+    };
+    assert_eq!(dof, JOINT);
+    let all = checks(checkup.measured(), "", &[]);
+    let of = |what: Subject, of: Part| {
+        let own = all
+            .iter()
+            .find(|own| (own.measured.what, own.measured.of) == (what, of));
+        own.unwrap().light
+    };
+    assert_eq!(of(Subject::ForceZero, Part::Joint(JOINT)), Light::Act);
+    assert_eq!(
+        of(Subject::ClosingSpeed, Part::Joint(JOINT)),
+        Light::Unknown
+    );
+    assert_eq!(
+        of(Subject::ClosingSpeed, Part::Joint(Dof::Index)),
+        Light::Fine
+    );
+}
+
+#[test]
+fn a_joint_that_is_jammed_is_measured_so_and_makes_no_birth_record() {
+    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    hand.hand.set_jam(JOINT, Some(300.0));
+    let (checkup, _) = hand.run(started(), |hand, _| {
+        // The drive calls that a stall before it is told to open.
+        hand.set_jam(JOINT, Some(300.0));
+    });
+    let all = checks(checkup.measured(), "", &[]);
+    assert_eq!(stopped_early(&all), Some(JOINT), "{:?}", checkup.aborted());
+}
+
+#[test]
+fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
+    let plan = CheckupPlan { press: true };
+    let mut body = BodyParams::default();
+    body.fingertips[Finger::Ring].dead[3] = true;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let mut asked = Vec::new();
+    let (mut held, mut open) = (0, true);
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1), plan), |hand, checkup| {
+        let finger = checkup.view().press;
+        if let Some(finger) = finger.filter(|finger| asked.last() != Some(finger)) {
+            asked.push(finger);
+            held = 0;
+        }
+        held += 1;
+        // The little finger is forgotten; the others are pressed for a second.
+        for tip in Finger::ALL {
+            let is_pressed = finger == Some(tip) && tip != Finger::Little && held < 100;
+            hand.press_tip(tip, if is_pressed { 800.0 } else { 0.0 });
+        }
+        open &= finger.is_none() || hand.true_angles().iter().all(|(_, angle)| *angle > 990.0);
+    });
+    assert_eq!(
+        (checkup.aborted(), stopped, hand.disarmed),
+        (None, false, true)
+    );
+    assert!(open, "nothing moves");
+    assert_eq!(asked.first(), Some(&Finger::Thumb));
+    assert_eq!(asked.len(), 5);
+    let all = checks(checkup.measured(), "", &[]);
+    let silent = |finger: Finger| {
+        let mut own = all
+            .iter()
+            .filter(|own| own.measured.what == Subject::SilentChannels);
+        let own = own
+            .find(|own| own.measured.of == Part::Fingertip(finger))
+            .unwrap();
+        (own.light, own.measured.channels.to_string())
+    };
+    assert_eq!(silent(Finger::Ring), (Light::Act, "4".to_owned()));
+    assert_eq!(silent(Finger::Thumb), (Light::Fine, String::new()));
+    assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
+}
+
+/// Checks a body up, and makes of it what the program does.
+fn concluded(files: &CheckupFiles, backlash: f64, jam: Option<f64>) -> CheckupReport {
+    let mut body = BodyParams::default();
+    body.joints[JOINT].backlash = backlash;
+    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    hand.hand.set_jam(JOINT, jam);
+    let (checkup, _) = hand.run(started(), |_, _| ());
+    let report = SeriesReport {
+        aborted: checkup.aborted(),
+        stop: None,
+    };
+    let done = files.conclude(EndedCheckup {
+        checkup,
+        report,
+        recording: None,
+    });
+    done.written.unwrap().unwrap();
+    done.report
+}
+
+#[test]
+fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let hand: Endpoint = "rtu:/dev/ttyUSB0".parse().unwrap();
+    let files = CheckupFiles {
+        kept: CheckupFiles::kept_in(folder.path(), &hand),
+        report: Some(folder.path().join("out")),
+        recordings: None,
+        hand,
+    };
+    assert_eq!(files.last().unwrap(), None);
+    // A jam in the way of the first is no birth record; in the way of a later one it is part of the trend.
+    let first = concluded(&files, 0.0, Some(300.0));
+    let keeping = match first.aborted {
+        None => Keeping::NotAsFirst { dof: JOINT },
+        Some(_) => Keeping::Partial,
+    };
+    assert_eq!(first.keeping, keeping);
+    assert_eq!(files.earlier().unwrap(), []);
+    for (earlier, backlash) in [0.0, 3.0, 6.0, 9.0, 12.0].into_iter().enumerate() {
+        let report = concluded(&files, backlash, None);
+        assert_eq!(
+            report.keeping,
+            Keeping::Kept { earlier },
+            "{:?}",
+            report.aborted
+        );
+        assert_eq!(report.earlier, earlier);
+    }
+    let (last, page) = files.last().unwrap().unwrap();
+    assert_eq!(page, files.report);
+    let of = Part::Joint(JOINT);
+    let mut own = last.checks.iter();
+    let own = own.find(|own| (own.measured.what, own.measured.of) == (Subject::Backlash, of));
+    let own = own.unwrap();
+    assert_eq!(own.trend.points.len(), 5);
+    let drift = own.drift().unwrap();
+    assert!(drift.from < 1.0 && drift.to > 11.0, "{drift:?}");
+    let drifting = last.checks.iter().filter(|own| own.drift().is_some());
+    assert_eq!(drifting.count(), 1, "nothing else drifts");
+    let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(page.contains("<polyline") && page.contains("counts over 5 check-ups since"));
 }

@@ -106,6 +106,7 @@ impl Bench {
                     self.link.stop();
                     stopped = true;
                 }
+                Some(SeriesOrder::Disarm) => panic!("trials go on armed"),
                 None => {}
             }
             while let Some(trial) = own.finished() {

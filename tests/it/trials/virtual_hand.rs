@@ -38,6 +38,8 @@ pub(crate) struct VirtualHand {
     now: Moment,
     sample: HandSample,
     round: u64,
+    /// The series let no setpoint pass any more.
+    pub(crate) disarmed: bool,
 }
 
 impl VirtualHand {
@@ -54,6 +56,7 @@ impl VirtualHand {
             now: Moment::ZERO.plus(EACH),
             sample: HandSample::default(),
             round: 0,
+            disarmed: false,
         }
     }
 
@@ -93,8 +96,12 @@ impl VirtualHand {
         while !series.is_over() {
             self.read(&mut series);
             match series.tick(&self.sample, link, self.now) {
-                Some(SeriesOrder::Set(setpoints)) => self.set(&setpoints),
+                Some(SeriesOrder::Set(setpoints)) => {
+                    assert!(!self.disarmed, "{setpoints:?}");
+                    self.set(&setpoints);
+                }
                 Some(SeriesOrder::Stop) => stopped = true,
+                Some(SeriesOrder::Disarm) => self.disarmed = true,
                 None => {}
             }
             meanwhile(&mut self.hand, &mut series);

@@ -2,7 +2,9 @@
 //! to be found at. Used by the tests and by the bench.
 
 use super::virtual_hand::VirtualHand;
-use handscope::checkup::{Check, Checkup, Light, Part, Subject};
+use handscope::checkup::check::checks;
+use handscope::checkup::kept::Kept;
+use handscope::checkup::{Check, Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
@@ -14,11 +16,25 @@ const TIP: Finger = Finger::Ring;
 
 /// Checks a body; what it was at its first check-up is compared where it is given.
 pub(crate) fn checked(body: BodyParams, seed: u64, first: &[Check]) -> Vec<Check> {
-    let first: Vec<_> = first.iter().map(|check| check.measured).collect();
     let mut hand = VirtualHand::new(body, seed, &Object::none());
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1)), |_, _| ());
+    let (checkup, stopped) = hand.run(started(), |_, _| ());
     assert_eq!((checkup.aborted(), stopped), (None, false));
-    checkup.checks(&first, &first)
+    let first = (!first.is_empty()).then(|| kept(first));
+    checks(checkup.measured(), "", first.as_slice())
+}
+
+/// A check-up that begins.
+pub(crate) fn started() -> Checkup {
+    Checkup::start(ArmEpoch(1), CheckupPlan::default())
+}
+
+fn kept(first: &[Check]) -> Kept {
+    Kept {
+        at: String::new(),
+        hand: String::new(),
+        figures: first.iter().map(|check| check.measured).collect(),
+        report: None,
+    }
 }
 
 /// What is not as it should be.

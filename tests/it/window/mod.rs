@@ -1,6 +1,7 @@
 //! The real program behind its real window, driven by labels against the simulated hand over the real link. Virtual time.
 
 mod cards;
+mod checkup;
 mod compare;
 mod device;
 mod exhibit;

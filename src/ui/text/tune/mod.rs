@@ -31,6 +31,7 @@ texts! {
     NOT_READ: "The hand cannot be watched: its {} is not known yet, or old.", "无法监视灵巧手：{}读数尚未获取或已过时。";
     BLIND: "{} cannot be watched: its {} makes no sense.", "无法监视{}：{}读数不合理。";
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
+    NOT_EMPTY: "The hand is not empty, or something is in its way: {} pressed with {} g at {}.", "手中有物体或有障碍：{}压力达 {} g，角度 {}。";
     NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
     NO_CONTACT: "{} felt no contact that could be approached.", "{}没有感到接触，无法确定接触位置。";
 
@@ -297,6 +298,9 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
             celsius,
             limit,
         } => look.fill(COOLING, &[&joint(dof), &celsius, &limit]),
+        Abort::NotEmpty { dof, angle, grams } => {
+            look.fill(NOT_EMPTY, &[&joint(dof), &grams, &angle])
+        }
         Abort::NoContact { dof } => look.fill(NO_CONTACT, &[&joint(dof)]),
     }
 }

@@ -2,10 +2,11 @@
 //! A stop, and whatever forbids the start, takes the hold back.
 
 use crate::app::action::Action;
-use crate::app::trials::{SeriesKind, SeriesPlan, StartRefusal, TrialAction};
+use crate::app::trials::StartRefusal;
 use crate::hand::Moment;
-use crate::ui::kit::{self, Button, Pane, Weight};
-use crate::ui::text::{main, tune, words};
+use crate::ui::kit::controls::{Button, Weight, say_ui, wide_ui};
+use crate::ui::kit::pane::Pane;
+use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Key, Response, Ui};
 use std::time::Duration;
@@ -21,32 +22,41 @@ pub(crate) struct StartButton {
     is_short: bool,
 }
 
+/// What the button begins.
+#[derive(Debug, Clone)]
+pub(crate) struct StartWish {
+    /// Why it cannot begin, in words.
+    pub(crate) refused: Option<String>,
+    /// In an arming that is in force.
+    pub(crate) start: (Text, Action),
+    /// In an arming of its own.
+    pub(crate) arm_and_start: (Text, Action),
+}
+
 impl StartButton {
     /// Draws the button over what it needs.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, kind: SeriesKind) {
-        let wanted = &pane.state.trials.planned(kind);
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, wish: StartWish) {
         let (look, palette) = (pane.look, pane.look.palette);
         let is_armed = pane.state.hand().connection.is_armed();
-        let reason = refusal(pane, wanted);
-        let text = if is_armed {
-            tune::START_BUTTON
+        let reason = wish.refused;
+        let (text, action) = if is_armed {
+            wish.start
         } else {
-            tune::ARM_AND_START
+            wish.arm_and_start
         };
         let button = Button::said(look, text).large().weight(Weight::Strong);
         let button = button.disabled(reason.as_deref());
-        let response = kit::wide_ui(ui, |ui| {
+        let response = wide_ui(ui, |ui| {
             ui.set_max_height(theme::CONTROL_LARGE);
             button.ui(ui, look)
         });
         if is_armed {
             *self = Self::default();
             if response.clicked() {
-                pane.actions.push(Action::Trial(TrialAction::Start(kind)));
+                pane.actions.push(action);
             }
         } else if self.is_held(ui, pane, &response) {
-            pane.actions
-                .push(Action::Trial(TrialAction::ArmAndStart(kind)));
+            pane.actions.push(action);
         }
         let (words, color) = match (&reason, is_armed) {
             (Some(reason), _) => (reason.as_str(), palette.warn),
@@ -54,7 +64,7 @@ impl StartButton {
             (None, false) => (look.say(tune::HOLD_TO_START), palette.muted),
             (None, true) => (look.say(tune::ANY_KEY), palette.muted),
         };
-        kit::say_ui(ui, words, color);
+        say_ui(ui, words, color);
     }
 
     /// True once it was held long enough, by the pointer on it or by Enter.
@@ -106,8 +116,12 @@ fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
         .rect_filled(place, CornerRadius::same(round), ink);
 }
 
-/// Why the series cannot begin, in words.
-fn refusal(pane: &Pane<'_>, wanted: &SeriesPlan) -> Option<String> {
+/// Why a series cannot begin, in words. `unsound` is what is wrong with what is wished, and `refusal` why the hand cannot begin it.
+pub(crate) fn start_refused(
+    pane: &Pane<'_>,
+    unsound: Option<Text>,
+    refusal: Option<StartRefusal>,
+) -> Option<String> {
     let (look, state) = (pane.look, pane.state);
     let hand = state.hand();
     if let Some(recorded) = pane.recorded() {
@@ -122,10 +136,10 @@ fn refusal(pane: &Pane<'_>, wanted: &SeriesPlan) -> Option<String> {
     if state.trials.running.is_some() {
         return Some(look.say(main::SERIES_RUNS).into());
     }
-    if !wanted.is_sound() {
-        return Some(look.say(tune::PLAN_WRONG).into());
+    if let Some(unsound) = unsound {
+        return Some(look.say(unsound).into());
     }
-    match hand.series_refusal(&wanted.trials()) {
+    match refusal {
         Some(StartRefusal::Runs) => Some(look.say(main::SERIES_RUNS).into()),
         Some(StartRefusal::Locked(dof)) => {
             Some(look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]))

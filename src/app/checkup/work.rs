@@ -1,0 +1,164 @@
+//! The check-up that runs on the hand, and the kept ones that are looked for.
+
+use crate::app::checkup::state::{CheckupRun, HandCheckup, ShownCheckup};
+use crate::app::ctx::Ctx;
+use crate::app::env::running::Running;
+use crate::app::env::{Env, day_folder};
+use crate::app::notices::NoticeKind;
+use crate::app::settings::Settings;
+use crate::app::trials::work::SeriesHand;
+use crate::checkup::subject::Light;
+use crate::checkup::{Checkup, CheckupPlan};
+use crate::hand::ArmEpoch;
+use crate::store::calendar::{day, since_1970, stamp};
+use crate::store::{BackgroundJob, create_folder, on_thread};
+use crate::tasks::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
+use crate::tasks::series::{self, SeriesStart};
+use crate::transport::Endpoint;
+use std::io;
+use std::path::PathBuf;
+use tokio::sync::oneshot;
+
+/// Where the files of check-ups of a hand are in the window.
+pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupFiles {
+    let checks = env.settings_path.as_ref();
+    let checks = checks.map(|path| path.with_file_name("checks"));
+    let documents = env.documents.as_deref();
+    CheckupFiles {
+        hand: hand.clone(),
+        kept: checks.and_then(|folder| CheckupFiles::kept_in(&folder, hand)),
+        report: documents.map(|documents| {
+            let now = since_1970();
+            let time = stamp(now);
+            let time = time.chars().skip_while(|letter| *letter != 'T');
+            let time: String = time.filter(char::is_ascii_digit).collect();
+            let folder = day_folder::of_day(documents, &day(now));
+            day_folder::free_path(&folder, &format!("handscope-check-{}-{time}", day(now)))
+        }),
+        recordings: settings.recordings_folder(documents),
+    }
+}
+
+impl CheckupRun {
+    /// Begins a check-up.
+    pub(crate) fn begin(
+        hand: SeriesHand<'_>,
+        plan: CheckupPlan,
+        files: CheckupFiles,
+        ctx: &Ctx<'_>,
+    ) -> Self {
+        let clock = ctx.env.clock;
+        let (end, ended) = oneshot::channel();
+        let ended = async move {
+            match ended.await {
+                Ok(why) => why,
+                Err(_gone) => std::future::pending().await,
+            }
+        };
+        let (epoch, link) = (hand.epoch, hand.link);
+        let checkup = Checkup::start(epoch, plan);
+        let view = checkup.view();
+        let start = SeriesStart {
+            series: checkup,
+            lease: hand.lease,
+            seen: hand.seen,
+            clock,
+        };
+        let task = Running::start(ctx.env, |steps| async move {
+            let wanted = files.clone();
+            let prepared = on_thread(move || prepare(&wanted)).await;
+            let recording = prepared.and_then(|()| files.record(link.observe(), clock));
+            let recording = match recording {
+                Ok(recording) => recording,
+                Err(error) => {
+                    link.disarm();
+                    return Err(error);
+                }
+            };
+            let mut told = None;
+            let tell = |checkup: &mut Checkup| {
+                let view = checkup.view();
+                if told.replace(view) != Some(view) {
+                    steps.tell(view);
+                }
+                true
+            };
+            let (checkup, report) = series::run(&link, start, ended, tell).await;
+            let ended = EndedCheckup {
+                checkup,
+                report,
+                recording,
+            };
+            on_thread(move || Ok(files.conclude(ended))).await
+        });
+        Self {
+            view,
+            epoch,
+            since: ctx.now,
+            end: Some(end),
+            task,
+        }
+    }
+}
+
+/// Nothing moves where a check-up could not be kept or its report not be written.
+fn prepare(files: &CheckupFiles) -> io::Result<()> {
+    files.prepare()?;
+    files.report.as_deref().map_or(Ok(()), create_folder)
+}
+
+impl HandCheckup {
+    /// Takes in what the one that runs did. Once it is over: its arming, and what to tell.
+    pub(crate) fn news(&mut self) -> Option<(ArmEpoch, Vec<NoticeKind>)> {
+        let run = self.run.as_mut()?;
+        let (steps, end) = run.task.news();
+        for (at, view) in steps {
+            (run.view, run.since) = (view, at);
+        }
+        let epoch = run.epoch;
+        let end = end?;
+        self.run = None;
+        Some((epoch, self.over(end)))
+    }
+
+    fn over(&mut self, end: io::Result<ConcludedCheckup>) -> Vec<NoticeKind> {
+        match end {
+            Err(error) => vec![NoticeKind::not_saved(PathBuf::from("checks"), &error)],
+            Ok(ConcludedCheckup { report, written }) => {
+                let mut told = vec![NoticeKind::CheckupEnded {
+                    act: report.count(Light::Act),
+                    watch: report.count(Light::Watch),
+                    aborted: report.aborted,
+                }];
+                let folder = match written.transpose() {
+                    Ok(folder) => folder,
+                    Err(error) => {
+                        told.push(NoticeKind::not_saved(PathBuf::from("report.html"), &error));
+                        None
+                    }
+                };
+                self.last = Some(ShownCheckup::of((report, folder)));
+                told
+            }
+        }
+    }
+
+    /// Reads the kept ones because somebody looks at them; once, and not while one runs.
+    pub(crate) fn look(&mut self, files: CheckupFiles, env: &Env) {
+        if self.run.is_some() || std::mem::replace(&mut self.is_looked, true) {
+            return;
+        }
+        let look = async move { on_thread(move || Ok(files.last())).await.flatten() };
+        self.looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
+    }
+
+    /// Takes in what was read.
+    pub(crate) fn tick(&mut self) {
+        match BackgroundJob::take_from(&mut self.looking) {
+            None => {}
+            Some(Ok(kept)) if self.last.is_none() => self.last = kept.map(ShownCheckup::of),
+            Some(Ok(_)) => {}
+            Some(Err(error)) => self.unread = Some(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! What surrounds a check-up: the earlier ones of its hand, its recording, what it came to, and its files. The motion itself is a
+//! series.
+
+use crate::checkup::check::{checks, stopped_early};
+use crate::checkup::kept::{self, Kept};
+use crate::checkup::report::{CheckupReport, JSON_FILE, Keeping, PAGE_FILE, RECORDING_FILE};
+use crate::checkup::usage::Usage;
+use crate::checkup::{Checkup, Measured};
+use crate::hand::kinematics::Side;
+use crate::hand::{Force, PerDof, Speed};
+use crate::link::{ArmRequest, Clock, LinkObserver};
+use crate::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
+use crate::store::calendar::{since_1970, stamp};
+use crate::store::{create_folder, replace};
+use crate::tasks::recording::record;
+use crate::tasks::series::{SeriesReport, stop_words};
+use crate::transport::Endpoint;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use tokio_util::task::AbortOnDrop;
+
+/// The limits that a hand is armed with for a check-up, which sets its own below them.
+pub const fn arm_limits() -> ArmRequest {
+    ArmRequest {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    }
+}
+
+/// Where the files of a check-up are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CheckupFiles {
+    /// The hand that is checked.
+    pub hand: Endpoint,
+    /// The file of its earlier check-ups; `None` for the built-in one, which is another each time.
+    pub kept: Option<PathBuf>,
+    /// The folder of its report; `None` = it is not written.
+    pub report: Option<PathBuf>,
+    /// The folder of recordings, from which its use is counted.
+    pub recordings: Option<PathBuf>,
+}
+
+impl CheckupFiles {
+    /// The file in the folder of earlier check-ups where those of a hand are.
+    pub fn kept_in(folder: &Path, hand: &Endpoint) -> Option<PathBuf> {
+        (!hand.is_sim()).then(|| kept::file_of(folder, hand))
+    }
+
+    /// The earlier check-ups, the oldest first.
+    ///
+    /// # Errors
+    /// As [`kept::read`].
+    pub fn earlier(&self) -> io::Result<Vec<Kept>> {
+        self.kept.as_deref().map_or(Ok(Vec::new()), kept::read)
+    }
+
+    /// The earlier check-ups, where one more can be kept: nothing is to move for what cannot be.
+    ///
+    /// # Errors
+    /// As [`kept::read`], or that the folder cannot be made.
+    pub fn prepare(&self) -> io::Result<Vec<Kept>> {
+        let earlier = self.earlier()?;
+        let folder = self.kept.as_deref().and_then(Path::parent);
+        folder.map_or(Ok(()), create_folder)?;
+        Ok(earlier)
+    }
+
+    /// Begins to record what goes on at the hand, beside the report; `None` where that is not written.
+    ///
+    /// # Errors
+    /// What the system says if it gives no thread.
+    pub fn record(
+        &self,
+        observed: LinkObserver,
+        clock: Clock,
+    ) -> io::Result<Option<CheckupRecording>> {
+        let Some(folder) = &self.report else {
+            return Ok(None);
+        };
+        let moments = (clock.now(), since_1970());
+        let plan = RecordingPlan {
+            path: folder.join(RECORDING_FILE),
+            opening: Opening::begin(self.hand.to_string(), moments, Side::default()),
+            disk: Arc::new(SystemDisk),
+            part_length: PART_LENGTH,
+        };
+        let recorder = Recorder::start(plan)?;
+        let pump = tokio::spawn(record(observed, recorder.input(), clock));
+        Ok(Some(CheckupRecording {
+            recorder,
+            _pump: AbortOnDrop::new(pump.abort_handle()),
+        }))
+    }
+
+    /// What the last check-up that was kept came to; `None` if there is none.
+    ///
+    /// # Errors
+    /// As [`kept::read`].
+    pub fn last(&self) -> io::Result<Option<(CheckupReport, Option<PathBuf>)>> {
+        let mut earlier = self.earlier()?;
+        let Some(last) = earlier.pop() else {
+            return Ok(None);
+        };
+        let report = CheckupReport {
+            hand: last.hand,
+            simulated: self.hand.is_sim(),
+            checks: checks(last.figures, &last.at, &earlier),
+            at: last.at,
+            aborted: None,
+            aborted_words: None,
+            earlier: earlier.len(),
+            left_alone: Vec::new(),
+            keeping: Keeping::Kept {
+                earlier: earlier.len(),
+            },
+            usage: self.usage(),
+            recorded: false,
+        };
+        Ok(Some((report, last.report)))
+    }
+
+    fn usage(&self) -> Option<Usage> {
+        Usage::of(self.recordings.as_deref()?, &self.hand)
+    }
+}
+
+/// The recording of a check-up under way. It ends when this is dropped.
+#[derive(Debug)]
+pub struct CheckupRecording {
+    recorder: Recorder,
+    _pump: AbortOnDrop,
+}
+
+/// A check-up that is over.
+#[derive(Debug)]
+pub struct EndedCheckup {
+    /// What was measured.
+    pub checkup: Checkup,
+    /// How it ended.
+    pub report: SeriesReport,
+    /// Its recording.
+    pub recording: Option<CheckupRecording>,
+}
+
+/// What was made of a check-up, and why its files were not written, if they were not.
+#[derive(Debug)]
+pub struct ConcludedCheckup {
+    /// What it came to.
+    pub report: CheckupReport,
+    /// The folder of its report, or why there is none; `None` where none was asked for.
+    pub written: Option<io::Result<PathBuf>>,
+}
+
+impl CheckupFiles {
+    /// Judges a check-up that is over, keeps it, and writes its report. Waits for the disk.
+    pub fn conclude(&self, ended: EndedCheckup) -> ConcludedCheckup {
+        let at = stamp(since_1970());
+        let measured = ended.checkup.measured();
+        let why = ended.report.aborted;
+        let recorded = ended.recording.is_some();
+        if let Some(recording) = ended.recording {
+            let _ended = recording.recorder.end();
+        }
+        let (earlier, unread) = match self.earlier() {
+            Ok(earlier) => (earlier, None),
+            Err(error) => (Vec::new(), Some(error)),
+        };
+        let mut report = CheckupReport {
+            hand: self.hand.to_string(),
+            simulated: self.hand.is_sim(),
+            aborted: why,
+            aborted_words: why.map(|why| format!("{why}{}", stop_words(ended.report.stop))),
+            earlier: earlier.len(),
+            checks: checks(measured.clone(), &at, &earlier),
+            at,
+            left_alone: ended.checkup.left_alone(),
+            keeping: Keeping::BuiltIn,
+            usage: self.usage(),
+            recorded,
+        };
+        report.keeping = match unread {
+            Some(error) => Keeping::Failed {
+                error: error.to_string(),
+            },
+            None => self.keep(&report, measured),
+        };
+        let written = self
+            .report
+            .as_deref()
+            .map(|folder| write(folder, &report).map(|()| folder.to_owned()));
+        ConcludedCheckup { report, written }
+    }
+
+    fn keep(&self, report: &CheckupReport, figures: Vec<Measured>) -> Keeping {
+        if report.aborted.is_some() {
+            return Keeping::Partial;
+        }
+        let Some(file) = &self.kept else {
+            return Keeping::BuiltIn;
+        };
+        let earlier = report.earlier;
+        match stopped_early(&report.checks).filter(|_| earlier == 0) {
+            Some(dof) => Keeping::NotAsFirst { dof },
+            None => {
+                let own = Kept {
+                    at: report.at.clone(),
+                    hand: report.hand.clone(),
+                    figures,
+                    report: self.report.clone(),
+                };
+                match kept::add(file, own) {
+                    Ok(()) => Keeping::Kept { earlier },
+                    Err(error) => Keeping::Failed {
+                        error: format!("{}: {error}", file.display()),
+                    },
+                }
+            }
+        }
+    }
+}
+
+fn write(folder: &Path, report: &CheckupReport) -> io::Result<()> {
+    let page = report.html().map_err(io::Error::other)?;
+    replace(&folder.join(PAGE_FILE), page.as_bytes())?;
+    replace(
+        &folder.join(JSON_FILE),
+        format!("{}\n", report.json()).as_bytes(),
+    )
+}

@@ -1,0 +1,110 @@
+//! The check-up of the hand: what is asked before it and how far it is at the left, what the last one came to beside it. Keeps
+//! ticks only; every change is an action.
+
+mod report;
+mod table;
+
+use crate::app::action::Action;
+use crate::app::checkup::{CheckupAction, CheckupRun};
+use crate::checkup::{CheckupPlan, expected};
+use crate::ui::checkup::report::ReportView;
+use crate::ui::kit::{
+    self, Button, Label, Look, Pane, StartButton, StartWish, Weight, format, start_refused,
+};
+use crate::ui::text::{checkup, tune, words};
+use crate::ui::theme;
+use egui::{Panel, ProgressBar, Role, Ui, WidgetInfo};
+
+/// What the view needs between frames.
+#[derive(Debug, Default)]
+pub(crate) struct CheckupView {
+    is_empty: bool,
+    plan: CheckupPlan,
+    start: StartButton,
+    report: ReportView,
+}
+
+impl CheckupView {
+    /// Draws the view.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let width = (ui.available_width() * 0.3).clamp(260.0, 360.0);
+        kit::bare(Panel::left("checkup"), width, theme::GAP_RIGHT).show(ui, |ui| {
+            kit::card_ui(ui, look, |ui| {
+                ui.set_min_height(ui.available_height());
+                ui.spacing_mut().item_spacing.y = theme::GAP;
+                kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
+                match &pane.state.hand().checkup.run {
+                    Some(run) => {
+                        // What was said of this one does not hold for the next.
+                        self.is_empty = false;
+                        if progress_ui(ui, pane, run) {
+                            pane.actions.push(Action::Stop);
+                        }
+                    }
+                    None => self.begin_ui(ui, pane),
+                }
+            });
+        });
+        self.report.ui(ui, pane);
+    }
+
+    fn begin_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let (look, palette) = (pane.look, pane.look.palette);
+        let time = format::duration(expected(self.plan));
+        kit::say_ui(ui, &look.fill(checkup::ABOUT, &[&time]), palette.muted);
+        let ticks = [
+            (&mut self.is_empty, checkup::EMPTY),
+            (&mut self.plan.press, checkup::PRESS),
+        ];
+        for (is_on, text) in ticks {
+            let tick = ui.checkbox(is_on, look.say(text));
+            tick.on_hover_text(look.tip(text));
+        }
+        let unsaid = (!self.is_empty).then_some(checkup::SAY_EMPTY);
+        let refusal = pane.state.hand().checkup_refusal();
+        let (start, arm) = (
+            CheckupAction::Start(self.plan),
+            CheckupAction::ArmAndStart(self.plan),
+        );
+        let wish = StartWish {
+            refused: start_refused(pane, unsaid, refusal),
+            start: (checkup::START, Action::Checkup(start)),
+            arm_and_start: (checkup::ARM_AND_START, Action::Checkup(arm)),
+        };
+        self.start.ui(ui, pane, wish);
+    }
+}
+
+/// How far it is; true where it is to end.
+fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let view = run.view;
+    let name = look.say(checkup::PROGRESS);
+    let parts: [&dyn std::fmt::Display; 3] = [&(view.done + 1), &view.total, &doing(look, run)];
+    let words = look.fill(checkup::STEP, &parts);
+    let label = Label::new(&words, palette.text).font(theme::title()).wrap();
+    label.named(name).ui(ui);
+    if let Some(finger) = view.press {
+        let words = look.fill(checkup::PRESS_NOW, &[&look.say(words::finger(finger))]);
+        kit::say_ui(ui, &words, palette.accent);
+    }
+    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
+    let share = count(view.done) / count(view.total.max(1));
+    let bar = ProgressBar::new(share).desired_height(6.0);
+    let bar = ui.add(bar.fill(palette.accent));
+    bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
+    let left = format::duration(run.left(pane.state.now));
+    kit::say_ui(ui, &look.fill(tune::LEFT, &[&left]), palette.muted);
+    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
+    let button = Button::said(look, checkup::END).weight(Weight::Stop);
+    let response = button.large().ui(ui, look);
+    kit::pressed(ui, &response)
+}
+
+/// What moves now, or is to be pressed.
+fn doing(look: Look, run: &CheckupRun) -> &'static str {
+    let joint = run.view.joint.map(words::dof);
+    let finger = run.view.press.map(words::finger);
+    look.say(joint.or(finger).unwrap_or(checkup::ALL_JOINTS))
+}

@@ -1,0 +1,95 @@
+//! What the last check-up came to.
+
+use crate::app::action::Action;
+use crate::app::checkup::ShownCheckup;
+use crate::app::files::export::Export;
+use crate::app::recordings::RecordingAction;
+use crate::checkup::subject::Light;
+use crate::checkup::trend::day;
+use crate::ui::checkup::table;
+use crate::ui::kit::{self, Button, Label, Pane};
+use crate::ui::text::{checkup, tune};
+use crate::ui::theme;
+use egui::Ui;
+
+/// What is shown of it.
+#[derive(Debug, Default)]
+pub(super) struct ReportView {
+    /// Only what is not fine.
+    only: bool,
+}
+
+impl ReportView {
+    /// Draws it over all of `ui`.
+    pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let (look, state) = (pane.look, pane.state);
+        let own = &state.hand().checkup;
+        kit::card_ui(ui, look, |ui| {
+            ui.set_min_height(ui.available_height());
+            if let Some(recorded) = pane.recorded() {
+                kit::say_ui(ui, recorded, look.palette.muted);
+                return;
+            }
+            match (&own.last, &own.unread) {
+                (Some(shown), _) => self.shown_ui(ui, pane, shown),
+                (None, Some(error)) => {
+                    let words = look.fill(checkup::UNREAD, &[error]);
+                    kit::say_ui(ui, &words, look.palette.warn);
+                }
+                (None, None) if own.is_reading() => {
+                    kit::say_ui(ui, look.say(checkup::READING), look.palette.muted);
+                }
+                (None, None) => {
+                    kit::say_ui(ui, look.say(checkup::NEVER), look.palette.text);
+                }
+            }
+        });
+    }
+
+    fn shown_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownCheckup) {
+        let (look, palette) = (pane.look, pane.look.palette);
+        let report = &shown.report;
+        let title = look.fill(checkup::OF, &[&moment(&report.at)]);
+        kit::head_ui(ui, look, &title, |ui| {
+            let save = Button::said(look, checkup::SAVE);
+            let page = Export::Checkup(Box::new(report.clone()));
+            save.on_click(ui, pane, Action::Save(page));
+            let page = shown.page.clone();
+            let none = page.is_none().then(|| look.say(checkup::NO_REPORT));
+            let reveal = RecordingAction::Reveal(page.unwrap_or_default());
+            let show = Button::said(look, checkup::REPORT).disabled(none);
+            show.on_click(ui, pane, Action::Recording(reveal));
+        });
+        let lights = [Light::Fine, Light::Watch, Light::Act, Light::Unknown];
+        let [fine, watch, act, unknown] = lights.map(|light| report.count(light));
+        let words = look.fill(checkup::LIGHTS, &[&fine, &watch, &act, &unknown]);
+        let worst = report.checks.iter().map(|own| own.light).max();
+        let color = table::color(pane, worst.unwrap_or(Light::Unknown));
+        Label::new(&words, color).named(&title).ui(ui);
+        if let Some(why) = report.aborted {
+            let words = look.fill(checkup::PARTIAL, &[&tune::abort(look, why)]);
+            kit::say_ui(ui, &words, palette.bad);
+        }
+        for words in checkup::remarks(look, report) {
+            kit::say_ui(ui, &words, palette.warn);
+        }
+        let earlier = look.fill(checkup::EARLIER, &[&report.earlier]);
+        let words = format!("{earlier}. {}", checkup::usage(look, report));
+        kit::say_ui(ui, &words, palette.muted);
+        let only = Button::said(look, checkup::ONLY).choice(self.only);
+        if only.ui(ui, look).clicked() {
+            self.only = !self.only;
+        }
+        ui.add_space(theme::STEP);
+        table::ui(ui, pane, (report, self.only));
+    }
+}
+
+/// Day and time as they are read, of a time as it stands in files.
+fn moment(at: &str) -> String {
+    let time = at.split_once('T').and_then(|(_, time)| time.get(..5));
+    match time {
+        Some(time) => format!("{} {time} UTC", day(at)),
+        None => at.to_owned(),
+    }
+}

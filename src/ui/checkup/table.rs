@@ -1,0 +1,155 @@
+//! The figures of a check-up: measured, good, first, last, their trend, and what to do.
+
+use crate::checkup::check::Check;
+use crate::checkup::report::CheckupReport;
+use crate::checkup::report::line::past_words;
+use crate::checkup::subject::Light;
+use crate::ui::kit::{self, Label, Pane, format};
+use crate::ui::text::{Text, checkup};
+use crate::ui::theme;
+use egui::{Align, Color32, Layout, Response, Sense, Stroke, Ui, pos2, vec2};
+use egui_extras::{Column, TableBuilder, TableRow};
+
+const ROW: f32 = 22.0;
+/// Widths of the columns: part, what, numbers, and the line of a trend.
+const PART: f32 = 88.0;
+const WHAT: f32 = 216.0;
+const NUMBER: f32 = 88.0;
+const TREND: f32 = 88.0;
+
+/// The colour of a light.
+pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
+    let palette = pane.look.palette;
+    match light {
+        Light::Fine => palette.ok,
+        Light::Unknown => palette.muted,
+        Light::Watch => palette.warn,
+        Light::Act => palette.bad,
+    }
+}
+
+/// Draws the figures, or those that are not fine.
+pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, bool)) {
+    let look = pane.look;
+    let is_told = |own: &&Check| !only || own.light != Light::Fine || own.drift().is_some();
+    let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
+    if shown.is_empty() {
+        kit::say_ui(ui, look.say(checkup::ALL_FINE), look.palette.ok);
+        return;
+    }
+    let heads = [
+        checkup::COLUMN_OF,
+        checkup::COLUMN_WHAT,
+        checkup::COLUMN_MEASURED,
+        checkup::COLUMN_GOOD,
+        checkup::COLUMN_FIRST,
+        checkup::COLUMN_LAST,
+        checkup::COLUMN_TREND,
+        checkup::COLUMN_ADVICE,
+    ];
+    let table = TableBuilder::new(ui)
+        .id_salt("checkup")
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .auto_shrink(false)
+        .min_scrolled_height(0.0)
+        .column(Column::exact(PART))
+        .column(Column::exact(WHAT))
+        .columns(Column::exact(NUMBER), 4)
+        .column(Column::exact(TREND))
+        .column(Column::remainder().clip(true))
+        .header(ROW, |mut row| {
+            for head in heads {
+                row.col(|ui| drop(Label::note(look, head).ui(ui)));
+            }
+        });
+    table.body(|body| {
+        body.rows(ROW, shown.len(), |mut row| {
+            if let Some(check) = shown.get(row.index()) {
+                row_ui(&mut row, pane, check);
+            }
+        });
+    });
+}
+
+fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let of = look.say(checkup::part(check.measured.of));
+    let what = look.say(checkup::subject(check.measured.what));
+    let unit = check.measured.what.row();
+    row.col(|ui| drop(Label::new(of, palette.muted).ui(ui)));
+    row.col(|ui| drop(Label::new(what, palette.text).ui(ui)));
+    let name = |column: Text| format!("{of} {what} {}", look.say(column).to_lowercase());
+    row.col(|ui| {
+        let color = color(pane, check.light);
+        kit::lamp_ui(ui, Some(color));
+        let value = check.measured.value.map(|value| unit.text(value));
+        let value = value.unwrap_or_else(|| format::UNKNOWN.into());
+        let label = Label::new(&value, palette.text).number();
+        let shown = label.named(&name(checkup::COLUMN_MEASURED)).ui(ui);
+        let light = look.say(checkup::light(check.light));
+        let channels = (!check.measured.channels.is_empty())
+            .then(|| look.fill(checkup::CHANNELS, &[&check.measured.channels]));
+        let words: Vec<String> = [light.to_owned()].into_iter().chain(channels).collect();
+        shown.on_hover_text(words.join(", "));
+    });
+    let before = [
+        (checkup::COLUMN_GOOD, unit.range()),
+        (checkup::COLUMN_FIRST, unit.known(&check.first)),
+        (checkup::COLUMN_LAST, unit.known(&check.last)),
+    ];
+    for (column, value) in before {
+        row.col(|ui| {
+            let label = Label::new(&value, palette.muted).number();
+            label.named(&name(column)).ui(ui);
+        });
+    }
+    row.col(|ui| drop(trend_ui(ui, pane, check)));
+    row.col(|ui| {
+        let channels = (!check.measured.channels.is_empty())
+            .then(|| look.fill(checkup::CHANNELS, &[&check.measured.channels]));
+        let told = checkup::to_do(look, check);
+        let all: Vec<String> = channels.into_iter().chain([told]).collect();
+        let all = all.join(": ");
+        let label = Label::new(&all, palette.text);
+        if !all.is_empty() {
+            label
+                .named(&name(checkup::COLUMN_ADVICE))
+                .ui(ui)
+                .on_hover_text(&all);
+        }
+    });
+}
+
+/// The figure over the last check-ups, where there are two of them.
+fn trend_ui(ui: &mut Ui, pane: &Pane<'_>, check: &Check) -> Option<Response> {
+    let points = &check.trend.points;
+    let (least, most) = check.trend.range().filter(|_| points.len() >= 2)?;
+    let (rect, response) = ui.allocate_exact_size(vec2(TREND - theme::GAP, ROW), Sense::hover());
+    let place = rect.shrink2(vec2(1.0, theme::STEP));
+    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
+    let places = points.iter().enumerate().map(|(nth, point)| {
+        let x = egui::lerp(place.x_range(), count(nth) / count(points.len() - 1));
+        // What does not change lies in the middle.
+        let part = if most > least {
+            (point.value - least) / (most - least)
+        } else {
+            0.5
+        };
+        let y = egui::remap(
+            part,
+            0.0..=1.0,
+            f64::from(place.bottom())..=f64::from(place.top()),
+        );
+        #[expect(clippy::cast_possible_truncation, reason = "a place on the screen")]
+        let y = y as f32;
+        pos2(x, y)
+    });
+    let ink = if check.drift().is_some() {
+        pane.look.palette.warn
+    } else {
+        pane.look.palette.muted
+    };
+    ui.painter()
+        .line(places.collect(), Stroke::new(theme::LINE, ink));
+    Some(response.on_hover_text(past_words(check)))
+}
