@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import subprocess
 import tempfile
@@ -21,6 +22,9 @@ CLOSING = ("little", "ring", "middle", "index", "thumb_bend")
 
 _WAITING_MAX = 4096
 _FIRST_STATE_S = 5.0
+_WINDOW_OPENS_S = 2.0
+
+_log = logging.getLogger("handscope")
 
 Callback = Callable[[State], None]
 
@@ -99,10 +103,11 @@ class Hand:
         self._ended: Optional[str] = None
         self._link_lost: Optional[str] = None
         self._disarmed: Optional[HandscopeError] = None
+        self._refused: Optional[HandscopeError] = None
         self._armed: Optional[Dict[str, Optional[int]]] = None
         self._callbacks: List[Callback] = []
         self._readers: set[States] = set()
-        self._windows: List["subprocess.Popen[bytes]"] = []
+        self._windows: List["subprocess.Popen[str]"] = []
         options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}", "--writers"]
         self._side = side
         self._program = program.Program(options, self._told)
@@ -130,13 +135,17 @@ class Hand:
             for reader in list(self._readers):
                 reader._take(state)
             for callback in list(self._callbacks):
-                callback(state)
+                try:
+                    callback(state)
+                except Exception:
+                    _log.exception("a callback of states failed, and is called no more")
+                    self._callbacks.remove(callback)
         elif "lost" in told:
             self._lost += told["lost"]
-        elif "disarmed" in told or "refused" in told:
-            no = told.get("disarmed") or told["refused"]
-            if no["kind"] != "not_armed" or self._disarmed is None:
-                self._disarmed = of(no["kind"], no["why"])
+        elif "disarmed" in told:
+            self._disarmed = of(told["disarmed"]["kind"], told["disarmed"]["why"])
+        elif "refused" in told:
+            self._refused = of(told["refused"]["kind"], told["refused"]["why"])
         elif "link" in told:
             with self._news:
                 lost = told["link"]["state"] == "lost"
@@ -197,10 +206,10 @@ class Hand:
         if self._armed is not None:
             raise NotArmed("the hand is armed already, in a block around this one")
         limits = {"speed": speed, "force_g": force_g}
-        self._disarmed = None
         self._armed = limits
         try:
             self._program.ask("arm", **limits)
+            self._disarmed = self._refused = None
             yield self
         finally:
             self._armed = None
@@ -208,10 +217,14 @@ class Hand:
                 self._program.ask("release")
 
     def _may_move(self) -> None:
-        if self._disarmed is not None:
-            raise self._disarmed
         if self._armed is None:
             raise NotArmed("nothing was moved: the hand moves only inside 'with hand.armed():'")
+        if self._disarmed is not None:
+            raise self._disarmed
+        refused, self._refused = self._refused, None
+        if refused is not None:
+            # What was sent before, and not waited for.
+            raise refused
 
     def _moves(self, **fields: Any) -> GripResult:
         self._may_move()
@@ -300,15 +313,22 @@ class Hand:
     def show(self) -> None:
         """Opens the window on the same hand. STOP works there, also while this script moves the hand; after it, a person can
         arm the hand there, and the script is told."""
-        command = [self._program._path, "--hand", self.share_url]
-        self._windows.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, **program._apart()))
+        command = [self._program.path, "--hand", self.share_url]
+        window = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **program.apart())
+        try:
+            _told, words = window.communicate(timeout=_WINDOW_OPENS_S)
+        except subprocess.TimeoutExpired:
+            self._windows.append(window)
+            return
+        raise HandscopeError(program.sentence(words.splitlines(), "the window was closed at once"))
 
     def close(self) -> None:
         """Stops a hand that may move, and ends its program and its windows."""
         self._program.close()
+        self._ended = "this hand was closed"
         for window in self._windows:
             window.terminate()
-            window.wait()
+            window.communicate()
 
     def __enter__(self) -> "Hand":
         return self

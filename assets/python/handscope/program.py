@@ -57,7 +57,7 @@ def run(arguments: Sequence[str]) -> Tuple[List[str], Optional[str]]:
         stderr=subprocess.PIPE,
         text=True,
         encoding="utf-8",
-        **_apart(),
+        **apart(),
     )
     try:
         told, words = child.communicate()
@@ -67,20 +67,20 @@ def run(arguments: Sequence[str]) -> Tuple[List[str], Optional[str]]:
         raise
     said: List[str] = words.splitlines()
     if child.returncode:
-        return told.splitlines(), _sentence(said, f"'handscope {arguments[0]}' failed")
+        return told.splitlines(), sentence(said, f"'handscope {arguments[0]}' failed")
     for line in said:
         _log.info("%s", line)
     return told.splitlines(), None
 
 
-def _apart() -> Dict[str, Any]:
+def apart() -> Dict[str, Any]:
     """Ctrl-C is for the script, which stops the hand on its way out."""
     if os.name == "nt":
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}  # type: ignore[attr-defined]
     return {"start_new_session": True}
 
 
-def _sentence(words: Sequence[str], otherwise: str) -> str:
+def sentence(words: Sequence[str], otherwise: str) -> str:
     """The last thing that the program said, without its name."""
     said = [line.strip() for line in words if line.strip()]
     for line in reversed(said):
@@ -93,7 +93,8 @@ class Program:
     """One shared hand, in a process of its own. That process stops the hand when this one ends, however it does."""
 
     def __init__(self, arguments: Sequence[str], on_told: Callable[[Mapping[str, Any]], None]) -> None:
-        self._path = find()
+        self.path = find()
+        """Where the program is."""
         self._on_told = on_told
         self._ids = itertools.count(1)
         self._lock = threading.Lock()
@@ -103,14 +104,14 @@ class Program:
         self.ready: Optional[Mapping[str, Any]] = None
         self._ended = False
         self._child = subprocess.Popen(
-            [self._path, "share", *arguments, "--stdio"],
+            [self.path, "share", *arguments, "--stdio"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
             encoding="utf-8",
             bufsize=1,
-            **_apart(),
+            **apart(),
         )
         _keep_from_forks(self._child)
         self._reader = threading.Thread(target=self._read, name="handscope", daemon=True)
@@ -129,13 +130,13 @@ class Program:
     def _why_not(self) -> HandscopeError:
         """Why the program did not begin."""
         if self._child.returncode == 2 and any("--stdio" in line for line in self._words):
-            told = subprocess.run([self._path, "--version"], capture_output=True, text=True).stdout
+            told = subprocess.run([self.path, "--version"], capture_output=True, text=True).stdout
             version = re.search(r"\d+(\.\d+)+\S*", told)
             return ProgramNotFound(self._other_version(version.group() if version else "of an unknown version"))
-        return HandscopeError(_sentence(self._words, "the program 'handscope' ended without a word"))
+        return HandscopeError(sentence(self._words, "the program 'handscope' ended without a word"))
 
     def _other_version(self, version: str) -> str:
-        return f"the program at {self._path} is version {version}, which this package cannot speak to: install both from one wheel"
+        return f"the program at {self.path} is version {version}, which this package cannot speak to: install both from one wheel"
 
     def ask(self, what: str, timeout_s: Optional[float] = _WITHIN_S, **fields: Any) -> Mapping[str, Any]:
         """Asks one thing and waits for the answer."""
@@ -168,7 +169,7 @@ class Program:
             raise self._gone() from None
 
     def _gone(self) -> HandscopeError:
-        return HandscopeError(_sentence(self._words, "the program 'handscope' has ended"))
+        return HandscopeError(sentence(self._words, "the program 'handscope' has ended"))
 
     def _read(self) -> None:
         assert self._child.stdout

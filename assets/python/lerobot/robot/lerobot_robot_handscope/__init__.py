@@ -1,4 +1,4 @@
-"""The FTP series tactile hand as a LeRobot robot: `lerobot-record --robot.type=handscope --robot.url=sim: --robot.arm=true`.
+"""The FTP series tactile hand as a LeRobot robot: `lerobot-record --robot.type=handscope --robot.arm=true`.
 
 Joints are named as unitree_lerobot has them, and are 0 bent to 1 open, as in `handscope export --lerobot`.
 """
@@ -44,6 +44,8 @@ class Handscope(Robot):
     def __init__(self, config: HandscopeConfig) -> None:
         super().__init__(config)
         self.config = config
+        self.cameras: dict[str, Any] = {}
+        """None; LeRobot counts them."""
         self._prefix = f"k{config.side.capitalize()}Hand"
         self._hand: handscope.Hand | None = None
         self._armed = contextlib.ExitStack()
