@@ -3,19 +3,21 @@
 
 mod ask;
 mod pipe;
+mod refused;
 
 use crate::cli::out::say;
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::cli::share::stdio::ask::{Ask, Asked, MoveAsk};
 use crate::cli::share::stdio::pipe::{NobodyReads, Told};
+use crate::cli::share::stdio::refused::Refused;
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
 use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, Owner, Records};
+use crate::link::{ArmRequest, Lease, LinkHandle, Owner, Records};
 use crate::record::{Disarmed, LinkState, Record};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
@@ -43,50 +45,6 @@ pub(crate) struct StdioHand<'a> {
     pub(crate) side: Side,
     /// Where the gateway listens, if there is one.
     pub(crate) gateway: Option<SocketAddr>,
-}
-
-/// Why something was not done, and by what kind of refusal.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Refused {
-    kind: &'static str,
-    why: String,
-}
-
-impl Refused {
-    fn new(kind: &'static str, why: impl Into<String>) -> Self {
-        let why = why.into();
-        Self { kind, why }
-    }
-}
-
-impl From<LeaseRefusal> for Refused {
-    fn from(end: LeaseRefusal) -> Self {
-        let (kind, why) = match end {
-            LeaseRefusal::Taken(Owner::Gateway(at)) => ("taken", format!("{at} may now")),
-            LeaseRefusal::Taken(_) => ("taken", "another may now".into()),
-            LeaseRefusal::Ended(why) => (disarmed_kind(why), why.to_string()),
-        };
-        Self::new(
-            kind,
-            format!("this program may no longer move the hand: {why}"),
-        )
-    }
-}
-
-const fn disarmed_kind(why: Disarmed) -> &'static str {
-    match why {
-        Disarmed::Stop => "stop",
-        Disarmed::Person => "person",
-        Disarmed::Fault => "fault",
-        Disarmed::LinkLost => "link_lost",
-        Disarmed::Stale => "stale",
-        Disarmed::FrozenFeedback => "frozen_feedback",
-        Disarmed::Resume => "resume",
-        Disarmed::OtherController => "other_controller",
-        Disarmed::Released => "released",
-        Disarmed::Silent => "silent",
-        Disarmed::Hot => "hot",
-    }
 }
 
 /// How a task ended.
