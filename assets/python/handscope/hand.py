@@ -8,13 +8,14 @@ import os
 import subprocess
 import tempfile
 import threading
+import time
 from collections import deque
 from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, Callable, Deque, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Type, Union
 
 from . import program
-from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, of
+from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Taken, of
 from .state import JOINTS, Grip, GripResult, State, Touch
 
 CLOSING = ("little", "ring", "middle", "index", "thumb_bend")
@@ -23,6 +24,7 @@ CLOSING = ("little", "ring", "middle", "index", "thumb_bend")
 _WAITING_MAX = 4096
 _FIRST_STATE_S = 5.0
 _WINDOW_OPENS_S = 2.0
+_COMMAND_GONE_S = 1.0
 
 _log = logging.getLogger("handscope")
 
@@ -292,15 +294,26 @@ class Hand:
         """Lets a command move the hand in this script's place, over the shared hand: what it told, and why it failed, if so."""
         self._may_move()
         self._program.ask("disarm")
-        try:
-            lines, why = program.run([name, "--hand", self.share_url, *_options(options), "--arm", "--json"])
-            return [json.loads(line) for line in lines], why
-        finally:
+        done = program.run([name, "--hand", self.share_url, *_options(options), "--arm", "--json"])
+        if done.why and not done.did_nothing:
+            # It may have been stopped by a person, who is not overruled.
+            self._disarmed = Disarmed(f"'{name}' ended early, and the hand is not armed any more: {done.why}", "ended")
+        else:
+            self._rearm()
+        return [json.loads(line) for line in done.lines], done.why
+
+    def _rearm(self) -> None:
+        """Arms again after a command, whose end is known here a moment before the shared hand knows it."""
+        until = time.monotonic() + _COMMAND_GONE_S
+        while True:
             try:
                 self._program.ask("arm", **(self._armed or {}))
-            except HandscopeError as no:
-                # The next motion says so.
-                self._disarmed = no
+                return
+            except Taken as taken:
+                if time.monotonic() > until:
+                    self._disarmed = taken
+                    raise
+            time.sleep(0.02)
 
     # Beside it
 

@@ -14,7 +14,7 @@ import sysconfig
 import threading
 import weakref
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from .errors import HandscopeError, ProgramNotFound, of
 
@@ -48,8 +48,18 @@ def find() -> str:
     )
 
 
-def run(arguments: Sequence[str]) -> Tuple[List[str], Optional[str]]:
-    """Runs a command to its end: the lines that it printed, and why it failed, if it did. Ctrl-C ends it as in a terminal."""
+class Ran(NamedTuple):
+    """A command that was run to its end."""
+
+    lines: List[str]
+    why: Optional[str]
+    """Why it failed, if it did."""
+    did_nothing: bool
+    """It was used wrongly."""
+
+
+def run(arguments: Sequence[str]) -> Ran:
+    """Runs a command to its end. Ctrl-C ends it as in a terminal."""
     child = subprocess.Popen(
         [find(), *arguments],
         stdin=subprocess.DEVNULL,
@@ -67,10 +77,11 @@ def run(arguments: Sequence[str]) -> Tuple[List[str], Optional[str]]:
         raise
     said: List[str] = words.splitlines()
     if child.returncode:
-        return told.splitlines(), sentence(said, f"'handscope {arguments[0]}' failed")
+        why = sentence(said, f"'handscope {arguments[0]}' failed")
+        return Ran(told.splitlines(), why, child.returncode == 2)
     for line in said:
         _log.info("%s", line)
-    return told.splitlines(), None
+    return Ran(told.splitlines(), None, False)
 
 
 def apart() -> Dict[str, Any]:

@@ -29,7 +29,7 @@ def read(
             stretch += ["--from", str(start_s)]
         if end_s is not None:
             stretch += ["--to", str(end_s)]
-        _told, why = program.run(["export", os.fspath(path), *stretch, "--csv", "--out", table])
-        if why:
-            raise HandscopeError(why)
+        done = program.run(["export", os.fspath(path), *stretch, "--csv", "--out", table])
+        if done.why:
+            raise HandscopeError(done.why)
         return pandas.read_csv(table, low_memory=False)

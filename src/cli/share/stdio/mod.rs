@@ -152,7 +152,7 @@ impl Script<'_> {
     /// Stops a hand that may move, and ends the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
-        let may_move = self.holds().is_some();
+        let may_move = self.holds().is_some() || link.status().state == LinkState::Holding;
         self.task = None;
         let done = if may_move {
             session::stopped(link, &mut link.records()).await
@@ -252,9 +252,10 @@ impl Script<'_> {
             }
             Ok(Ask::Disarm) => {
                 self.end_task()?;
-                if self.right.take().is_some() {
+                if self.holds().is_some() {
                     self.hand.link.disarm();
                 }
+                self.right = None;
                 Ok(())
             }
             Ok(Ask::Record(path)) => self.record(&id, path.as_deref()),
@@ -387,7 +388,11 @@ impl Script<'_> {
         let offer = Offer {
             at: self.hand.link.clock().now(),
             aims: line.aims,
-            limits: OfferLimits::NONE,
+            // A motion before may have set others.
+            limits: OfferLimits {
+                force: right.limits.force.map(Some),
+                speed: right.limits.speed.map(Some),
+            },
             held: line.held,
             // A script may rightly stand still; it is heard, or silent.
             mark: None,
@@ -533,7 +538,7 @@ async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
     let mut records = link.records();
     let until = Instant::now() + ARMS_WITHIN;
     let mut asked = false;
-    loop {
+    let why = loop {
         link.check(right.lease)?;
         let status = link.status();
         if let Some(epoch) = status.armed {
@@ -544,20 +549,17 @@ async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
             asked = true;
         }
         if Instant::now() >= until {
-            link.disarm();
-            return Err(Refused::new(
-                "refused",
-                "the hand could not be armed in time",
-            ));
+            break "it does not answer in time".to_owned();
         }
-        if let Ok(Some(Record::ArmRefused { reason, .. })) =
-            timeout(LOOK_EACH, records.next()).await
-        {
-            link.disarm();
-            return Err(Refused::new(
-                "refused",
-                format!("the hand cannot be armed: {reason}"),
-            ));
+        let record = timeout(LOOK_EACH, records.next()).await;
+        if let Ok(Some(Record::ArmRefused { reason, .. })) = record {
+            break reason.to_string();
         }
-    }
+    };
+    link.check(right.lease)?;
+    link.disarm();
+    Err(Refused::new(
+        "refused",
+        format!("the hand cannot be armed: {why}"),
+    ))
 }
