@@ -42,6 +42,7 @@ topics! {
     stream: "a hand that follows another program, by lines of JSON";
     dds: "a hand on DDS: Unitree's programs and ROS 2";
     share: "one hand for several programs: reads, writes, who may move it";
+    python: "a hand in Python: scripts, notebooks, LeRobot";
     json: "what the commands print with --json";
     licences: "what the program is linked with, by licence";
     figures: "how fast it is, and what each wire can carry";

@@ -9,6 +9,7 @@ pub mod exhibit;
 pub mod follow;
 pub mod grip;
 pub mod hand;
+pub mod move_to;
 pub mod place;
 pub mod play;
 pub mod read;

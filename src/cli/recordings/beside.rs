@@ -13,7 +13,7 @@ use anyhow::{Context as _, bail};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::task::JoinHandle;
+use tokio::task::{JoinHandle, spawn_blocking};
 use tokio::time::{interval, timeout};
 
 /// How often it is looked whether the disk is well.
@@ -69,6 +69,14 @@ impl SideRecording {
         })))
     }
 
+    /// Ends the file here, though the link goes on.
+    pub(crate) async fn end_here(self) {
+        if let Some(running) = &self.0 {
+            running.pump.abort();
+        }
+        self.end().await;
+    }
+
     /// Ends the file, and tells what is wrong with it, if anything is. The link must be closed, or it goes on being recorded.
     pub(crate) async fn end(self) {
         let Some(running) = self.0 else { return };
@@ -79,7 +87,10 @@ impl SideRecording {
         let Some(recorder) = Arc::into_inner(running.recorder) else {
             return;
         };
-        let status = recorder.end();
+        // A slow disk must not hold up the hand. It ends early only with the program.
+        let Ok(status) = spawn_blocking(move || recorder.end()).await else {
+            return;
+        };
         if let Some(trouble) = status.trouble {
             say(&format!("the recording cannot be written: {trouble}"));
         } else if !status.ended {

@@ -2,6 +2,7 @@
 
 pub(crate) mod dds;
 pub(crate) mod fleet;
+mod stdio;
 
 use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
@@ -10,6 +11,7 @@ use crate::cli::parse::{number, side};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::cli::share::dds::DdsArgs;
+use crate::cli::share::stdio::StdioHand;
 use crate::hand::kinematics::Side;
 use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkTrouble, PollRates};
 use crate::record::file::Opening;
@@ -32,7 +34,7 @@ use tokio::time::interval;
 const LOOK_EACH: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds", "foxglove"]))]
+#[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds", "foxglove", "stdio"]))]
 pub(crate) struct ShareArgs {
     /// The hand to share
     #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
@@ -43,10 +45,14 @@ pub(crate) struct ShareArgs {
     /// Show what a recording would hold to Foxglove, PlotJuggler and their like here, for example 127.0.0.1:8765
     #[arg(long, value_name = "ADDR:PORT", value_parser = listen::address)]
     foxglove: Option<SocketAddr>,
+    /// Let the program that starts this one watch and move the hand, by lines of JSON on standard input and output; the hand is
+    /// stopped when standard input ends
+    #[arg(long)]
+    stdio: bool,
     #[command(flatten)]
     dds: DdsArgs,
-    /// With --dds: which hand it is, right or left
-    #[arg(long, value_name = "SIDE", requires = "dds", default_value = "right", value_parser = side)]
+    /// Which hand it is, right or left, as --dds, --stdio and --record tell it
+    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side)]
     side: Side,
     /// With --tcp: let the first client that writes move the hand, until it disconnects or falls silent
     #[arg(long, requires = "tcp")]
@@ -97,7 +103,8 @@ async fn serve(
     let viewers = args.foxglove.map(|at| show(link, at, &args.hand));
     let viewers = viewers.transpose()?;
     ways.extend(viewers.iter().map(|server| ("foxglove", server.address())));
-    for (way, address) in ways {
+    let announced = ways.into_iter().filter(|_| !args.stdio);
+    for (way, address) in announced {
         out.line(&format!("ready {way} {address}"))?;
     }
     let card = FleetCard {
@@ -109,19 +116,33 @@ async fn serve(
     let node = args.dds.join("read this hand")?;
     let dds = node.map(|node| SharedOnDds::open(node, link, card));
     let dds = dds.transpose()?;
-    if let Some(dds) = &dds {
+    if let Some(dds) = dds.as_ref().filter(|_| !args.stdio) {
         out.line(&dds::ready(dds))?;
     }
     out.flush()?;
-    tokio::select! {
+    let hand = StdioHand {
+        link,
+        endpoint: &args.hand,
+        side: args.side,
+        gateway: gateway.as_ref().map(Gateway::address),
+    };
+    let served = async {
+        if args.stdio {
+            return stdio::serve(hand, interrupt.wished()).await;
+        }
+        interrupt.wished().await;
+        Ok(())
+    };
+    let done = tokio::select! {
         biased;
-        () = interrupt.wished() => {}
-        () = tell(link, gateway.as_ref(), &args.hand) => {}
-    }
-    match gateway {
+        done = served => done,
+        () = tell(link, gateway.as_ref(), &args.hand) => Ok(()),
+    };
+    let ended = match gateway {
         Some(gateway) => end(link, gateway).await,
         None => Ok(()),
-    }
+    };
+    done.and(ended)
 }
 
 /// Closes, and does not leave before a hand that a client could move is seen to rest.

@@ -38,7 +38,7 @@ pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value
 }
 
 /// A grip as JSON: state, beginning and age of the grasp and of each finger.
-fn grip_json(grip: &Grip, now: Moment) -> Value {
+pub(crate) fn grip_json(grip: &Grip, now: Moment) -> Value {
     let mut object = estimate_json(&grip.grasp, now);
     let fingers = grip.fingers.iter().map(|(finger, estimate)| {
         let mut object = estimate_json(estimate, now);

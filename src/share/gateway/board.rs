@@ -116,6 +116,8 @@ pub(crate) struct Row {
     pace: Pace,
     /// When it asked something last.
     heard: Moment,
+    /// When it stopped what another moved last.
+    pub(crate) stopped: Option<Instant>,
     /// The user grants it the right to move the hand.
     pub(crate) granted: Arc<Notify>,
 }
@@ -177,6 +179,7 @@ impl Board {
             },
             pace: Pace::default(),
             heard: now,
+            stopped: None,
             granted: Arc::default(),
         });
         Some(id)

@@ -1,17 +1,24 @@
 //! Which client may move the hand, from the grant to its end, and its writes. Each end stops the hand, however it came: the
 //! hand is not left to go on to a target of a program that is gone.
 
-use crate::hand::register::{FORCE_SET, Register, SPEED_SET};
-use crate::hand::{Force, HandCommand, OutOfRange, PerDof, Speed};
+use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
+use crate::hand::{Force, HandCommand, OutOfRange, PerDof, Speed, Target};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
-use crate::share::gateway::board::{ClientId, ClientLease, Holder, MoverChange, SharedBoard};
+use crate::share::gateway::board::{
+    Board, ClientId, ClientLease, Holder, MoverChange, SharedBoard,
+};
 use crate::share::gateway::refusal::WriteRefusal;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout};
 
 /// A hand acknowledges its limits long before, on any wire.
 const ARMS_WITHIN: Duration = Duration::from_secs(2);
+
+/// A stop is where the joints were when it was written: they went on meanwhile, at most so many counts.
+const STAYS_WITHIN: u16 = 150;
+/// A client that stopped the hand repeats that until it sees it rest.
+const STOP_REPEATS: Duration = Duration::from_secs(2);
 
 /// Which clients may move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +69,13 @@ impl ClientLeases {
             // A fault has ended every lease, and nobody can get one before it is cleared. It gives no right to move.
             _ if command == HandCommand::ClearErrors && self.is_free() && self.is_shut() => {
                 return Ok(self.link.write(command).await?);
+            }
+            // Whoever may not move the hand may stop it, while another moves it.
+            ClientLease::Never | ClientLease::Ended(_) if self.stops(client, &command).await => {
+                if self.link.status().holder.is_some() {
+                    self.link.stop();
+                }
+                return Ok(());
             }
             ClientLease::Never => self.take(client, Claim::Wrote).await?,
             ClientLease::Ended(_) => return Err(WriteRefusal::Over),
@@ -156,6 +170,30 @@ impl ClientLeases {
         self.writers == Writers::First && self.link.status().holder.is_none()
     }
 
+    /// Whether this is a stop of what another moves, or its repetition: all joints are told to stay about where they are.
+    async fn stops(&self, client: ClientId, command: &HandCommand) -> bool {
+        let HandCommand::Angles(targets) = command else {
+            return false;
+        };
+        let now = Instant::now();
+        let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
+        let stopped = self.board.with(stopped);
+        let status = self.link.status();
+        let may_stop = status.holder.is_some()
+            || status.state == LinkState::Holding
+            || stopped.is_some_and(|at| now.duration_since(at) < STOP_REPEATS);
+        if self.writers != Writers::First || !may_stop {
+            return false;
+        }
+        let angles = self.values(&ANGLE_ACT, Ok::<i16, OutOfRange>).await;
+        let stops = angles.is_ok_and(|angles| stays(targets, &angles));
+        if stops {
+            self.board
+                .with(|board| board.row(client).map(|row| row.stopped = Some(now)));
+        }
+        stops
+    }
+
     /// Whether nobody can get the right now: a drive reports a fault, or the stop that it caused goes on.
     fn is_shut(&self) -> bool {
         matches!(
@@ -245,6 +283,14 @@ impl ClientLeases {
         let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
         Ok(PerDof::new(values))
     }
+}
+
+/// Whether targets keep every joint about where it is.
+fn stays(targets: &PerDof<Target>, angles: &PerDof<i16>) -> bool {
+    targets.iter().all(|(dof, target)| match target {
+        Target::Go(to) => to.get().abs_diff(angles[dof]) <= STAYS_WITHIN,
+        Target::Leave => false,
+    })
 }
 
 /// Waits until the hand is armed, or the link says why not.

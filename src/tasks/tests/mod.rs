@@ -4,6 +4,7 @@ mod booth;
 mod exhibit;
 mod fake;
 mod grip;
+mod move_to;
 mod place;
 mod play;
 mod rest;

@@ -11,4 +11,6 @@ mod foxglove;
 mod lab;
 mod place;
 mod reads;
+#[cfg(unix)]
+mod stdio;
 mod writes;

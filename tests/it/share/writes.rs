@@ -133,6 +133,36 @@ async fn two_clients_at_once_one_moves_the_hand_and_the_other_looks_on() {
 }
 
 #[tokio::test]
+async fn whoever_may_not_move_the_hand_stops_what_another_moves_and_may_not_move_it_by_that() {
+    let place = first_may().await;
+    let (mut mover, mut other) = (mover(&place).await, place.client().await);
+    sleep(MOVES_AFTER).await;
+    // A stop is six targets about where the joints are, which another program writes again until it sees rest.
+    let five = read(&mut other, 1546, 5).await;
+    assert_eq!(put(&mut other, 1486, &five).await, BUSY, "not all joints");
+    let far = [700, 1000, 1000, 1000, 1000, 1000];
+    assert_eq!(
+        put(&mut other, 1486, &far).await,
+        BUSY,
+        "not where they are"
+    );
+    let before = targets(&place).len();
+    for _ in 0..8 {
+        let here = read(&mut other, 1546, 6).await;
+        assert_eq!(put(&mut other, 1486, &here).await, Ok(()));
+        sleep(Duration::from_millis(40)).await;
+    }
+    is_stopped(&place).await;
+    assert!(targets(&place).len() > before, "the link held it");
+    let shown = place.gateway.clients();
+    let stop = LeaseRefusal::Ended(Disarmed::Stop);
+    assert_eq!(shown[0].lease, ClientLease::Ended(stop));
+    assert_eq!(shown[1].lease, ClientLease::Never);
+    assert_eq!(put(&mut mover, INDEX, &[0]).await, BUSY, "it was ended");
+    assert_eq!(put(&mut other, INDEX, &[0]).await, Ok(()), "the next may");
+}
+
+#[tokio::test]
 async fn what_clients_may_not_write_never_reaches_the_wire() {
     let place = first_may().await;
     let mut client = mover(&place).await;

@@ -1,0 +1,384 @@
+"""One hand: its states, and what moves it."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import subprocess
+import tempfile
+import threading
+import time
+from collections import deque
+from contextlib import contextmanager
+from types import TracebackType
+from typing import Any, Callable, Deque, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Type, Union
+
+from . import program
+from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Taken, of
+from .state import JOINTS, Grip, GripResult, State, Touch
+
+CLOSING = ("little", "ring", "middle", "index", "thumb_bend")
+"""The joints that `close_until` closes, unless others are named."""
+
+_WAITING_MAX = 4096
+_FIRST_STATE_S = 5.0
+_WINDOW_OPENS_S = 2.0
+_COMMAND_GONE_S = 1.0
+
+_log = logging.getLogger("handscope")
+
+Callback = Callable[[State], None]
+
+
+class States:
+    """States one after the other. One that is not taken in time makes room, and the next says so in `lost`."""
+
+    def __init__(self, hand: "Hand") -> None:
+        self._hand = hand
+        self._waiting: Deque[State] = deque()
+        self._lost = 0
+        self._news = threading.Condition()
+
+    def _take(self, state: Optional[State]) -> None:
+        with self._news:
+            if state:
+                self._waiting.append(state)
+                if len(self._waiting) > _WAITING_MAX:
+                    self._lost += 1 + self._waiting.popleft().lost
+            self._news.notify_all()
+
+    def __iter__(self) -> "States":
+        return self
+
+    def __next__(self) -> State:
+        with self._news:
+            self._news.wait_for(lambda: self._waiting or self._hand._ended)
+            if not self._waiting:
+                raise StopIteration
+            state = self._waiting.popleft()
+            if self._lost:
+                object.__setattr__(state, "lost", state.lost + self._lost)
+                self._lost = 0
+            return state
+
+    def close(self) -> None:
+        """Takes no more."""
+        self._hand._readers.discard(self)
+
+    def __enter__(self) -> "States":
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.close()
+
+
+class Recording:
+    """A recording that goes on, until `end()` or the end of its `with` block."""
+
+    def __init__(self, hand: "Hand", path: str) -> None:
+        self._hand = hand
+        self.path = path
+        self._goes_on = True
+
+    def end(self) -> None:
+        """Ends the file; it is whole then."""
+        if self._goes_on:
+            self._goes_on = False
+            self._hand._program.ask("record", path=None)
+
+    def __enter__(self) -> "Recording":
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        if not self._hand._ended:
+            self.end()
+
+
+class Hand:
+    """A hand that this script shares. `handscope.open` gives one; `close()` or the end of its `with` block stops what moves."""
+
+    def __init__(self, url: str, hz: float = 100.0, side: str = "right", port: int = 0) -> None:
+        self._news = threading.Condition()
+        self._newest: Optional[State] = None
+        self._lost = 0
+        self._ended: Optional[str] = None
+        self._link_lost: Optional[str] = None
+        self._disarmed: Optional[HandscopeError] = None
+        self._refused: Optional[HandscopeError] = None
+        self._armed: Optional[Dict[str, Optional[int]]] = None
+        self._callbacks: List[Callback] = []
+        self._readers: set[States] = set()
+        self._windows: List["subprocess.Popen[str]"] = []
+        options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}", "--writers"]
+        self._side = side
+        self._program = program.Program(options, self._told)
+        ready = self._program.ready or {}
+        self.url: str = ready["hand"]
+        """The hand, as the program spells it."""
+        self.simulated: bool = ready["simulated"]
+        """True for the built-in hand."""
+        self.share_url: str = f"tcp:{ready['tcp']}"
+        """Where other programs of this computer, and other scripts, find the same hand."""
+        if hz != 100.0:
+            self.rate(hz)
+
+    # What is heard
+
+    def _told(self, told: Mapping[str, Any]) -> None:
+        """Takes what the program says, on the thread that reads it."""
+        if "state" in told:
+            state = State._of(told["state"], self._lost)
+            self._lost = 0
+            with self._news:
+                self._newest = state
+                self._link_lost = None
+                self._news.notify_all()
+            for reader in list(self._readers):
+                reader._take(state)
+            for callback in list(self._callbacks):
+                try:
+                    callback(state)
+                except Exception:
+                    _log.exception("a callback of states failed, and is called no more")
+                    self._callbacks.remove(callback)
+        elif "lost" in told:
+            self._lost += told["lost"]
+        elif "disarmed" in told:
+            self._disarmed = of(told["disarmed"]["kind"], told["disarmed"]["why"])
+        elif "refused" in told:
+            self._refused = of(told["refused"]["kind"], told["refused"]["why"])
+        elif "link" in told:
+            with self._news:
+                lost = told["link"]["state"] == "lost"
+                self._link_lost = (told["link"]["why"] or "the link to the hand is lost") if lost else None
+                self._news.notify_all()
+        elif "ended" in told:
+            with self._news:
+                self._ended = told["ended"]
+                self._news.notify_all()
+            for reader in list(self._readers):
+                reader._take(None)
+
+    @property
+    def state(self) -> State:
+        """The newest state. Waits for the first; raises if the hand does not answer any more."""
+        with self._news:
+            self._news.wait_for(lambda: self._newest or self._ended or self._link_lost, _FIRST_STATE_S)
+            if self._ended:
+                raise HandscopeError(self._ended)
+            if self._link_lost:
+                raise LinkLost(self._link_lost, "link_lost")
+            if not self._newest:
+                raise HandscopeError("the hand tells no state")
+            return self._newest
+
+    @property
+    def touch(self) -> Dict[str, Touch]:
+        """The fingertips of the newest state."""
+        return self.state.touch
+
+    @property
+    def grip(self) -> Grip:
+        """What the hand does to an object, in the newest state."""
+        return self.state.grip
+
+    def states(self) -> States:
+        """The states from now on, each one: `for state in hand.states():`."""
+        states = States(self)
+        self._readers.add(states)
+        return states
+
+    def on_state(self, callback: Callback) -> Callable[[], None]:
+        """Calls back with each state from now on, on a thread of its own; gives what ends that. Be quick: what is not read in
+        time is lost, and told as lost."""
+        self._callbacks.append(callback)
+        return lambda: self._callbacks.remove(callback)
+
+    def rate(self, hz: float) -> None:
+        """Reads so many states a second, up to 500, or as many as the wire carries."""
+        self._program.ask("rate", state_hz=float(hz))
+
+    # What moves the hand
+
+    @contextmanager
+    def armed(self, speed: Optional[int] = None, force_g: Optional[int] = None) -> Iterator["Hand"]:
+        """Lets this script move the hand, beginning with this speed and force threshold (gentle ones, if none are named).
+        The hand stops where the block ends, however it does."""
+        if self._armed is not None:
+            raise NotArmed("the hand is armed already, in a block around this one")
+        limits = {"speed": speed, "force_g": force_g}
+        self._armed = limits
+        try:
+            self._program.ask("arm", **limits)
+            self._disarmed = self._refused = None
+            yield self
+        finally:
+            self._armed = None
+            if not self._ended:
+                self._program.ask("release")
+
+    def _may_move(self) -> None:
+        if self._armed is None:
+            raise NotArmed("nothing was moved: the hand moves only inside 'with hand.armed():'")
+        if self._disarmed is not None:
+            raise self._disarmed
+        refused, self._refused = self._refused, None
+        if refused is not None:
+            # What was sent before, and not waited for.
+            raise refused
+
+    def _moves(self, **fields: Any) -> GripResult:
+        self._may_move()
+        try:
+            return GripResult._done(self._program.ask("move", timeout_s=None, **fields))
+        except Disarmed as why:
+            self._disarmed = why
+            raise
+
+    def move(self, *, speed: Optional[int] = None, force_g: Optional[int] = None, **joints: float) -> GripResult:
+        """Moves joints to these angles, 0 bent to 1000 open, and waits until they are there, or something stops them:
+        `hand.move(index=400, thumb_bend=600, speed=100)`. Other joints are left alone."""
+        return self._moves(angle=_six(joints), speed=speed, force_g=force_g)
+
+    def close_until(
+        self, force_g: int, joints: Sequence[str] = CLOSING, *, to: int = 0, speed: Optional[int] = None
+    ) -> GripResult:
+        """Closes joints until each presses with about this force, or is at `to`; waits until the hand rests, and says what it
+        holds. A force threshold acts late: the faster, the more a finger presses (`handscope help safety`)."""
+        angle = _six({joint: to for joint in joints})
+        return self._moves(angle=angle, speed=speed, force_g=force_g, settle=True)
+
+    def follow(self, **joints: Optional[float]) -> None:
+        """Sends a target to be followed, 0 bent to 1 open, and waits for nothing. For loops: without the next within 0.2 s the
+        hand is held. How fast and how far ahead it goes is bounded (`handscope help stream`)."""
+        self._may_move()
+        unknown = set(joints) - set(JOINTS)
+        if unknown:
+            raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
+        self._program.tell({self._side: [joints.get(joint) for joint in JOINTS]})
+
+    def stop(self) -> None:
+        """Stops the hand, whoever moves it, and waits until it is seen to rest. An `armed()` block is over with it."""
+        self._disarmed = Disarmed("this script stopped the hand: arm it again", "stop")
+        self._program.ask("stop")
+
+    def clear_faults(self) -> None:
+        """Clears what drives report and can be cleared. That moves nothing; outside `armed()`."""
+        self._program.ask("clear")
+
+    # What the program does as commands
+
+    def trial(self, joint: Union[str, Sequence[str]], **options: Any) -> List[Mapping[str, Any]]:
+        """Closes joints on an object and measures each grasp, as `handscope trial` does, with its options:
+        `hand.trial("index", speed=[25, 250], force=500)`. Gives the trials."""
+        told, why = self._command("trial", joint=joint, **options)
+        if why:
+            raise HandscopeError(why)
+        return [one["trial"] for one in told if "trial" in one]
+
+    def tune(self, joint: Union[str, Sequence[str]], limit: int, **options: Any) -> Mapping[str, Any]:
+        """Finds the fastest close that stays under a force, as `handscope tune` does. Without a result, `why` says why."""
+        return _last("tune", *self._command("tune", joint=joint, limit=limit, **options))
+
+    def check(self, **options: Any) -> Mapping[str, Any]:
+        """Checks an empty hand for wear, as `handscope check` does. It is not kept with the hand's earlier ones."""
+        with tempfile.TemporaryDirectory() as folder:
+            return _last("check", *self._command("check", **{"folder": folder, **options}))
+
+    def grip_to(self, gap_mm: float, **options: Any) -> Mapping[str, Any]:
+        """Closes thumb and index to a gap, as `handscope grip` does."""
+        return _last("grip", *self._command("grip", gap=gap_mm, **options))
+
+    def _command(self, name: str, **options: Any) -> Tuple[List[Any], Optional[str]]:
+        """Lets a command move the hand in this script's place, over the shared hand: what it told, and why it failed, if so."""
+        self._may_move()
+        self._program.ask("disarm")
+        done = program.run([name, "--hand", self.share_url, *_options(options), "--arm", "--json"])
+        if done.why and not done.did_nothing:
+            # It may have been stopped by a person, who is not overruled.
+            self._disarmed = Disarmed(f"'{name}' ended early, and the hand is not armed any more: {done.why}", "ended")
+        else:
+            self._rearm()
+        return [json.loads(line) for line in done.lines], done.why
+
+    def _rearm(self) -> None:
+        """Arms again after a command, whose end is known here a moment before the shared hand knows it."""
+        until = time.monotonic() + _COMMAND_GONE_S
+        while True:
+            try:
+                self._program.ask("arm", **(self._armed or {}))
+                return
+            except Taken as taken:
+                if time.monotonic() > until:
+                    self._disarmed = taken
+                    raise
+            time.sleep(0.02)
+
+    # Beside it
+
+    def record(self, path: Union[str, "os.PathLike[str]"]) -> Recording:
+        """Records everything from now on, until the block or the recording ends: `with hand.record("grasp.mcap"):`."""
+        whole = os.path.abspath(path)
+        self._program.ask("record", path=whole)
+        return Recording(self, whole)
+
+    def show(self) -> None:
+        """Opens the window on the same hand. STOP works there, also while this script moves the hand; after it, a person can
+        arm the hand there, and the script is told."""
+        command = [self._program.path, "--hand", self.share_url]
+        window = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **program.apart())
+        try:
+            _told, words = window.communicate(timeout=_WINDOW_OPENS_S)
+        except subprocess.TimeoutExpired:
+            self._windows.append(window)
+            return
+        raise HandscopeError(program.sentence(words.splitlines(), "the window was closed at once"))
+
+    def close(self) -> None:
+        """Stops a hand that may move, and ends its program and its windows."""
+        self._program.close()
+        self._ended = "this hand was closed"
+        for window in self._windows:
+            window.terminate()
+            window.communicate()
+
+    def __enter__(self) -> "Hand":
+        return self
+
+    def __exit__(
+        self, _type: Optional[Type[BaseException]], _error: Optional[BaseException], _trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<handscope.Hand {self.url}>"
+
+
+def _six(joints: Mapping[str, float]) -> List[Optional[int]]:
+    unknown = set(joints) - set(JOINTS)
+    if unknown:
+        raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
+    return [None if (at := joints.get(joint)) is None else round(at) for joint in JOINTS]
+
+
+def _options(options: Mapping[str, Any]) -> List[str]:
+    """Keywords as options of the command line: `max_temp=60` is `--max-temp 60`."""
+    words: List[str] = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is True:
+            words.append(option)
+        elif isinstance(value, (list, tuple)):
+            words += [option, ",".join(map(str, value))]
+        elif value is not None and value is not False:
+            words += [option, str(value)]
+    return words
+
+
+def _last(key: str, told: List[Any], why: Optional[str]) -> Mapping[str, Any]:
+    for one in reversed(told):
+        if key in one:
+            found: Mapping[str, Any] = one[key]
+            return found
+    raise HandscopeError(why or f"'handscope {key}' told no result")

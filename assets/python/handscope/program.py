@@ -1,0 +1,248 @@
+"""The program beside this package: where it is, and a conversation with it by lines of JSON (`handscope help share`)."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import logging
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import threading
+import weakref
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+from .errors import HandscopeError, ProgramNotFound, of
+
+LINES_VERSION = 1
+"""The version of the lines that is spoken here."""
+
+_log = logging.getLogger("handscope")
+_children: "weakref.WeakSet[subprocess.Popen[str]]" = weakref.WeakSet()
+_NAME = "handscope.exe" if os.name == "nt" else "handscope"
+_WITHIN_S = 30.0
+
+
+def find() -> str:
+    """The program: beside this package, then `$HANDSCOPE`, then on the path."""
+    user = sysconfig.get_preferred_scheme("user") if sys.version_info >= (3, 10) else f"{os.name}_user"
+    places = [
+        Path(sysconfig.get_path("scripts"), _NAME),
+        Path(sysconfig.get_path("scripts", user), _NAME),
+        Path(__file__).parent.parent / "bin" / _NAME,  # pip install --target
+    ]
+    for place in places:
+        if os.access(place, os.X_OK):
+            return str(place)
+    named = os.environ.get("HANDSCOPE") or shutil.which(_NAME)
+    if named and os.access(named, os.X_OK):
+        return named
+    if named:
+        raise ProgramNotFound(f"$HANDSCOPE names {named}, which is no program; unset it, or name the program 'handscope'")
+    raise ProgramNotFound(
+        "the program 'handscope' is not installed: 'pip install handscope' brings it, or name it in $HANDSCOPE"
+    )
+
+
+class Ran(NamedTuple):
+    """A command that was run to its end."""
+
+    lines: List[str]
+    why: Optional[str]
+    """Why it failed, if it did."""
+    did_nothing: bool
+    """It was used wrongly."""
+
+
+def run(arguments: Sequence[str]) -> Ran:
+    """Runs a command to its end. Ctrl-C ends it as in a terminal."""
+    child = subprocess.Popen(
+        [find(), *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        **apart(),
+    )
+    try:
+        told, words = child.communicate()
+    except BaseException:
+        child.terminate()  # taken as Ctrl-C: the hand is stopped first
+        child.communicate()
+        raise
+    said: List[str] = words.splitlines()
+    if child.returncode:
+        why = sentence(said, f"'handscope {arguments[0]}' failed")
+        return Ran(told.splitlines(), why, child.returncode == 2)
+    for line in said:
+        _log.info("%s", line)
+    return Ran(told.splitlines(), None, False)
+
+
+def apart() -> Dict[str, Any]:
+    """Ctrl-C is for the script, which stops the hand on its way out."""
+    if os.name == "nt":
+        return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}  # type: ignore[attr-defined]
+    return {"start_new_session": True}
+
+
+def sentence(words: Sequence[str], otherwise: str) -> str:
+    """The last thing that the program said, without its name."""
+    said = [line.strip() for line in words if line.strip()]
+    for line in reversed(said):
+        if line.startswith(("handscope: ", "error: ")):
+            return line.split(": ", 1)[1]
+    return said[-1] if said else otherwise
+
+
+class Program:
+    """One shared hand, in a process of its own. That process stops the hand when this one ends, however it does."""
+
+    def __init__(self, arguments: Sequence[str], on_told: Callable[[Mapping[str, Any]], None]) -> None:
+        self.path = find()
+        """Where the program is."""
+        self._on_told = on_told
+        self._ids = itertools.count(1)
+        self._lock = threading.Lock()
+        self._waiting: Dict[int, Dict[str, Any]] = {}
+        self._answered = threading.Condition()
+        self._words: List[str] = []
+        self.ready: Optional[Mapping[str, Any]] = None
+        self._ended = False
+        self._child = subprocess.Popen(
+            [self.path, "share", *arguments, "--stdio"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            bufsize=1,
+            **apart(),
+        )
+        _keep_from_forks(self._child)
+        self._reader = threading.Thread(target=self._read, name="handscope", daemon=True)
+        self._listener = threading.Thread(target=self._listen, name="handscope-words", daemon=True)
+        self._reader.start()
+        self._listener.start()
+        with self._answered:
+            self._answered.wait_for(lambda: self.ready or self._ended, _WITHIN_S)
+        if not self.ready:
+            self.close()
+            raise self._why_not()
+        if self.ready["v"] != LINES_VERSION:
+            self.close()
+            raise ProgramNotFound(self._other_version(str(self.ready["program"])))
+
+    def _why_not(self) -> HandscopeError:
+        """Why the program did not begin."""
+        if self._child.returncode == 2 and any("--stdio" in line for line in self._words):
+            told = subprocess.run([self.path, "--version"], capture_output=True, text=True).stdout
+            version = re.search(r"\d+(\.\d+)+\S*", told)
+            return ProgramNotFound(self._other_version(version.group() if version else "of an unknown version"))
+        return HandscopeError(sentence(self._words, "the program 'handscope' ended without a word"))
+
+    def _other_version(self, version: str) -> str:
+        return f"the program at {self.path} is version {version}, which this package cannot speak to: install both from one wheel"
+
+    def ask(self, what: str, timeout_s: Optional[float] = _WITHIN_S, **fields: Any) -> Mapping[str, Any]:
+        """Asks one thing and waits for the answer."""
+        own = next(self._ids)
+        self._waiting[own] = {}
+        try:
+            self.tell({"id": own, "do": what, **fields})
+            with self._answered:
+                if not self._answered.wait_for(lambda: self._waiting[own] or self._ended, timeout_s):
+                    raise HandscopeError(f"the program did not answer '{what}' within {timeout_s} s")
+            reply = self._waiting[own]
+        finally:
+            del self._waiting[own]
+        if not reply:
+            raise self._gone()
+        if "error" in reply:
+            raise of(reply["kind"], reply["error"])
+        done: Mapping[str, Any] = reply["ok"]
+        return done
+
+    def tell(self, line: Mapping[str, Any]) -> None:
+        """Sends a line, and waits for nothing."""
+        text = json.dumps(line, allow_nan=False) + "\n"
+        try:
+            with self._lock:
+                assert self._child.stdin
+                self._child.stdin.write(text)
+                self._child.stdin.flush()
+        except (OSError, ValueError):
+            raise self._gone() from None
+
+    def _gone(self) -> HandscopeError:
+        return HandscopeError(sentence(self._words, "the program 'handscope' has ended"))
+
+    def _read(self) -> None:
+        assert self._child.stdout
+        for line in self._child.stdout:
+            told = json.loads(line)
+            if "state" in told:
+                self._on_told(told)
+                continue
+            with self._answered:
+                if "ready" in told:
+                    self.ready = told["ready"]
+                reply = told.get("reply")
+                if reply and reply["id"] in self._waiting:
+                    self._waiting[reply["id"]].update(reply)
+                self._answered.notify_all()
+            self._on_told(told)
+        self._listener.join(2.0)
+        with self._answered:
+            self._ended = True
+            self._answered.notify_all()
+        self._on_told({"ended": str(self._gone())})
+
+    def _listen(self) -> None:
+        assert self._child.stderr
+        for line in self._child.stderr:
+            self._words = [*self._words[-19:], line]
+            if self.ready:
+                _log.info("%s", line.strip())
+
+    def close(self) -> None:
+        """Ends the program, which stops a hand that may move, and waits for that."""
+        with self._lock:
+            if self._child.stdin and not self._child.stdin.closed:
+                try:
+                    self._child.stdin.close()
+                except OSError:
+                    pass
+        try:
+            self._child.wait(_WITHIN_S)
+        except subprocess.TimeoutExpired:
+            self._child.kill()
+            self._child.wait()
+        if threading.current_thread() is not self._reader:
+            self._reader.join(5.0)
+        self._listener.join(5.0)
+        for pipe in (self._child.stdout, self._child.stderr):
+            if pipe:
+                pipe.close()
+
+
+def _keep_from_forks(child: "subprocess.Popen[str]") -> None:
+    """A forked worker must not keep the program's standard input open: it would outlive the script that moved the hand."""
+    _children.add(child)
+
+
+def _close_in_fork() -> None:
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for child in list(_children):
+        for pipe in (child.stdin, child.stdout, child.stderr):
+            if pipe and not pipe.closed:
+                os.dup2(nothing, pipe.fileno())
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_close_in_fork)

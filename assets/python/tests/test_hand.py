@@ -1,0 +1,301 @@
+"""The package with the real program, on simulated hands: python -m unittest discover assets/python/tests
+
+HANDSCOPE_SECONDS is how long 500 states a second are read (5).
+"""
+
+import contextlib
+import os
+import pathlib
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import time
+import unittest
+
+import handscope
+from handscope import program
+
+STOPS_WITHIN_S = 0.3
+INDEX_SET, INDEX_ACT = 1492, 1552
+
+
+@contextlib.contextmanager
+def simulated():
+    """A hand served by another process, and a client of its registers, which knows nothing of Handscope."""
+    command = [program.find(), "sim", "--tcp", "127.0.0.1:0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sim:
+        address = sim.stdout.readline().split()[2]
+        host, port = address.rsplit(":", 1)
+        with socket.create_connection((host, int(port))) as client:
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+            def read(register):
+                client.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, register, 1))
+                return struct.unpack(">HHHBBBH", client.recv(64))[6]
+
+            yield f"tcp:{address}", read
+        sim.terminate()
+
+
+@contextlib.contextmanager
+def script(hand, text):
+    """A script that moves the index finger slowly, once it says so."""
+    head = f"import handscope, time, sys, os, signal\nhand = handscope.open({hand!r})\n"
+    with subprocess.Popen(
+        [sys.executable, "-c", head + textwrap.dedent(text)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as running:
+        yield running
+        running.kill()
+
+
+MOVES = """
+import threading
+with hand.armed():
+    threading.Timer(0.4, lambda: print("moves", flush=True)).start()
+    hand.move(index=0, speed=50)
+"""
+
+
+class Stops(unittest.TestCase):
+    def held_within(self, read, since):
+        while read(INDEX_SET) == 0:
+            self.assertLess(time.monotonic() - since, 20, "it goes on")
+        took = time.monotonic() - since
+        self.assertLess(took, STOPS_WITHIN_S)
+        self.assertGreater(read(INDEX_SET), 300)
+        return took
+
+    def ended_by(self, number, text=MOVES):
+        with simulated() as (hand, read), script(hand, text) as running:
+            self.assertEqual(running.stdout.readline(), "moves\n", running.stderr.read if running.poll() else "")
+            self.assertEqual(read(INDEX_SET), 0)
+            since = time.monotonic()
+            running.send_signal(number)
+            took = self.held_within(read, since)
+            running.wait(20)
+            return took, running.stderr.read()
+
+    def test_kill_9_stops_the_hand(self):
+        took, _ = self.ended_by(signal.SIGKILL)
+        print(f"held {took * 1000:.0f} ms after kill -9")
+
+    def test_ctrl_c_stops_the_hand(self):
+        _, said = self.ended_by(signal.SIGINT)
+        self.assertIn("KeyboardInterrupt", said)
+
+    def test_a_forked_worker_does_not_keep_the_hand_moving(self):
+        worker = "\nif os.fork() == 0:\n    [os.close(n) for n in (1, 2)]\n    time.sleep(5)\n    os._exit(0)\n"
+        self.ended_by(signal.SIGKILL, worker + MOVES)
+
+    def test_an_exception_in_the_block_stops_the_hand_and_passes(self):
+        with simulated() as (url, read), handscope.open(url) as hand:
+            with self.assertRaises(ZeroDivisionError), hand.armed():
+                threading.Thread(target=lambda: self.assertRaises(handscope.HandscopeError, hand.move, index=0, speed=50)).start()
+                while read(INDEX_SET) != 0:
+                    time.sleep(0.01)
+                time.sleep(0.3)
+                1 / 0
+            self.assertGreater(read(INDEX_SET), 500)
+
+
+class Moves(unittest.TestCase):
+    def test_nothing_moves_outside_armed(self):
+        with handscope.open("sim:") as hand:
+            for act in (
+                lambda: hand.move(index=0),
+                lambda: hand.close_until(300),
+                lambda: hand.follow(index=0.0),
+                lambda: hand.trial("index"),
+            ):
+                with self.assertRaisesRegex(handscope.NotArmed, "only inside 'with hand.armed"):
+                    act()
+            with hand.armed():
+                pass
+            with self.assertRaises(handscope.NotArmed):
+                hand.move(index=0)
+            self.assertEqual(hand.state.angle["index"], 1000)
+
+    def test_a_grasp_tells_what_it_holds(self):
+        with handscope.open("sim:") as hand, hand.armed():
+            self.assertEqual(hand.move(index=800, speed=500).end, "reached")
+            grip = hand.close_until(force_g=300, joints=("index", "thumb_bend"), speed=300)
+            self.assertTrue(grip.holding and not grip.empty, grip)
+            self.assertEqual((grip.end, grip.fingers["index"]), ("stopped", "holding"))
+            self.assertGreater(hand.state.force_g["index"], 100)
+            self.assertGreater(hand.touch["index"].normal_n, 0.5)
+
+    def test_what_is_wrong_is_told_in_the_programs_words_and_moves_nothing(self):
+        with handscope.open("sim:") as hand, hand.armed():
+            for error, words, act in (
+                (handscope.Refused, "0 to 1000", lambda: hand.move(index=1400)),
+                (handscope.Refused, "rated for 2000 g", lambda: hand.close_until(2500)),
+                (ValueError, "thumb_bend", lambda: hand.move(thumb=3)),
+                (handscope.HandscopeError, "3 to 120", lambda: hand.grip_to(1)),
+            ):
+                with self.assertRaisesRegex(error, words):
+                    act()
+            self.assertEqual(hand.state.angle["index"], 1000)
+            self.assertEqual(hand.move(index=900, speed=500).end, "reached", "it goes on after that")
+
+    def test_a_loop_is_followed(self):
+        with handscope.open("sim:") as hand, hand.armed():
+            until = time.monotonic() + 20
+            while hand.state.angle["index"] > 520:
+                hand.follow(index=0.5)
+                time.sleep(0.02)
+                self.assertLess(time.monotonic(), until)
+            self.assertEqual(hand.state.angle["middle"], 1000)
+
+    def test_commands_run_in_the_scripts_place(self):
+        with handscope.open("sim:?scenario=rigid") as hand, hand.armed():
+            options = {"start": 600, "close": 300, "speed": [250], "force": 250, "dwell": 0.3, "rest": 0.1}
+            trials = hand.trial("index", ceiling=4000, **options)
+            self.assertEqual(len(trials), 1)
+            self.assertGreater(trials[0]["joints"][0]["peak_force_g"], 200)
+            self.assertEqual(hand.move(index=900, speed=500).end, "reached")
+
+    def test_two_scripts_at_one_hand(self):
+        with handscope.open("sim:") as first, handscope.open(first.share_url) as second:
+            moved = []
+            with first.armed():
+                with self.assertRaisesRegex(handscope.HandscopeError, "armed"), second.armed():
+                    self.fail("one at a time")
+                mover = threading.Thread(target=lambda: moved.append(error_of(lambda: first.move(index=0, speed=50))))
+                mover.start()
+                until(lambda: second.state.angle["index"] < 950)
+                second.stop()
+                mover.join()
+                self.assertIsInstance(moved[0], handscope.Disarmed)
+                self.assertRegex(str(moved[0]), "told to stop")
+                with self.assertRaises(handscope.Disarmed):
+                    first.move(index=0)
+            with second.armed():
+                second.move(index=900, speed=500)
+            self.assertEqual(second.state.angle["index"] // 10, first.state.angle["index"] // 10)
+
+
+def until(there):
+    """Waits. A link through a program that gets no time on a busy machine may be lost for a moment."""
+    over = time.monotonic() + 20
+    while time.monotonic() < over:
+        with contextlib.suppress(handscope.LinkLost):
+            if there():
+                return
+        time.sleep(0.01)
+    raise AssertionError("not within 20 s")
+
+
+def error_of(act):
+    try:
+        act()
+    except handscope.HandscopeError as error:
+        return error
+
+
+class Hears(unittest.TestCase):
+    def test_500_states_a_second_and_none_lost(self):
+        seconds = float(os.environ.get("HANDSCOPE_SECONDS", "5"))
+        called = []
+        with handscope.open("sim:", hz=500) as hand:
+            hand.on_state(called.append)
+            states, lost, first = 0, 0, None
+            for state in hand.states():
+                states, lost, first = states + 1, lost + state.lost, first or state
+                if state.t_s - first.t_s >= seconds:
+                    break
+            hz = states / (state.t_s - first.t_s)
+        print(f"{states} states, {hz:.0f} a second, {lost} lost")
+        self.assertEqual((lost, sum(state.lost for state in called)), (0, 0))
+        self.assertGreater(hz, 250, "also on a machine that does other work")
+
+    def test_what_is_not_taken_in_time_is_told_as_lost(self):
+        with handscope.open("sim:") as hand:
+            slow = threading.Event()
+            hand.on_state(lambda state: slow.wait(60))
+            time.sleep(8)  # the reader is held up by its callback
+            seen = hand.states()
+            threading.Timer(0.1, slow.set).start()
+            lost = 0
+            for state in seen:
+                lost += state.lost
+                if lost:
+                    break
+            self.assertGreater(lost, 0)
+
+    def test_several_hands(self):
+        with handscope.open("sim:?seed=1") as one, handscope.open("sim:?seed=2") as other:
+            with one.armed(), other.armed():
+                one.move(index=800, speed=500)
+                self.assertEqual(other.state.angle["index"], 1000)
+
+    def test_a_recording_becomes_a_table(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "grasp.mcap")
+            with handscope.open("sim:") as hand:
+                with hand.record(path), hand.armed():
+                    hand.move(index=700, speed=500)
+                with self.assertRaisesRegex(handscope.Refused, "already there"):
+                    hand.record(path)
+            frame = handscope.read(path)
+            self.assertLessEqual({"time_s", "angle_index", "force_index_g", "normal_thumb_N"}, set(frame.columns))
+            self.assertLess(frame["angle_index"].min(), 730)
+            self.assertLess(len(handscope.read(path, end_s=0.2)), len(frame))
+            with self.assertRaisesRegex(handscope.HandscopeError, "nowhere"):
+                handscope.read("nowhere.mcap")
+
+    def test_a_hand_that_is_lost_is_an_exception_and_no_old_value(self):
+        with simulated() as (url, _read):
+            hand = handscope.open(url)
+            self.assertEqual(hand.state.angle["index"], 1000)
+        until = time.monotonic() + 20
+        with self.assertRaises(handscope.LinkLost), hand:
+            while time.monotonic() < until:
+                time.sleep(0.01)
+                self.assertLess(hand.state.age_s, 5)
+
+
+class Begins(unittest.TestCase):
+    def test_no_hand_is_told_in_one_sentence(self):
+        with self.assertRaisesRegex(handscope.HandscopeError, "^no hand at tcp:127.0.0.1:1.*refused the connection"):
+            handscope.open("tcp:127.0.0.1:1")
+        with self.assertRaisesRegex(handscope.HandscopeError, "names no kind of link"):
+            handscope.open("hand")
+
+    def in_place_of_the_program(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            other = pathlib.Path(folder, "handscope")
+            if text:
+                other.write_text(f"#!{sys.executable}\n{textwrap.dedent(text)}")
+                other.chmod(0o755)
+            code = "import handscope\ntry: handscope.open('sim:')\nexcept handscope.ProgramNotFound as error: print(error)"
+            places = {**os.environ, "HANDSCOPE": str(other) if text else "", "PATH": folder, "HOME": folder}
+            # Not the one beside this package.
+            patch = "import sysconfig; sysconfig.get_path = lambda *_: '/nowhere'\n"
+            done = subprocess.run([sys.executable, "-c", patch + code], env=places, capture_output=True, text=True)
+            return done.stdout + done.stderr
+
+    def test_a_missing_program_is_told_in_one_sentence(self):
+        self.assertRegex(self.in_place_of_the_program(None), "^the program 'handscope' is not installed: .*\n$")
+
+    def test_another_version_is_told_in_one_sentence(self):
+        older = """
+        import sys
+        if "--version" in sys.argv: print("handscope 0.0.9")
+        else: sys.exit(print("error: unexpected argument '--stdio' found", file=sys.stderr) or 2)
+        """
+        self.assertRegex(self.in_place_of_the_program(older), "^the program at .* is version 0.0.9, which .*\n$")
+        newer = """
+        import sys
+        print('{"ready": {"v": 2, "program": "9.0.0", "hand": "sim:", "simulated": true, "tcp": null}}', flush=True)
+        sys.stdin.read()
+        """
+        self.assertRegex(self.in_place_of_the_program(newer), "^the program at .* is version 9.0.0, which .*\n$")
+
+
+if __name__ == "__main__":
+    unittest.main()

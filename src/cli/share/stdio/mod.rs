@@ -1,0 +1,565 @@
+//! `share --stdio`: the program that started this one moves and watches the hand by lines of JSON on standard input and output.
+//! The hand is stopped when standard input ends, however that program does.
+
+mod ask;
+mod pipe;
+mod refused;
+
+use crate::cli::out::say;
+use crate::cli::recordings::beside::SideRecording;
+use crate::cli::session;
+use crate::cli::share::stdio::ask::{Ask, Asked, MoveAsk};
+use crate::cli::share::stdio::pipe::{NobodyReads, Told};
+use crate::cli::share::stdio::refused::Refused;
+use crate::cli::watch::telemetry::{grip_json, sample_json};
+use crate::hand::grip::{Grip, GripEstimator};
+use crate::hand::kinematics::Side;
+use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
+use crate::inputs::line::StreamLine;
+use crate::inputs::{Offer, OfferLimits};
+use crate::link::{ArmRequest, Lease, LinkHandle, Owner, Records};
+use crate::record::{Disarmed, LinkState, Record};
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
+use crate::transport::Endpoint;
+use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
+use serde_json::{Value, json};
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::time::{Instant, interval, timeout};
+
+/// Version of the lines.
+const VERSION: u64 = 1;
+/// How often it is looked how the hand stands.
+const LOOK_EACH: Duration = Duration::from_millis(20);
+/// How long the hand may take to be armed, a stop before it included.
+const ARMS_WITHIN: Duration = Duration::from_secs(5);
+/// Targets that may wait to be followed.
+const OFFERS_MAX: usize = 64;
+
+/// The hand that is shared, and as what.
+pub(crate) struct StdioHand<'a> {
+    pub(crate) link: &'a LinkHandle,
+    pub(crate) endpoint: &'a Endpoint,
+    pub(crate) side: Side,
+    /// Where the gateway listens, if there is one.
+    pub(crate) gateway: Option<SocketAddr>,
+}
+
+/// How a task ended.
+enum Done {
+    Armed(Result<ArmEpoch, Refused>),
+    Moved(Result<MoveReport, Refused>),
+    Followed(Result<FollowEnd, Refused>),
+    /// The hand was stopped; whether feedback shows that it rests.
+    Stopped(anyhow::Result<()>),
+    Cleared(Result<(), Refused>),
+}
+
+/// A task at the hand. One at a time.
+struct Task {
+    /// Whom its end is told to; `null` for nobody.
+    id: Value,
+    done: BoxFuture<'static, Done>,
+    /// Where targets go while it follows.
+    offers: Option<mpsc::Sender<Offer>>,
+}
+
+/// The right to move the hand, from `arm` to its end.
+#[derive(Clone, Copy)]
+struct Right {
+    lease: Lease,
+    limits: ArmRequest,
+}
+
+struct Script<'a> {
+    hand: StdioHand<'a>,
+    told: Told,
+    seen: HandSample,
+    grip: GripEstimator,
+    /// Records that were missed, as far as that was told.
+    missed: u64,
+    right: Option<Right>,
+    task: Option<Task>,
+    recording: Option<SideRecording>,
+    /// The recording that is being ended, and whom that is told to.
+    ending: Option<(Value, BoxFuture<'static, ()>)>,
+    is_live: bool,
+}
+
+/// Serves until standard input ends, nobody reads standard output, or the user ends it. A hand that may be moved is stopped.
+pub(crate) async fn serve(
+    hand: StdioHand<'_>,
+    interrupted: impl Future<Output = ()>,
+) -> anyhow::Result<()> {
+    let mut lines = pipe::lines();
+    let mut records = hand.link.records();
+    let mut script = Script {
+        told: Told::stdout()?,
+        seen: HandSample::default(),
+        grip: GripEstimator::default(),
+        missed: 0,
+        right: None,
+        task: None,
+        recording: None,
+        ending: None,
+        is_live: true,
+        hand,
+    };
+    tokio::select! {
+        biased;
+        () = interrupted => {}
+        _nobody_reads = script.run(&mut lines, &mut records) => {}
+    }
+    script.leave().await
+}
+
+impl Script<'_> {
+    async fn run(
+        &mut self,
+        lines: &mut mpsc::Receiver<String>,
+        records: &mut Records,
+    ) -> Result<(), NobodyReads> {
+        self.told.tell(&json!({"ready": {
+            "v": VERSION,
+            "program": env!("CARGO_PKG_VERSION"),
+            "hand": self.hand.endpoint.to_string(),
+            "simulated": self.hand.endpoint.is_sim(),
+            "tcp": self.hand.gateway.map(|at| at.to_string()),
+        }}))?;
+        let mut tick = interval(LOOK_EACH);
+        loop {
+            let task = OptionFuture::from(self.task.as_mut().map(|task| &mut task.done));
+            let ending = OptionFuture::from(self.ending.as_mut().map(|ending| &mut ending.1));
+            tokio::select! {
+                biased;
+                line = lines.recv() => match line {
+                    Some(line) => self.obey(Asked::parse(&line, self.hand.side))?,
+                    None => return Ok(()),
+                },
+                Some(done) = task => self.finish(done)?,
+                Some(()) = ending => self.ended()?,
+                record = records.next() => match record {
+                    Some(record) => self.take(record, records)?,
+                    None => return Ok(()),
+                },
+                _ = tick.tick() => self.look()?,
+            }
+        }
+    }
+
+    /// Stops a hand that may move, and ends the recording.
+    async fn leave(mut self) -> anyhow::Result<()> {
+        let link = self.hand.link;
+        let may_move = self.holds().is_some() || link.status().state == LinkState::Holding;
+        self.task = None;
+        let done = if may_move {
+            session::stopped(link, &mut link.records()).await
+        } else {
+            Ok(())
+        };
+        if let Some(recording) = self.recording.take() {
+            recording.end_here().await;
+        }
+        if let Some((_id, ending)) = self.ending.take() {
+            ending.await;
+        }
+        done
+    }
+
+    /// The right to move the hand, if it still holds.
+    fn holds(&self) -> Option<Right> {
+        self.right
+            .filter(|right| self.hand.link.check(right.lease).is_ok())
+    }
+
+    /// A state, told as `watch` has it.
+    fn take(&mut self, record: Record, records: &Records) -> Result<(), NobodyReads> {
+        let Record::Reading { sample, fresh } = record else {
+            return Ok(());
+        };
+        self.seen = *sample;
+        let read = sample.newest(fresh).unwrap_or_default();
+        let mut grip = self.grip.take(&sample, fresh, read);
+        if self.hand.link.status().feedback_in_doubt {
+            grip = Grip::default();
+        }
+        let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
+            return Ok(());
+        };
+        let missed = records.lost() - self.missed;
+        self.missed = records.lost();
+        let state = || json!({"state": sample_json(&sample, &grip, angle.received)});
+        self.told.state(state, missed)
+    }
+
+    /// Tells what happened to the link and to the right to move the hand.
+    fn look(&mut self) -> Result<(), NobodyReads> {
+        let status = self.hand.link.status();
+        if status.state.is_live() != self.is_live {
+            self.is_live = status.state.is_live();
+            let why = session::trouble(&status).map(ToString::to_string);
+            let state = if self.is_live { "live" } else { "lost" };
+            self.told
+                .tell(&json!({"link": {"state": state, "why": why}}))?;
+        }
+        if self.told.is_stuck()
+            && let Some(right) = self.holds()
+        {
+            say("nobody takes the output for a second: the hand is stopped");
+            let _done = self.hand.link.give_back(right.lease, Disarmed::Silent);
+        }
+        if self.task.is_none()
+            && let Some(right) = self.right
+            && let Err(end) = self.hand.link.check(right.lease)
+        {
+            self.lose(&end.into())?;
+        }
+        Ok(())
+    }
+
+    /// The right to move the hand is over, which was not asked for.
+    fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
+        self.right = None;
+        self.told
+            .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
+    }
+
+    fn reply(&mut self, id: &Value, done: Result<Value, Refused>) -> Result<(), NobodyReads> {
+        if id.is_null() {
+            // Nobody waits for it; what is wrong is told all the same.
+            return match done {
+                Ok(_) => Ok(()),
+                Err(no) => self
+                    .told
+                    .tell(&json!({"refused": {"kind": no.kind, "why": no.why}})),
+            };
+        }
+        self.told.tell(&match done {
+            Ok(done) => json!({"reply": {"id": id, "ok": done}}),
+            Err(no) => json!({"reply": {"id": id, "kind": no.kind, "error": no.why}}),
+        })
+    }
+
+    fn obey(&mut self, asked: Asked) -> Result<(), NobodyReads> {
+        let Asked { id, what } = asked;
+        let done = match what {
+            Err(why) => Err(Refused::new("wrong", why)),
+            Ok(Ask::Rate(rates)) => {
+                self.hand.link.read_at(rates);
+                Ok(())
+            }
+            Ok(Ask::Disarm) => {
+                self.end_task()?;
+                if self.holds().is_some() {
+                    self.hand.link.disarm();
+                }
+                self.right = None;
+                Ok(())
+            }
+            Ok(Ask::Record(path)) => self.record(&id, path.as_deref()),
+            Ok(Ask::Stop) => return self.stop(id),
+            Ok(Ask::Release) if self.holds().is_some() => return self.stop(id),
+            Ok(Ask::Release) => {
+                self.end_task()?;
+                self.right = None;
+                Ok(())
+            }
+            Ok(Ask::Arm(limits)) => match self.arm(limits) {
+                Ok(arming) => return self.begin(id, arming),
+                Err(no) => Err(no),
+            },
+            Ok(Ask::Move(ask)) => match self.right() {
+                Ok(right) => return self.move_hand(id, right, ask),
+                Err(no) => Err(no),
+            },
+            Ok(Ask::Follow(line)) => match self.right() {
+                Ok(right) => return self.follow(id, right, line),
+                Err(no) => Err(no),
+            },
+            Ok(Ask::Clear) => {
+                let link = self.hand.link.clone();
+                let clearing = async move {
+                    let done = link.write(HandCommand::ClearErrors).await;
+                    Done::Cleared(done.map_err(|error| Refused::new("refused", error.to_string())))
+                };
+                return self.begin(id, clearing.boxed());
+            }
+        };
+        match done {
+            Ok(()) if self.ending.as_ref().is_some_and(|(own, _)| *own == id) => Ok(()),
+            done => self.reply(&id, done.map(|()| json!({}))),
+        }
+    }
+
+    /// The right to move the hand, or why there is none.
+    fn right(&mut self) -> Result<Right, Refused> {
+        let right = self
+            .right
+            .ok_or_else(|| Refused::new("not_armed", "nothing was moved: arm the hand first"))?;
+        self.hand.link.check(right.lease)?;
+        Ok(right)
+    }
+
+    /// Ends what goes on; the hand is told nothing by that.
+    fn end_task(&mut self) -> Result<(), NobodyReads> {
+        let Some(task) = self.task.take() else {
+            return Ok(());
+        };
+        if task.offers.is_some() {
+            return Ok(());
+        }
+        self.reply(
+            &task.id,
+            Err(Refused::new("replaced", "something else was asked for")),
+        )
+    }
+
+    /// Begins a task in place of what goes on.
+    fn begin(&mut self, id: Value, done: BoxFuture<'static, Done>) -> Result<(), NobodyReads> {
+        self.end_task()?;
+        let offers = None;
+        self.task = Some(Task { id, done, offers });
+        Ok(())
+    }
+
+    /// Stops the hand, whoever moves it, and waits for what feedback says of it.
+    fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
+        self.hand.link.stop();
+        self.right = None;
+        let link = self.hand.link.clone();
+        let stopping =
+            async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
+        self.begin(id, stopping.boxed())
+    }
+
+    /// Takes the right to move the hand, unless another has it.
+    fn arm(&mut self, limits: ArmRequest) -> Result<BoxFuture<'static, Done>, Refused> {
+        let holder = self.hand.link.status().holder;
+        let right = match (self.holds(), holder) {
+            (Some(right), _) => Right { limits, ..right },
+            (None, Some(other)) => {
+                let who = match other.owner {
+                    Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
+                    _ => "another may move the hand now".into(),
+                };
+                return Err(Refused::new("taken", who));
+            }
+            (None, None) => Right {
+                lease: self.hand.link.grant(Owner::Task),
+                limits,
+            },
+        };
+        self.right = Some(right);
+        let link = self.hand.link.clone();
+        Ok(async move { Done::Armed(armed(&link, right).await) }.boxed())
+    }
+
+    fn move_hand(&mut self, id: Value, right: Right, ask: MoveAsk) -> Result<(), NobodyReads> {
+        let link = self.hand.link.clone();
+        let (seen, grip) = (self.seen, self.grip.clone());
+        let moving = async move {
+            let epoch = match armed(&link, right).await {
+                Ok(epoch) => epoch,
+                Err(no) => return Done::Moved(Err(no)),
+            };
+            let start = MoveStart {
+                targets: ask.targets,
+                speed: ask.speed,
+                force: ask.force,
+                settles: ask.settles,
+                epoch,
+                lease: right.lease,
+                seen,
+                grip,
+                clock: link.clock(),
+            };
+            Done::Moved(Ok(move_to(&link, start).await))
+        };
+        self.begin(id, moving.boxed())
+    }
+
+    /// Lets the hand follow a target, as a stream of them is followed.
+    fn follow(&mut self, id: Value, right: Right, line: StreamLine) -> Result<(), NobodyReads> {
+        if line.stop {
+            return self.stop(id);
+        }
+        let offer = Offer {
+            at: self.hand.link.clock().now(),
+            aims: line.aims,
+            // A motion before may have set others.
+            limits: OfferLimits {
+                force: right.limits.force.map(Some),
+                speed: right.limits.speed.map(Some),
+            },
+            held: line.held,
+            // A script may rightly stand still; it is heard, or silent.
+            mark: None,
+        };
+        if self.task.as_ref().is_none_or(|task| task.offers.is_none()) {
+            let (offers, followed) = mpsc::channel(OFFERS_MAX);
+            let link = self.hand.link.clone();
+            let start = FollowStart {
+                lease: right.lease,
+                terms: watch::Sender::new(FollowTerms::default()).subscribe(),
+                arm: right.limits,
+                seen: self.seen,
+                clock: link.clock(),
+            };
+            let following = async move {
+                match armed(&link, right).await {
+                    Ok(_epoch) => Done::Followed(Ok(follow(&link, start, followed, |_| ()).await)),
+                    Err(no) => Done::Followed(Err(no)),
+                }
+            };
+            self.begin(Value::Null, following.boxed())?;
+            if let Some(task) = &mut self.task {
+                task.offers = Some(offers);
+            }
+        }
+        if let Some(offers) = self.task.as_ref().and_then(|task| task.offers.as_ref()) {
+            // One that is not followed in time is not missed: the next is newer.
+            let _full = offers.try_send(offer);
+        }
+        self.reply(&id, Ok(json!({})))
+    }
+
+    /// Begins or ends a recording. Its end is told once the file is whole.
+    fn record(&mut self, id: &Value, path: Option<&std::path::Path>) -> Result<(), Refused> {
+        let StdioHand {
+            link,
+            endpoint,
+            side,
+            ..
+        } = self.hand;
+        match (path, self.recording.take()) {
+            (Some(path), None) => {
+                let begun = SideRecording::begin(Some(path), link, endpoint, side);
+                let begun = begun.map_err(|error| Refused::new("refused", format!("{error:#}")))?;
+                self.recording = Some(begun);
+                Ok(())
+            }
+            (Some(_), Some(goes_on)) => {
+                self.recording = Some(goes_on);
+                Err(Refused::new("refused", "a recording goes on: end it first"))
+            }
+            (None, Some(recording)) if self.ending.is_none() => {
+                self.ending = Some((id.clone(), recording.end_here().boxed()));
+                Ok(())
+            }
+            (None, _) => Err(Refused::new("refused", "nothing is recorded")),
+        }
+    }
+
+    /// A recording is whole.
+    fn ended(&mut self) -> Result<(), NobodyReads> {
+        match self.ending.take() {
+            Some((id, _)) => self.reply(&id, Ok(json!({}))),
+            None => Ok(()),
+        }
+    }
+
+    /// A task is over.
+    fn finish(&mut self, done: Done) -> Result<(), NobodyReads> {
+        let Some(Task { id, .. }) = self.task.take() else {
+            return Ok(());
+        };
+        match done {
+            Done::Armed(armed) => {
+                let done = armed.map(|_epoch| json!({}));
+                if done.is_err() {
+                    self.right = None;
+                }
+                self.reply(&id, done)
+            }
+            Done::Moved(moved) => {
+                let done = moved.and_then(|report| self.moved(&report));
+                let lost = done.clone().err().filter(|_| self.holds().is_none());
+                self.reply(&id, done)?;
+                lost.map_or(Ok(()), |why| self.lose(&why))
+            }
+            Done::Followed(followed) => self.followed(followed),
+            Done::Stopped(stopped) => {
+                let done = stopped.map_err(|not| Refused::new("not_confirmed", not.to_string()));
+                self.reply(&id, done.map(|()| json!({})))
+            }
+            Done::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
+        }
+    }
+
+    /// What a motion came to. A hand that took too long is stopped.
+    fn moved(&mut self, report: &MoveReport) -> Result<Value, Refused> {
+        let link = self.hand.link;
+        let end = match report.end {
+            MoveEnd::Reached => "reached",
+            MoveEnd::Stopped => "stopped",
+            MoveEnd::Late => {
+                if let Some(right) = self.right {
+                    link.halt(right.lease)?;
+                }
+                "late"
+            }
+            MoveEnd::Broken(_) => {
+                self.right()?;
+                // The right holds, and the arming is over all the same.
+                let why = link.status().disarmed.map(|why| why.to_string());
+                return Err(Refused::new(
+                    "disarmed",
+                    why.unwrap_or_else(|| "the hand was disarmed".into()),
+                ));
+            }
+        };
+        Ok(json!({"end": end, "grip": grip_json(&report.grip, link.clock().now())}))
+    }
+
+    /// Nothing is followed any more. A script that fell silent may go on; the hand was stopped.
+    fn followed(&mut self, followed: Result<FollowEnd, Refused>) -> Result<(), NobodyReads> {
+        let lost = match followed {
+            Err(no) => no,
+            Ok(FollowEnd::Silent | FollowEnd::Gone) => {
+                let granted = self.hand.link.grant(Owner::Task);
+                if let Some(right) = &mut self.right {
+                    right.lease = granted;
+                }
+                return Ok(());
+            }
+            Ok(FollowEnd::Hot(heat)) => {
+                Refused::new("hot", format!("{heat}: the hand was stopped"))
+            }
+            Ok(FollowEnd::Lease(end)) => end.into(),
+        };
+        self.lose(&lost)
+    }
+}
+
+/// Arms the hand under a right that was granted, once a stop before is over.
+async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
+    let mut records = link.records();
+    let until = Instant::now() + ARMS_WITHIN;
+    let mut asked = false;
+    let why = loop {
+        link.check(right.lease)?;
+        let status = link.status();
+        if let Some(epoch) = status.armed {
+            return Ok(epoch);
+        }
+        if !asked && status.state != LinkState::Holding {
+            link.arm(right.lease, right.limits)?;
+            asked = true;
+        }
+        if Instant::now() >= until {
+            break "it does not answer in time".to_owned();
+        }
+        let record = timeout(LOOK_EACH, records.next()).await;
+        if let Ok(Some(Record::ArmRefused { reason, .. })) = record {
+            break reason.to_string();
+        }
+    };
+    link.check(right.lease)?;
+    link.disarm();
+    Err(Refused::new(
+        "refused",
+        format!("the hand cannot be armed: {why}"),
+    ))
+}

@@ -1,0 +1,374 @@
+//! `handscope share --stdio` as the program meets it that starts it: lines of JSON, and a hand that stops when they end.
+
+use crate::setup::process::{Ended, handscope, run, sim_on_tcp};
+use handscope::record::file::reader::RecordingFile;
+use serde_json::{Value, json};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::{sleep, spawn};
+use std::time::{Duration, Instant};
+
+/// Longer than anything here takes on a machine that does other work as well.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// A hand that is let go is told to stop within this.
+const STOPS_WITHIN: Duration = Duration::from_millis(300);
+/// The index finger's places in ANGLE_SET and ANGLE_ACT.
+const INDEX: [u16; 2] = [1492, 1552];
+
+/// A program that moves a hand by lines.
+struct Script {
+    child: Child,
+    asks: Option<ChildStdin>,
+    told: Receiver<Value>,
+    gateway: String,
+}
+
+impl Script {
+    fn start(hand: &str) -> Self {
+        let mut command = handscope();
+        command.args(["share", "--stdio", "--hand", hand]);
+        Self::of(command.args(["--tcp", "127.0.0.1:0", "--writers"]))
+    }
+
+    fn of(command: &mut Command) -> Self {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+        let (tell, told) = channel();
+        let out = child.stdout.take().unwrap();
+        spawn(move || {
+            for line in BufReader::new(out).lines().map_while(Result::ok) {
+                let _gone = tell.send(serde_json::from_str(&line).unwrap());
+            }
+        });
+        let asks = child.stdin.take();
+        let mut script = Self {
+            child,
+            asks,
+            told,
+            gateway: String::new(),
+        };
+        let ready = script.until("ready");
+        assert_eq!(ready["v"], 1);
+        script.gateway = ready["tcp"].as_str().unwrap().to_owned();
+        script
+    }
+
+    /// Goes on until something of this name is told.
+    fn until(&self, name: &str) -> Value {
+        loop {
+            let told = self.told.recv_timeout(PATIENCE).expect(name);
+            if let Some(told) = told.get(name) {
+                return told.clone();
+            }
+        }
+    }
+
+    fn tell(&mut self, line: &Value) {
+        writeln!(self.asks.as_ref().unwrap(), "{line}").unwrap();
+    }
+
+    /// Asks, and waits for the answer.
+    fn ask(&mut self, mut line: Value) -> Value {
+        line["id"] = json!("own");
+        self.tell(&line);
+        self.until("reply")
+    }
+
+    /// Asks for what is done.
+    fn done(&mut self, line: Value) -> Value {
+        let reply = self.ask(line);
+        assert!(reply["error"].is_null(), "{reply}");
+        reply["ok"].clone()
+    }
+
+    /// Armed, with the index finger on its slow way, and not near its end.
+    fn moving(hand: &str) -> Self {
+        let mut script = Self::start(hand);
+        script.done(json!({"do": "arm"}));
+        script.tell(&to_index(0, 100));
+        while script.until("state")["angle"][3].as_i64().unwrap() > 950 {}
+        script
+    }
+
+    fn end(mut self) -> Option<i32> {
+        self.asks = None;
+        self.child.wait().unwrap().code()
+    }
+}
+
+impl Drop for Script {
+    fn drop(&mut self) {
+        let _gone = self.child.kill();
+        let _ended = self.child.wait();
+    }
+}
+
+fn to_index(angle: i16, speed: i16) -> Value {
+    json!({"id": 1, "do": "move", "angle": [null, null, null, angle, null, null], "speed": speed})
+}
+
+/// A Modbus client.
+struct Client(TcpStream);
+
+impl Client {
+    fn of(address: &str) -> Self {
+        Self(TcpStream::connect(address.trim_start_matches("tcp:")).unwrap())
+    }
+
+    fn ask(&mut self, pdu: &[u8]) -> Vec<u8> {
+        let len = u8::try_from(pdu.len() + 1).unwrap();
+        self.0
+            .write_all(&[&[0, 9, 0, 0, 0, len, 1], pdu].concat())
+            .unwrap();
+        let mut head = [0; 7];
+        self.0.read_exact(&mut head).unwrap();
+        let mut said = vec![0; usize::from(head[5]) - 1];
+        self.0.read_exact(&mut said).unwrap();
+        said
+    }
+
+    fn read(&mut self, address: u16, count: u8) -> Vec<u16> {
+        let [high, low] = address.to_be_bytes();
+        let said = self.ask(&[3, high, low, 0, count]);
+        let words = said[2..].chunks(2);
+        words
+            .map(|word| u16::from_be_bytes([word[0], word[1]]))
+            .collect()
+    }
+
+    /// Six targets; the exception, if there is one.
+    fn put(&mut self, targets: &[u16]) -> Option<u8> {
+        let [high, low] = 1486u16.to_be_bytes();
+        let words: Vec<u8> = targets.iter().flat_map(|word| word.to_be_bytes()).collect();
+        let said = self.ask(&[&[16, high, low, 0, 6, 12], words.as_slice()].concat());
+        (said[0] == 0x90).then(|| said[1])
+    }
+
+    /// How long it takes until the index finger is told to stay where it is.
+    fn until_held(&mut self, from: Instant) -> Duration {
+        while self.read(INDEX[0], 1) == [0] {
+            assert!(from.elapsed() < PATIENCE, "it goes on");
+        }
+        let took = from.elapsed();
+        let (set, at) = (self.read(INDEX[0], 1)[0], self.read(INDEX[1], 1)[0]);
+        assert!(set.abs_diff(at) < 150 && at > 100, "{set} {at}");
+        took
+    }
+}
+
+#[test]
+fn nothing_moves_before_it_is_armed_and_what_is_wrong_is_told() {
+    let mut script = Script::start("sim:");
+    let no = script.ask(to_index(0, 100));
+    assert_eq!(
+        (&no["kind"], &no["id"]),
+        (&json!("not_armed"), &json!("own"))
+    );
+    assert_eq!(script.ask(json!({"do": "fly"}))["kind"], "wrong");
+    script.tell(&json!({"right": [0, 0, 0, 0, 0, 0]}));
+    assert_eq!(script.until("refused")["kind"], "not_armed");
+    for _ in 0..20 {
+        assert_eq!(
+            script.until("state")["angle"],
+            json!([1000, 1000, 1000, 1000, 1000, 1000])
+        );
+    }
+    script.done(json!({"do": "arm"}));
+    script.done(json!({"do": "release"}));
+    assert_eq!(
+        script.ask(to_index(0, 100))["kind"],
+        "not_armed",
+        "not any more"
+    );
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn a_motion_says_where_it_ended_and_what_is_held() {
+    let mut script = Script::start("sim:?scenario=rigid");
+    script.done(json!({"do": "arm"}));
+    let done = script.done(to_index(900, 500));
+    assert_eq!(done["end"], "reached");
+    let all = json!({"do": "move", "angle": [0, 0, 0, 0, 0, null], "force_g": 300, "settle": true});
+    let done = script.done(all);
+    assert_eq!(
+        (&done["end"], &done["grip"]["state"]),
+        (&json!("stopped"), &json!("holding"))
+    );
+    script.done(json!({"do": "stop"}));
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn the_end_of_the_script_stops_the_hand_at_once() {
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let mut client = Client::of(&hand);
+    let mut script = Script::moving(&hand);
+    assert_eq!(client.read(INDEX[0], 1), [0]);
+    let killed = Instant::now();
+    script.asks = None;
+    let took = client.until_held(killed);
+    assert!(took < STOPS_WITHIN, "{took:?}");
+    assert_eq!(script.end(), Some(0), "at rest");
+}
+
+#[test]
+fn a_script_that_does_not_read_may_not_move_the_hand() {
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let mut client = Client::of(&hand);
+    let mut command = handscope();
+    command.args(["share", "--stdio", "--hand", &hand]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+    let mut asks = child.stdin.take().unwrap();
+    writeln!(asks, "{}", json!({"do": "rate", "state_hz": 500})).unwrap();
+    writeln!(asks, "{}", json!({"do": "arm"})).unwrap();
+    sleep(Duration::from_millis(200));
+    writeln!(asks, "{}", to_index(0, 5)).unwrap();
+    while client.read(INDEX[0], 1) != [0] {}
+    let begun = Instant::now();
+    client.until_held(begun);
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(said.any(|line| line.unwrap().contains("nobody takes the output")));
+    drop(asks);
+    drop(child.stdout.take());
+    child.wait().unwrap();
+}
+
+#[test]
+fn a_client_stops_what_a_script_moves_which_is_told_and_may_ask_again() {
+    let mut script = Script::moving("sim:");
+    let mut window = Client::of(&script.gateway);
+    let here = window.read(1546, 6);
+    assert_eq!(window.put(&[300; 6]), Some(6), "it may not move it");
+    assert_eq!(window.put(&here), None, "it may stop it");
+    assert_eq!(script.until("reply")["kind"], "stop");
+    let why = script.until("disarmed");
+    assert!(
+        why["why"].as_str().unwrap().contains("told to stop"),
+        "{why}"
+    );
+    assert_eq!(script.ask(to_index(0, 100))["kind"], "not_armed");
+    script.done(json!({"do": "arm"}));
+    script.done(json!({"do": "release"}));
+    // Now it is free for others, and not for the script.
+    assert_eq!(window.put(&[500; 6]), None);
+    let no = script.ask(json!({"do": "arm"}));
+    assert_eq!(no["kind"], "taken");
+    assert!(
+        no["error"]
+            .as_str()
+            .unwrap()
+            .contains("until it disconnects"),
+        "{no}"
+    );
+    drop(window);
+    while script.ask(json!({"do": "arm"}))["kind"] == "taken" {}
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn two_scripts_share_a_hand_and_one_moves_it() {
+    let mut first = Script::start("sim:");
+    let mut second = Script::start(&format!("tcp:{}", first.gateway));
+    first.done(json!({"do": "arm"}));
+    let no = second.ask(json!({"do": "arm"}));
+    assert_eq!(no["kind"], "refused", "{no}");
+    first.done(to_index(600, 500));
+    while second.until("state")["angle"][3].as_i64().unwrap() > 620 {}
+    first.done(json!({"do": "release"}));
+    second.done(json!({"do": "arm"}));
+    second.done(to_index(900, 500));
+    while first.until("state")["angle"][3].as_i64().unwrap() < 880 {}
+    assert_eq!(second.end(), Some(0));
+    assert_eq!(first.end(), Some(0));
+}
+
+#[test]
+fn a_command_moves_the_hand_in_the_place_of_a_script() {
+    let mut script = Script::start("sim:");
+    script.done(json!({"do": "arm"}));
+    script.done(json!({"do": "disarm"}));
+    let hand = format!("tcp:{}", script.gateway);
+    let grip = [
+        "grip", "--hand", &hand, "--gap", "100", "--speed", "500", "--arm", "--json",
+    ];
+    // Two programs and a hand in one of them: a machine that does other work may lose the link between them.
+    let ended = |end: Ended| end.lines()[0]["grip"]["end"].as_str().map(str::to_owned);
+    let mut tries = (0..5).filter_map(|_| ended(run(&grip)));
+    assert!(tries.any(|end| end == "reached"));
+    while script.ask(json!({"do": "arm"}))["kind"] == "taken" {}
+    script.done(to_index(900, 500));
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn targets_are_followed_held_in_a_silence_and_followed_again() {
+    let mut script = Script::start("sim:");
+    script.done(json!({"do": "arm"}));
+    let follow = |script: &mut Script, share: f64| {
+        script.tell(&json!({"right": [null, null, null, share, null, null]}));
+        sleep(Duration::from_millis(20));
+    };
+    let at = |script: &Script| script.until("state")["angle"][3].as_i64().unwrap();
+    let begun = Instant::now();
+    while at(&script) > 800 {
+        follow(&mut script, 0.2);
+        assert!(begun.elapsed() < PATIENCE);
+        while script.told.try_recv().is_ok() {}
+    }
+    sleep(Duration::from_millis(1500));
+    while script.told.try_recv().is_ok() {}
+    let held = at(&script);
+    assert!(held > 300, "it was held: {held}");
+    while at(&script) < 950 {
+        follow(&mut script, 1.0);
+        while script.told.try_recv().is_ok() {}
+    }
+    script.done(to_index(700, 500));
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn a_recording_begins_and_ends_when_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("script.mcap");
+    let mut script = Script::start("sim:");
+    assert_eq!(
+        script.ask(json!({"do": "record", "path": null}))["kind"],
+        "refused"
+    );
+    script.done(json!({"do": "record", "path": path}));
+    script.done(json!({"do": "arm"}));
+    script.done(to_index(800, 500));
+    script.done(json!({"do": "record", "path": null}));
+    let file = RecordingFile::open(&path).unwrap();
+    assert!(file.is_closed(), "whole, though the script goes on");
+    let again = script.ask(json!({"do": "record", "path": path}));
+    assert!(
+        again["error"].as_str().unwrap().contains("not overwritten"),
+        "{again}"
+    );
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn states_come_at_500_a_second_and_none_is_lost() {
+    let mut script = Script::start("sim:");
+    script.done(json!({"do": "rate", "state_hz": 500}));
+    sleep(Duration::from_millis(200));
+    while script.told.try_recv().is_ok() {}
+    let (mut states, mut first, mut last) = (0.0, None, 0.0);
+    while states < 1500.0 {
+        let told = script.told.recv_timeout(PATIENCE).unwrap();
+        assert!(told.get("lost").is_none(), "{told}");
+        last = told["state"]["t_s"].as_f64().unwrap();
+        first.get_or_insert(last);
+        states += 1.0;
+    }
+    let hz = states / (last - first.unwrap());
+    assert!(hz > 250.0, "{hz} on a machine that does other work as well");
+    assert_eq!(script.end(), Some(0));
+}
