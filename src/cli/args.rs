@@ -1,15 +1,14 @@
 //! The command line as clap sees it: names, defaults, help. Does nothing.
 
+use crate::cli::about::help::{self, HelpArgs};
+use crate::cli::about::model::ModelArgs;
+use crate::cli::about::packaging::{CompletionsArgs, ManArgs};
 use crate::cli::check::CheckArgs;
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::grip::GripArgs;
-use crate::cli::help::{self, HelpArgs};
 use crate::cli::hold::HoldArgs;
 use crate::cli::inputs::follow::FollowArgs;
 use crate::cli::inputs::show::InputsArgs;
-use crate::cli::model::ModelArgs;
-use crate::cli::overshoot::OvershootArgs;
-use crate::cli::packaging::{CompletionsArgs, ManArgs};
 use crate::cli::params::ParamsArgs;
 use crate::cli::quirks::QuirksArgs;
 use crate::cli::read::ReadArgs;
@@ -23,6 +22,7 @@ use crate::cli::share::ShareArgs;
 use crate::cli::share::fleet::FleetArgs;
 use crate::cli::sim::{self, SimArgs};
 use crate::cli::trial::TrialArgs;
+use crate::cli::trial::overshoot::OvershootArgs;
 use crate::cli::tune::TuneArgs;
 use crate::cli::watch::WatchArgs;
 use crate::cli::window::WindowArgs;

@@ -1,24 +1,20 @@
 //! The command line: one file a command, each of which carries out its command and reports the outcome.
 
+mod about;
 mod args;
 mod check;
 mod doctor;
 mod grip;
-mod help;
 mod hold;
 mod inputs;
 mod interrupt;
 mod listen;
-mod model;
 mod out;
-mod overshoot;
-mod packaging;
 mod params;
 mod parse;
 mod quirks;
 mod read;
 mod recordings;
-mod registers;
 mod scan;
 mod session;
 mod share;
@@ -107,10 +103,12 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
         Command::Check(args) => wait_for(check::run(&mut out, &args)),
         Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
-        Command::Overshoot(args) => overshoot::run(&mut out, &args),
-        Command::Model(args) => model::run(&mut out, &args),
-        Command::Completions(args) => packaging::completions(&mut out, &args),
-        Command::Man(args) => packaging::man(&mut out, &args),
+        Command::Overshoot(args) => trial::overshoot::run(&mut out, &args),
+        Command::Model(args) => about::model::run(&mut out, &args),
+        Command::Completions(args) => {
+            about::packaging::completions(&mut out, &args, Cli::command())
+        }
+        Command::Man(args) => about::packaging::man(&mut out, &args, Cli::command()),
         Command::Grip(args) => wait_for(grip::run(&mut out, &args)),
         Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
@@ -122,7 +120,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Fleet(args) => wait_for(share::fleet::run(&mut out, &args)),
         Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
-        Command::Registers(args) => registers::run(&mut out, args.json),
+        Command::Registers(args) => about::registers::run(&mut out, args.json),
         Command::Hold(args) => {
             if hold::is_needed() {
                 wait_for(hold::run(&args))
@@ -130,7 +128,7 @@ fn obey(command: Command) -> anyhow::Result<()> {
                 Ok(())
             }
         }
-        Command::Help(args) => help::run(&mut out, &args, Cli::command()),
+        Command::Help(args) => about::help::run(&mut out, &args, Cli::command()),
     };
     // Output from before a failure is shown as well.
     let shown = out.flush();

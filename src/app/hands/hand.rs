@@ -16,7 +16,6 @@ use crate::app::readings::{Measured, Readings};
 use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
-use crate::app::trials::work::start_refusal;
 use crate::app::trials::{HandMap, SeriesPlan, SeriesRun, StartRefusal};
 use crate::checkup::CheckupPlan;
 use crate::hand::kinematics::Side;
@@ -104,35 +103,24 @@ impl Hand {
         }
     }
 
-    /// Why a plan of trials cannot begin now, if it makes sense at all.
-    pub fn series_refusal(&self, plan: &TrialPlan) -> Option<StartRefusal> {
-        let armed = self.connection.status.armed;
-        let armed = armed.filter(|_| self.connection.is_armed());
-        start_refusal(plan, self.runs_series(), armed, &self.controls.locked())
-    }
-
-    /// Whether a series of trials or a check-up runs.
-    pub const fn runs_series(&self) -> bool {
-        self.series.is_some() || self.checkup.run.is_some()
-    }
-
-    /// Why a check-up cannot begin now.
-    pub fn checkup_refusal(&self) -> Option<StartRefusal> {
+    /// Why a plan of trials cannot begin now, if it makes sense at all; without one, a check-up, which moves every joint.
+    pub fn series_refusal(&self, plan: Option<&TrialPlan>) -> Option<StartRefusal> {
         if self.runs_series() {
             return Some(StartRefusal::Runs);
         }
         let locked = self.controls.locked();
-        let locked = Dof::ALL.into_iter().find(|dof| locked[*dof]);
+        let locked = match plan {
+            Some(plan) => plan.locked(&locked),
+            None => Dof::ALL.into_iter().find(|dof| locked[*dof]),
+        };
         let is_armed = self.connection.is_armed() && self.connection.status.armed.is_some();
         let not_armed = (!is_armed).then_some(StartRefusal::NotArmed);
         locked.map(StartRefusal::Locked).or(not_armed)
     }
 
-    fn refusal(&self, asked: &AskedSeries) -> Option<StartRefusal> {
-        match asked {
-            AskedSeries::Trials(plan) => self.series_refusal(&plan.trials()),
-            AskedSeries::Checkup(_) => self.checkup_refusal(),
-        }
+    /// Whether a series of trials or a check-up runs.
+    pub const fn runs_series(&self) -> bool {
+        self.series.is_some() || self.checkup.run.is_some()
     }
 
     /// What a live hand holds of a joint, where that is not what was set.
@@ -344,7 +332,10 @@ impl Hand {
 
     /// Arms the hand for a series, which begins once that holds. Whatever refuses, stops or disarms ends the wish.
     pub(crate) fn arm_for_series(&mut self, asked: AskedSeries, ctx: &mut Ctx<'_>) {
-        let refusal = self.refusal(&asked);
+        let refusal = match &asked {
+            AskedSeries::Trials(plan) => self.series_refusal(Some(&plan.trials())),
+            AskedSeries::Checkup(_) => self.series_refusal(None),
+        };
         if refusal.is_some_and(|why| why != StartRefusal::NotArmed) {
             return;
         }

@@ -93,7 +93,7 @@ pub(super) fn start_series(
     trials: &mut TrialsState,
     ctx: &Ctx<'_>,
 ) {
-    let is_refused = hand.series_refusal(&plan.trials()).is_some() || !plan.is_sound();
+    let is_refused = hand.series_refusal(Some(&plan.trials())).is_some() || !plan.is_sound();
     // One series at a time: any key stops it, and it has the view to itself.
     if is_refused || trials.running.is_some() {
         return;
@@ -111,7 +111,7 @@ pub(super) fn start_checkup(
     ctx: &Ctx<'_>,
 ) {
     let endpoint = hand.connection.endpoint.clone();
-    let Some(endpoint) = endpoint.filter(|_| hand.checkup_refusal().is_none()) else {
+    let Some(endpoint) = endpoint.filter(|_| hand.series_refusal(None).is_none()) else {
         return;
     };
     let files = files(&endpoint, settings, ctx.env);

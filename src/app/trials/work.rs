@@ -103,20 +103,6 @@ impl TrialsState {
     }
 }
 
-/// Why a plan cannot begin now, if it makes sense at all. `epoch` is the arming of now.
-pub fn start_refusal(
-    plan: &TrialPlan,
-    runs: bool,
-    epoch: Option<ArmEpoch>,
-    locked: &PerDof<bool>,
-) -> Option<StartRefusal> {
-    if runs {
-        return Some(StartRefusal::Runs);
-    }
-    let locked = plan.locked(locked).map(StartRefusal::Locked);
-    locked.or_else(|| epoch.is_none().then_some(StartRefusal::NotArmed))
-}
-
 /// A hand that is armed for a series.
 pub(crate) struct SeriesHand<'a> {
     pub(crate) link: LinkHandle,

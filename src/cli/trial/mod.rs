@@ -3,6 +3,7 @@
 pub(crate) mod args;
 pub(crate) mod drive;
 pub(crate) mod output;
+pub(crate) mod overshoot;
 pub(crate) mod results;
 
 pub(crate) use args::TrialArgs;

@@ -62,7 +62,7 @@ impl CheckupView {
             tick.on_hover_text(look.tip(text));
         }
         let unsaid = (!self.is_empty).then_some(checkup::SAY_EMPTY);
-        let refusal = pane.state.hand().checkup_refusal();
+        let refusal = pane.state.hand().series_refusal(None);
         let (start, arm) = (
             CheckupAction::Start(self.plan),
             CheckupAction::ArmAndStart(self.plan),

@@ -74,7 +74,7 @@ impl TuneView {
 fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     let wanted = pane.state.trials.planned(kind);
     let unsound = (!wanted.is_sound()).then_some(tune::PLAN_WRONG);
-    let refusal = pane.state.hand().series_refusal(&wanted.trials());
+    let refusal = pane.state.hand().series_refusal(Some(&wanted.trials()));
     StartWish {
         refused: start_refused(pane, unsound, refusal),
         start: (tune::START_BUTTON, Action::Trial(TrialAction::Start(kind))),

@@ -29,7 +29,9 @@ async fn running() -> Bench {
 }
 
 fn refusal(bench: &Bench) -> Option<StartRefusal> {
-    bench.hand().series_refusal(&bench.state().trials.plan)
+    bench
+        .hand()
+        .series_refusal(Some(&bench.state().trials.plan))
 }
 
 #[tokio::test(start_paused = true)]

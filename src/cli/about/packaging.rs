@@ -1,10 +1,9 @@
 //! What packages and shells take from the program: manual pages, and completions of its command line.
 
-use crate::cli::args::Cli;
 use crate::cli::out::Out;
 use crate::store;
 use anyhow::Context as _;
-use clap::{Args, Command, CommandFactory as _};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use std::path::{Path, PathBuf};
 
@@ -23,18 +22,21 @@ pub(crate) struct ManArgs {
 }
 
 /// Prints the completions of a shell.
-pub(crate) fn completions(out: &mut Out, args: &CompletionsArgs) -> anyhow::Result<()> {
+pub(crate) fn completions(
+    out: &mut Out,
+    args: &CompletionsArgs,
+    mut program: Command,
+) -> anyhow::Result<()> {
     let mut text = Vec::new();
-    generate(args.shell, &mut Cli::command(), "handscope", &mut text);
+    generate(args.shell, &mut program, "handscope", &mut text);
     let text = String::from_utf8_lossy(&text);
     text.lines().try_for_each(|line| out.line(line))
 }
 
 /// Writes a page for the program and one for each command.
-pub(crate) fn man(out: &mut Out, args: &ManArgs) -> anyhow::Result<()> {
+pub(crate) fn man(out: &mut Out, args: &ManArgs, mut program: Command) -> anyhow::Result<()> {
     let folder = &args.out;
     store::create_folder(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let mut program = Cli::command();
     program.build();
     let mut pages = Vec::new();
     page(program, "handscope", folder, &mut pages)?;
