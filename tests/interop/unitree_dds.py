@@ -8,6 +8,7 @@ import json
 import sys
 import time
 from dataclasses import dataclass, fields, is_dataclass
+from xml.etree import ElementTree
 
 import cyclonedds.idl as idl
 import cyclonedds.idl.annotations as annotate
@@ -80,6 +81,11 @@ class Touch_(idl.IdlStruct, typename="handscope_msgs.msg.dds_.Touch_"):
     raw: types.sequence[types.uint8]
 
 
+@dataclass
+class String_(idl.IdlStruct, typename="std_msgs.msg.dds_.String_"):
+    data: str
+
+
 CONFIG = """<CycloneDDS><Domain Id="any"><General><Interfaces>
 <NetworkInterface address="{}" priority="default" multicast="default"/>
 </Interfaces></General></Domain></CycloneDDS>"""
@@ -125,6 +131,15 @@ for nth in range(rounds):
     tell(first_state_s=time.monotonic() - begun, round=nth)
     assert all(len(getattr(state, field.name)) == 6 for field in fields(state)), state
     pose = wait(lambda: heard(joints), 5)
+    # RViz asks for the model as robot_state_publisher tells it: once, for those that come later.
+    models = reader(
+        "rt/robot_description",
+        String_,
+        Policy.Reliability.Reliable(duration(seconds=1)),
+        Policy.Durability.TransientLocal,
+    )
+    model = ElementTree.fromstring(wait(lambda: heard(models), 5).data)
+    assert model.tag == "robot" and set(pose.name) <= {joint.get("name") for joint in model.iter("joint")}, pose.name
     while heard(states) or heard(joints):
         pass
     count, told, sent, start = 0, 0, 0, time.monotonic()
