@@ -104,7 +104,7 @@ impl CheckupReport {
         let [read, moved] = usage.hours();
         let (dof, closes) = usage.most_closed();
         format!(
-            "Recorded since {}: {read} hours, {moved} of them moving; {} closed most, {closes} times; {} stalls ({} recordings)",
+            "Recorded since {}: {read} hours, {moved} of them moving; {} closed most, {closes} times; {} stalls (recordings: {})",
             day(Duration::from_secs(usage.since_1970_s)),
             dof.name(),
             usage.stalls,
@@ -119,7 +119,7 @@ impl Keeping {
         match self {
             Self::Kept { .. } | Self::BuiltIn | Self::Partial => None,
             Self::NotAsFirst { dof } => Some(format!(
-                "It is not kept as this hand's first: {} did not go through its stroke; take out what is in the hand, and check again",
+                "It is not kept as this hand's first: {} did not go through its stroke; take out what is in its way, and check again",
                 dof.name()
             )),
             Self::Failed { error } => Some(format!("It is not kept: {error}")),
@@ -230,7 +230,7 @@ mod tests {
             "<title>2026-11-01: 2 counts\n",
             "2026-11-25: 7 counts</title>",
             "drifts from 2 counts to 7 counts over 6 check-ups since 2026-11-01",
-            "Recorded since 2026-11-21: 2.0 hours, 0.5 of them moving; middle closed most, 40 times; 2 stalls (3 recordings)",
+            "Recorded since 2026-11-21: 2.0 hours, 0.5 of them moving; middle closed most, 40 times; 2 stalls (recordings: 3)",
         ] {
             assert!(page.contains(wanted), "{wanted}\n{page}");
         }

@@ -28,7 +28,7 @@ impl CheckupView {
     /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let width = (ui.available_width() * 0.3).clamp(260.0, 360.0);
+        let width = (ui.available_width() * 0.22).clamp(232.0, 300.0);
         kit::bare(Panel::left("checkup"), width, theme::GAP_RIGHT).show(ui, |ui| {
             kit::card_ui(ui, look, |ui| {
                 ui.set_min_height(ui.available_height());

@@ -7,15 +7,17 @@ use crate::checkup::subject::Light;
 use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, checkup};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Response, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align, Color32, Layout, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 const ROW: f32 = 22.0;
 /// Widths of the columns: part, what, numbers, and the line of a trend.
-const PART: f32 = 88.0;
-const WHAT: f32 = 216.0;
-const NUMBER: f32 = 88.0;
-const TREND: f32 = 88.0;
+const PART: f32 = 80.0;
+const WHAT: f32 = 272.0;
+const NUMBER: f32 = 104.0;
+const TREND: f32 = 72.0;
+/// The least room for what to do.
+const ADVICE: f32 = 160.0;
 
 /// The colour of a light.
 pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
@@ -47,26 +49,28 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, 
         checkup::COLUMN_TREND,
         checkup::COLUMN_ADVICE,
     ];
-    let table = TableBuilder::new(ui)
-        .id_salt("checkup")
-        .cell_layout(Layout::left_to_right(Align::Center))
-        .auto_shrink(false)
-        .min_scrolled_height(0.0)
-        .column(Column::exact(PART))
-        .column(Column::exact(WHAT))
-        .columns(Column::exact(NUMBER), 4)
-        .column(Column::exact(TREND))
-        .column(Column::remainder().clip(true))
-        .header(ROW, |mut row| {
-            for head in heads {
-                row.col(|ui| drop(Label::note(look, head).ui(ui)));
-            }
-        });
-    table.body(|body| {
-        body.rows(ROW, shown.len(), |mut row| {
-            if let Some(check) = shown.get(row.index()) {
-                row_ui(&mut row, pane, check);
-            }
+    ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+        let table = TableBuilder::new(ui)
+            .id_salt("checkup")
+            .cell_layout(Layout::left_to_right(Align::Center))
+            .auto_shrink(false)
+            .min_scrolled_height(0.0)
+            .column(Column::exact(PART))
+            .column(Column::exact(WHAT))
+            .columns(Column::exact(NUMBER), 4)
+            .column(Column::exact(TREND))
+            .column(Column::remainder().at_least(ADVICE).clip(true))
+            .header(ROW, |mut row| {
+                for head in heads {
+                    row.col(|ui| drop(Label::note(look, head).ui(ui)));
+                }
+            });
+        table.body(|body| {
+            body.rows(ROW, shown.len(), |mut row| {
+                if let Some(check) = shown.get(row.index()) {
+                    row_ui(&mut row, pane, check);
+                }
+            });
         });
     });
 }

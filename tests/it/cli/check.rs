@@ -58,7 +58,7 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
         "--out",
         out.to_str().unwrap(),
         "--recordings",
-        folder.path().to_str().unwrap(),
+        kept.to_str().unwrap(),
     ]);
     while !checks.complaint().contains("3 of 29") {}
     checks.signal(Signal::SIGINT);

@@ -87,7 +87,6 @@ const STAGES: [Stage; 9] = [
             ("touch", View::Touch),
             ("poses", View::Poses),
             ("device", View::Device),
-            ("checkup", View::Checkup),
             ("connection", View::Connection),
             ("traffic", View::Traffic),
         ],
