@@ -9,7 +9,7 @@ use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
 use crate::app::trials::run::{SeriesEnd, SeriesRun};
 use crate::app::trials::state::{Search, SeriesPlan, SessionId, SessionOrigin, TrialsState};
-use crate::hand::{ArmEpoch, Dof, HandSample, Moment, PerDof};
+use crate::hand::{ArmEpoch, Dof, HandSample, Moment};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};

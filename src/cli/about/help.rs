@@ -104,7 +104,7 @@ mod tests {
 
     /// Columns of the narrowest common terminal.
     const COLUMNS: usize = 80;
-    const README: &str = include_str!("../../README.md");
+    const README: &str = include_str!("../../../README.md");
 
     fn pages() -> impl Iterator<Item = (&'static str, &'static str)> {
         let topics = TOPICS.iter().map(|topic| (topic.name, topic.text));

@@ -388,6 +388,7 @@ impl Script<'_> {
         let offer = Offer {
             at: self.hand.link.clock().now(),
             aims: line.aims,
+            gap: line.gap,
             // A motion before may have set others.
             limits: OfferLimits {
                 force: right.limits.force.map(Some),
