@@ -214,10 +214,10 @@ class Hears(unittest.TestCase):
         self.assertGreater(hz, 250, "also on a machine that does other work")
 
     def test_what_is_not_taken_in_time_is_told_as_lost(self):
-        with handscope.open("sim:") as hand:
+        with handscope.open("sim:", hz=500) as hand:
             slow = threading.Event()
             hand.on_state(lambda state: slow.wait(60))
-            time.sleep(8)  # the reader is held up by its callback
+            time.sleep(6)  # the reader is held up by its callback
             seen = hand.states()
             threading.Timer(0.1, slow.set).start()
             lost = 0
