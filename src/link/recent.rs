@@ -20,6 +20,9 @@ const PAUSE_TIMES: u32 = 24;
 /// The shortest such pause after a stretch that the session never reads: however fast the wire is, clients that read here and there
 /// cost it a few requests a second.
 const PAUSE_MIN: Duration = Duration::from_millis(200);
+/// So many such reads go at once after a while without: a program that gets to know the hand asks for a few, each of which it waits
+/// for no longer than a hand takes.
+const AT_ONCE: u32 = 8;
 /// The longest such pause, so that one slow answer does not keep all others waiting.
 const PAUSE_MAX: Duration = Duration::from_millis(500);
 
@@ -33,7 +36,7 @@ pub struct RecentReads {
     turns: [Arc<Turn>; 2],
 }
 
-/// Who has the turn at asking the hand, and when the next may.
+/// Who has the turn at asking the hand, and when the next may if all came evenly.
 type Turn = Mutex<Option<Instant>>;
 
 impl RecentReads {
@@ -96,8 +99,9 @@ impl RecentReads {
         };
         let since = self.clock.now();
         let mut turn = turn.lock().await;
-        if let Some(next) = *turn {
-            sleep_until(next).await;
+        let ahead = pause_min * (AT_ONCE - 1);
+        if let Some(due) = turn.and_then(|next| next.checked_sub(ahead)) {
+            sleep_until(due).await;
         }
         let now = self.clock.now();
         if !matches!(self.image.borrow().look(span, since, now), Seen::Missing(_)) {
@@ -107,7 +111,8 @@ impl RecentReads {
         let read = self.link.read(span).await;
         let pause = asked.elapsed() * PAUSE_TIMES;
         let pause = pause.clamp(pause_min, PAUSE_MAX);
-        *turn = Some(Instant::now() + pause);
+        let now = Instant::now();
+        *turn = Some(turn.map_or(now, |next| next.max(now)) + pause);
         read.map(drop)
     }
 }

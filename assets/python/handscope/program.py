@@ -127,8 +127,8 @@ class Program:
         _keep_from_forks(self._child)
         self._reader = threading.Thread(target=self._read, name="handscope", daemon=True)
         self._listener = threading.Thread(target=self._listen, name="handscope-words", daemon=True)
-        self._reader.start()
         self._listener.start()
+        self._reader.start()
         with self._answered:
             self._answered.wait_for(lambda: self.ready or self._ended, _WITHIN_S)
         if not self.ready:
