@@ -6,7 +6,6 @@ deb=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# The version that is tried asks for this machine's C library; nothing is given away as 'unstable'.
 lintian --fail-on error "$deb"
 dpkg-deb -x "$deb" "$work/tree"
 desktop-file-validate "$work/tree/usr/share/applications/handscope.desktop"

@@ -4,6 +4,7 @@ mod cards;
 mod checkup;
 mod compare;
 mod device;
+mod engineer;
 mod exhibit;
 mod faults;
 mod grip_size;
