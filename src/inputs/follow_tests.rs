@@ -131,6 +131,21 @@ fn a_gap_is_gone_to_along_the_path_within_rate_and_lead_from_wherever_the_hand_i
 }
 
 #[test]
+fn a_gap_that_stays_the_same_is_not_frozen() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    let gap = Gap::nearest(30.0);
+    for n in 0..100 {
+        follow.offer(Offer {
+            gap: Some(gap),
+            aims: gap.angles().map(Some),
+            ..offer(n * 10, 1)
+        });
+        let _sent = follow.tick(at(500), ms(n * 10));
+    }
+    assert_eq!(follow.phase(), FollowPhase::Following);
+}
+
+#[test]
 fn what_stops_the_index_stops_the_thumb_on_the_path_too() {
     let mut follow = Follow::new(LIMITS, ms(0));
     let (gap, block) = (Gap::nearest(10.0), Gap::nearest(60.0).angles());
