@@ -206,7 +206,7 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "tiles",
         "the name \"Rock\" is used twice",
     ),
-    ("\"Fist\"", "7", 8, "tiles", "expected a string"),
+    ("\"Fist\"", "7", 8, "tiles", "is not a text in quotes"),
     (
         "speed = 250",
         "speed = 0",
@@ -268,7 +268,7 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "restart = 1",
         12,
         "visitor_restart",
-        "expected a boolean",
+        "is not true or false",
     ),
     (
         "[\"Wave\", \"Wave\"]",

@@ -200,9 +200,11 @@ impl Follow {
         if self.phase == FollowPhase::Silent {
             self.enter();
         }
+        // A gap is one number, which may rightly stay the same for long.
         let is_frozen = offer.mark.is_some()
+            && offer.gap.is_none()
             && now.since(self.same_since) >= FROZEN_AFTER
-            && is_away_from_ends(&offer);
+            && is_away_from_ends(&offer.aims);
         self.phase = if is_frozen {
             FollowPhase::Frozen
         } else {
@@ -342,12 +344,7 @@ impl Follow {
 }
 
 /// A hand that is told to be wide open or a fist may rightly be told so for long.
-fn is_away_from_ends(offer: &Offer) -> bool {
-    match offer.gap {
-        Some(gap) => gap != Gap::MIN && gap != Gap::MAX,
-        None => {
-            let mut aims = offer.aims.iter().filter_map(|(_, aim)| *aim);
-            aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)
-        }
-    }
+fn is_away_from_ends(aims: &PerDof<Option<Angle>>) -> bool {
+    let mut aims = aims.iter().filter_map(|(_, aim)| *aim);
+    aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)
 }

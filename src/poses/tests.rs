@@ -157,7 +157,7 @@ proptest! {
         library.edit_sequence(own, SequenceEdit::Loop(looped));
         for (at, (pose, dwell, speed)) in steps.into_iter().filter(|(pose, ..)| *pose < ids.len()).enumerate() {
             library.edit_sequence(own, SequenceEdit::Add(ids[pose]));
-            let mut step = library.sequence(own).unwrap().steps[at].clone();
+            let mut step = library.sequence(own).unwrap().steps[at];
             step.dwell = Millis::try_from(i64::from(dwell.min(Millis::MAX))).unwrap();
             step.until = (dwell % 2 == 0).then_some(UntilHolding {
                 within: step.dwell,

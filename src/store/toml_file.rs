@@ -81,7 +81,11 @@ impl<'a> FileText<'a> {
         };
         let span = error.span().unwrap_or(0..0);
         FileError {
-            field: named.or_else(|| self.key_before(span.start)),
+            field: match cause {
+                // What cannot be read stands behind no key.
+                FileCause::Syntax(_) => None,
+                _ => named.or_else(|| self.key_before(span.start)),
+            },
             line: error.span().map(|span| self.line(span.start)),
             cause,
         }

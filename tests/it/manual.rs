@@ -172,7 +172,7 @@ fn the_poses_of_the_manual_are_a_file_that_is_taken_whole() {
         .strip_prefix("toml")
         .unwrap();
     let library = handscope::poses::file::read(example).unwrap();
-    assert_eq!((library.poses.len(), library.sequences.len()), (1, 1));
+    assert_eq!((library.poses.len(), library.sequences.len()), (2, 1));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use crate::cli::refuses_unarmed;
 use crate::setup::process::{handscope, listen, run, sim_on_tcp, start};
+use handscope::transport::Endpoint;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 
@@ -107,8 +108,9 @@ fn blocks_that_were_measured_in_the_window_make_its_sizes_true() {
     let folder = tempfile::tempdir().unwrap();
     let home = folder.path().join("handscope");
     std::fs::create_dir(&home).unwrap();
+    let known: Endpoint = hand.parse().unwrap();
     let settings = format!(
-        "[hands.\"{hand}\"]\nsize_blocks = [{{ size_mm = 10.0, gap_mm = 24.0 }}, {{ size_mm = 50.0, gap_mm = 64.0 }}]\n"
+        "[hands.\"{known}\"]\nsize_blocks = [{{ size_mm = 10.0, gap_mm = 24.0 }}, {{ size_mm = 50.0, gap_mm = 64.0 }}]\n"
     );
     std::fs::write(home.join("settings.toml"), settings).unwrap();
     let grip = |folder: &std::path::Path| {

@@ -10,6 +10,7 @@ use handscope::hand::{Angle, Dof, Force, PerDof, Speed};
 use handscope::poses::Preset;
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{LibraryPose, StepGoal};
+use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::sim::{Contact, Object, Scenario, SimConfig};
 use handscope::ui::View;
 
@@ -139,7 +140,8 @@ fn a_pose_is_made_one_by_size_and_closes_along_the_path() {
     assert_eq!(pose(&bench).angles, Gap::nearest(25.5).angles());
     bench.click("Arm the hand");
     bench.run(300);
-    bench.click("Go to Block");
+    let recall = Action::Recall(pose(&bench).id);
+    bench.act(recall.clone());
     let end = f64::from(Gap::nearest(25.5).angles()[Dof::ThumbBend].get());
     let arrived = |bench: &Bench| (f64::from(bench.angle(Dof::ThumbBend)) - end).abs() <= 20.0;
     let before = bench.writes().len();
@@ -149,10 +151,11 @@ fn a_pose_is_made_one_by_size_and_closes_along_the_path() {
     assert!(moves.count() >= 2, "opens, then closes");
     bench.act(Action::Lock(Dof::Index, true));
     bench.run(100);
-    let refused = bench.writes().len();
-    bench.click("Go to Block");
+    bench.act(recall);
     bench.run(1000);
-    assert_eq!(bench.writes().len(), refused, "not without the index");
+    let run = bench.state().hand().sequence.as_ref().unwrap();
+    let ended = PlayPhase::Ended(PlayEnd::Locked);
+    assert_eq!(run.view.phase, ended, "not without the index");
     bench.act(Action::Lock(Dof::Index, false));
     bench.click_button("By size");
     bench.run(100);
@@ -208,7 +211,8 @@ fn the_thresholds_of_a_pose_are_shown_and_count_while_it_is_what_was_asked_for()
     bench.run(300);
     let now = |bench: &Bench| bench.state().hand().readings.grip.thresholds();
     assert_eq!(now(&bench), GripThresholds::default());
-    bench.click("Go to Soft");
+    let id = bench.state().poses.library.poses[0].id;
+    bench.act(Action::Recall(id));
     bench.run(500);
     assert_eq!(now(&bench), thresholds);
     bench.wait(3000);
