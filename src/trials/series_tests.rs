@@ -178,7 +178,7 @@ fn check(why: Abort, plan: TrialPlan, meanwhile: impl FnMut(&mut Hand)) {
 fn setpoints(order: &SeriesOrder) -> Setpoints {
     match order {
         SeriesOrder::Set(setpoints) => *setpoints,
-        SeriesOrder::Stop => panic!("a stop"),
+        SeriesOrder::Stop | SeriesOrder::Disarm => panic!("a stop"),
     }
 }
 
@@ -292,7 +292,7 @@ fn no_finger_closes_before_the_hand_shows_the_limits() {
     assert_eq!(ran.aborted, Some(Abort::LimitsRefused { dof }));
     let closed = ran.sent.iter().filter_map(|(_, order)| match order {
         SeriesOrder::Set(set) => set.angle[dof].map(|target| target.raw()),
-        SeriesOrder::Stop => None,
+        SeriesOrder::Stop | SeriesOrder::Disarm => None,
     });
     assert!(closed.into_iter().all(|angle| angle == 1000));
 }
