@@ -43,7 +43,7 @@ const COMMANDS_MAX: usize = 16;
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedSeries {
     /// Trials.
-    Trials(SeriesPlan),
+    Trials(Box<SeriesPlan>),
     /// A check-up.
     Checkup(CheckupPlan),
 }

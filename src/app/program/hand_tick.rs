@@ -145,7 +145,7 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     let now = ctx.now;
     let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
     let is_other = |asked: &AskedSeries| match asked {
-        AskedSeries::Trials(plan) => *plan != trials.planned(plan.kind()),
+        AskedSeries::Trials(plan) => **plan != trials.planned(plan.kind()),
         AskedSeries::Checkup(_) => false,
     };
     let is_over =
@@ -156,7 +156,7 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     // A window that hung meanwhile moves nothing late.
     if is_armed && !is_late(at) && !is_other(&asked) {
         match asked {
-            AskedSeries::Trials(plan) => start_series(hand, plan, trials, ctx),
+            AskedSeries::Trials(plan) => start_series(hand, *plan, trials, ctx),
             AskedSeries::Checkup(plan) => start_checkup(hand, plan, shared.settings, ctx),
         }
     }

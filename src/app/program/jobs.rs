@@ -115,7 +115,7 @@ impl Jobs {
                 let plan = trials.planned(kind);
                 if trials.running.is_none() && plan.is_sound() {
                     hands::with_shown(state, env, |hand, _, ctx| {
-                        hand.arm_for_series(AskedSeries::Trials(plan), ctx)
+                        hand.arm_for_series(AskedSeries::Trials(Box::new(plan)), ctx)
                     });
                 }
             }

@@ -30,9 +30,9 @@ texts! {
     EARLIER: "Check-ups kept before: {}", "此前保留的体检：{} 次";
     PARTIAL: "Partial, it ended early: {}", "不完整，提前结束：{}";
     LIGHTS: "{} fine, {} to watch, {} to act on, {} not measured", "正常 {}，关注 {}，处理 {}，未测量 {}";
-    REPORT: "Show report", "显示报告", "Shows the page of the report in the system's file manager; any browser opens it.", "在系统文件管理器中显示报告页面，可用任何浏览器打开。";
+    REPORT: "Show report", "显示报告", "Shows the page of the report in the system's file manager; any browser opens it.", "在系统文件管理器中显示报告页面。";
     NO_REPORT: "The report of this check-up is in no file: save it.", "此次体检的报告没有写入文件：请保存。";
-    SAVE: "Save page", "保存页面", "Saves the report as one page that any browser opens.", "把报告保存为可用浏览器打开的单个页面。";
+    SAVE: "Save page", "保存页面", "Saves the report as one page that any browser opens.", "把报告保存为单个网页文件。";
     ONLY: "Only what is not fine", "只看异常", "Shows only figures that are to be watched or acted on, that drift, or that were not measured.", "只显示需要关注或处理、有漂移或未测量的项目。";
     ALL_FINE: "Everything is as it should be.", "全部正常。";
     LEFT_ALONE: "{} was left alone: its sensor says {} g of nothing, so that it could not be stopped gently. Calibrate the force sensors, and check again.", "{}没有动作：空载时传感器读数为 {} g，无法轻柔停下。请校准力传感器后重新体检。";
