@@ -17,7 +17,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Lease, LinkHandle, Owner, Records};
+use crate::link::{ArmRequest, Lease, LinkHandle, LinkStatus, Owner, Records};
 use crate::record::{Disarmed, LinkState, Record};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
@@ -27,7 +27,7 @@ use serde_json::{Value, json};
 use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::time::{Instant, interval, timeout};
+use tokio::time::{Instant, interval, sleep, timeout};
 
 /// Version of the lines.
 const VERSION: u64 = 1;
@@ -49,7 +49,7 @@ pub(crate) struct StdioHand<'a> {
 
 /// How a task ended.
 enum Done {
-    Armed(Result<ArmEpoch, Refused>),
+    Armed(Result<Right, Refused>),
     Moved(Result<MoveReport, Refused>),
     Followed(Result<FollowEnd, Refused>),
     /// The hand was stopped; whether feedback shows that it rests.
@@ -266,10 +266,7 @@ impl Script<'_> {
                 self.right = None;
                 Ok(())
             }
-            Ok(Ask::Arm(limits)) => match self.arm(limits) {
-                Ok(arming) => return self.begin(id, arming),
-                Err(no) => Err(no),
-            },
+            Ok(Ask::Arm(limits)) => return self.arm(id, limits),
             Ok(Ask::Move(ask)) => match self.right() {
                 Ok(right) => return self.move_hand(id, right, ask),
                 Err(no) => Err(no),
@@ -335,25 +332,11 @@ impl Script<'_> {
     }
 
     /// Takes the right to move the hand, unless another has it.
-    fn arm(&mut self, limits: ArmRequest) -> Result<BoxFuture<'static, Done>, Refused> {
-        let holder = self.hand.link.status().holder;
-        let right = match (self.holds(), holder) {
-            (Some(right), _) => Right { limits, ..right },
-            (None, Some(other)) => {
-                let who = match other.owner {
-                    Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
-                    _ => "another may move the hand now".into(),
-                };
-                return Err(Refused::new("taken", who));
-            }
-            (None, None) => Right {
-                lease: self.hand.link.grant(Owner::Task),
-                limits,
-            },
-        };
-        self.right = Some(right);
+    fn arm(&mut self, id: Value, limits: ArmRequest) -> Result<(), NobodyReads> {
+        let held = self.holds();
         let link = self.hand.link.clone();
-        Ok(async move { Done::Armed(armed(&link, right).await) }.boxed())
+        let arming = async move { Done::Armed(granted(&link, held, limits).await) };
+        self.begin(id, arming.boxed())
     }
 
     fn move_hand(&mut self, id: Value, right: Right, ask: MoveAsk) -> Result<(), NobodyReads> {
@@ -468,11 +451,8 @@ impl Script<'_> {
         };
         match done {
             Done::Armed(armed) => {
-                let done = armed.map(|_epoch| json!({}));
-                if done.is_err() {
-                    self.right = None;
-                }
-                self.reply(&id, done)
+                self.right = armed.as_ref().ok().copied();
+                self.reply(&id, armed.map(|_right| json!({})))
             }
             Done::Moved(moved) => {
                 let done = moved.and_then(|report| self.moved(&report));
@@ -531,6 +511,42 @@ impl Script<'_> {
             Ok(FollowEnd::Lease(end)) => end.into(),
         };
         self.lose(&lost)
+    }
+}
+
+/// Takes the right to move the hand and arms it, once its link and a stop before let it. A right that is held stays.
+async fn granted(
+    link: &LinkHandle,
+    held: Option<Right>,
+    limits: ArmRequest,
+) -> Result<Right, Refused> {
+    let until = Instant::now() + ARMS_WITHIN;
+    loop {
+        let LinkStatus { state, holder, .. } = link.status();
+        let right = match (held, holder) {
+            (Some(right), _) => Right { limits, ..right },
+            (None, Some(other)) => {
+                let who = match other.owner {
+                    Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
+                    _ => "another may move the hand now".into(),
+                };
+                return Err(Refused::new("taken", who));
+            }
+            (None, None) if !state.is_live() && Instant::now() < until => {
+                sleep(LOOK_EACH).await;
+                continue;
+            }
+            (None, None) => Right {
+                lease: link.grant(Owner::Task),
+                limits,
+            },
+        };
+        match armed(link, right).await {
+            Ok(_epoch) => return Ok(right),
+            // Nothing moved yet: it begins anew with a link that is back.
+            Err(no) if no.kind == "link_lost" && held.is_none() && Instant::now() < until => {}
+            Err(no) => return Err(no),
+        }
     }
 }
 
