@@ -148,6 +148,10 @@ impl HandCheckup {
         if self.run.is_some() || std::mem::replace(&mut self.is_looked, true) {
             return;
         }
+        // Nothing is kept of the built-in hand.
+        if files.kept.is_none() {
+            return;
+        }
         let look = async move { on_thread(move || Ok(files.last())).await.flatten() };
         self.looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
     }

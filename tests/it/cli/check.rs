@@ -4,6 +4,7 @@ use crate::cli::refuses_unarmed;
 use crate::setup::process::{run, sim_on_link, sim_on_tcp, start};
 use handscope::checkup::kept::file_of;
 use handscope::record::file::RecordingFile;
+use handscope::transport::Endpoint;
 use nix::sys::signal::Signal;
 
 #[test]
@@ -75,7 +76,8 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
     assert!(json["check"]["usage"].is_null(), "there are no recordings");
     let recorded = RecordingFile::open(&out.join("check.mcap")).unwrap();
     assert!(recorded.is_closed() && recorded.overview().counts.writes > 0);
-    assert_eq!(recorded.opening().hand, hand);
+    let canonical = hand.parse::<Endpoint>().unwrap().to_string();
+    assert_eq!(recorded.opening().hand, canonical);
     let files = std::fs::read_dir(&kept).unwrap().count();
     assert_eq!(files, 0, "nothing partial is kept");
 }

@@ -24,13 +24,17 @@ fn what_a_trial_measured_is_kept_for_its_hand_and_its_warnings_go_by_it() {
     let home = folder.path();
     let (_sim, hand) = sim_on_tcp(&["--scenario", "rigid"]);
     assert_eq!(told(home, &hand, &[])["closes"], 0);
-    let hard = folder.path().join("hard.toml");
-    let rows = "[default_speed]\nindex = 250\n[default_force]\nindex = 500\n";
-    std::fs::write(
-        &hard,
-        format!("format = \"handscope-params\"\nversion = 1\n{rows}"),
-    )
-    .unwrap();
+    let defaults = |name: &str, speed: u16, force: u16| {
+        let file = folder.path().join(name);
+        let rows = format!("[default_speed]\nindex = {speed}\n[default_force]\nindex = {force}\n");
+        let text = format!("format = \"handscope-params\"\nversion = 1\n{rows}");
+        std::fs::write(&file, text).unwrap();
+        file
+    };
+    let gentle = defaults("gentle.toml", 25, 100);
+    let gentle = ["params", "apply", gentle.to_str().unwrap(), "--hand", &hand];
+    at_home(home, &gentle).ok();
+    let hard = defaults("hard.toml", 250, 500);
     let apply = || {
         let hard = hard.to_str().unwrap();
         let ended = at_home(home, &["params", "apply", hard, "--hand", &hand]);

@@ -4,7 +4,7 @@ use crate::setup::process::run;
 use serde_json::Value;
 use std::fs;
 
-const VIEWS: [&str; 12] = [
+const VIEWS: [&str; 13] = [
     "live",
     "touch",
     "tune",
@@ -12,6 +12,7 @@ const VIEWS: [&str; 12] = [
     "faults",
     "poses",
     "device",
+    "checkup",
     "connection",
     "inputs",
     "traffic",

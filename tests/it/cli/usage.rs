@@ -78,7 +78,7 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
         (&["snapshot"], "--out"),
         (
             &["snapshot", "--out", "x", "--view", "nowhere"],
-            "live, touch, tune, compare, faults, poses, device, connection, inputs, traffic, sessions, window or all",
+            "live, touch, tune, compare, faults, poses, device, checkup, connection, inputs, traffic, sessions, window or all",
         ),
         (&["snapshot", "--out", "x", "--size", "big"], "WIDTHxHEIGHT"),
         (&["snapshot", "--out", "x", "--scenario", "party"], "grasp"),

@@ -112,6 +112,8 @@ fn trials() -> Vec<TrialAction> {
         TrialAction::Forget(id),
         TrialAction::ConfirmForget,
         TrialAction::CancelForget,
+        TrialAction::ForgetMap,
+        TrialAction::ExportMap,
         TrialAction::Open(Some("/dev/null/none".into())),
         TrialAction::Save(id, None),
     ]
