@@ -161,11 +161,12 @@ impl OvershootMap {
             return;
         }
         let Some(own) = self.0.iter_mut().find(|own| own.kind == new.kind) else {
-            if self.0.len() >= KINDS_MAX
-                && let Some(oldest) =
-                    (0..self.0.len()).min_by(|a, b| self.0[*a].last.cmp(&self.0[*b].last))
-            {
-                self.0.remove(oldest);
+            if self.0.len() >= KINDS_MAX {
+                let all = self.0.iter().enumerate();
+                let oldest = all.min_by(|(_, one), (_, other)| one.last.cmp(&other.last));
+                if let Some((at, _)) = oldest {
+                    self.0.remove(at);
+                }
             }
             return self.0.push(new);
         };
@@ -386,7 +387,7 @@ mod tests {
     #[test]
     fn a_softer_object_makes_a_warning_sharper_and_never_milder() {
         let mild = map(&[(250, 500, Stiffness::Soft, 20.0)]);
-        assert_eq!(expected(&mild, 250.0, 500.0).1, false);
+        assert!(!expected(&mild, 250.0, 500.0).1);
         let wild = map(&[(250, 500, Stiffness::Firm, 1500.0)]);
         assert_eq!(expected(&wild, 250.0, 500.0), (1500.0, true));
         assert!(expected(&wild, 600.0, 500.0).0 >= 1500.0);

@@ -77,22 +77,26 @@ impl HandMapView {
         let all = Dof::ALL.into_iter().filter(|dof| has(*dof));
         let all = all.map(|dof| (Some(dof), words::dof(dof)));
         let all: Vec<_> = std::iter::once((None, tune::MAP_ALL)).chain(all).collect();
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
             kit::pick_ui(ui, look, (&mut self.dof, tune::MAP_PICK), all);
-            let export = Button::said(look, tune::MAP_EXPORT).weight(Weight::Quiet);
-            export.on_click(ui, pane, Action::Trial(TrialAction::ExportMap));
-            if !self.asks {
-                let forget = Button::said(look, tune::MAP_FORGET).weight(Weight::Quiet);
-                self.asks = forget.ui(ui, look).clicked();
-                return;
-            }
+            kit::right_ui(ui, |ui| self.use_ui(ui, pane));
+        });
+    }
+
+    /// What is done with all of it, from right to left.
+    fn use_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let quiet = |text| Button::said(look, text).weight(Weight::Quiet);
+        if self.asks {
             let sure = Button::said(look, tune::MAP_FORGET_SURE).weight(Weight::Danger);
-            let back = Button::said(look, tune::MAP_FORGET_NOT).weight(Weight::Quiet);
-            if back.ui(ui, look).clicked() {
+            sure.on_click(ui, pane, Action::Trial(TrialAction::ForgetMap));
+            if quiet(tune::MAP_FORGET_NOT).ui(ui, look).clicked() {
                 self.asks = false;
             }
-            sure.on_click(ui, pane, Action::Trial(TrialAction::ForgetMap));
-        });
+        } else {
+            self.asks = quiet(tune::MAP_FORGET).ui(ui, look).clicked();
+        }
+        quiet(tune::MAP_EXPORT).on_click(ui, pane, Action::Trial(TrialAction::ExportMap));
     }
 }
 
