@@ -4,9 +4,12 @@
 use crate::hand::impact::{self, NOTABLE_G};
 use crate::hand::{Dof, Force, Speed};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Kinds of closes that are kept; the oldest make room.
 pub const KINDS_MAX: usize = 2000;
+/// What a close goes past its threshold, g; beyond this no sensor reads.
+const OVERS_G: RangeInclusive<f64> = -100.0..=10_000.0;
 /// What was measured up to a speed tells of speeds this much faster.
 const SPEED_FACTOR: f64 = 1.1;
 
@@ -94,6 +97,20 @@ pub struct MeasuredCloses {
     pub last: String,
 }
 
+impl MeasuredCloses {
+    /// Whether a hand can have measured it: a threshold that stops a finger is about reached.
+    fn is_sound(&self) -> bool {
+        let can_be = |over: f64| OVERS_G.contains(&over);
+        let is_day =
+            |day: &str| day.len() == 10 && day.bytes().all(|at| at.is_ascii_digit() || at == b'-');
+        self.closes > 0
+            && can_be(self.most_over_g)
+            && can_be(self.mean_over_g)
+            && is_day(&self.first)
+            && is_day(&self.last)
+    }
+}
+
 /// On which hand a figure was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeasuredOn {
@@ -141,7 +158,7 @@ impl OvershootMap {
 
     /// All closes that it rests on.
     pub fn closes(&self) -> u32 {
-        self.0.iter().map(|own| own.closes).sum()
+        count(self.0.iter())
     }
 
     /// Takes one close that went so far past its threshold, g, on a day.
@@ -157,7 +174,7 @@ impl OvershootMap {
     }
 
     fn merge(&mut self, new: MeasuredCloses) {
-        if new.closes == 0 || !new.most_over_g.is_finite() || !new.mean_over_g.is_finite() {
+        if !new.is_sound() {
             return;
         }
         let Some(own) = self.0.iter_mut().find(|own| own.kind == new.kind) else {
@@ -263,6 +280,10 @@ impl OvershootMap {
     }
 }
 
+fn count<'a>(closes: impl Iterator<Item = &'a MeasuredCloses>) -> u32 {
+    closes.fold(0, |all, own| all.saturating_add(own.closes))
+}
+
 /// How peaks of a joint grew with the speed: linear between the speeds that were tried, from nothing at rest, and never less at a
 /// higher speed.
 struct Grown {
@@ -295,7 +316,7 @@ impl Grown {
         Some(Self {
             over_g: over_g.unwrap_or(low.1),
             is_within: speed <= fastest * SPEED_FACTOR,
-            closes: closes.iter().map(|own| own.closes).sum(),
+            closes: count(closes.iter().copied()),
             last: closes.iter().map(|own| own.last.as_str()).max()?.into(),
         })
     }
@@ -423,10 +444,46 @@ mod tests {
     }
 
     #[test]
+    fn what_no_hand_can_have_measured_counts_for_nothing() {
+        let map = map(&[(250, 500, Stiffness::Rigid, 60.0)]);
+        let own = &map.kinds()[0];
+        let wrong = [
+            MeasuredCloses {
+                most_over_g: -500.0,
+                ..own.clone()
+            },
+            MeasuredCloses {
+                mean_over_g: 1e300,
+                ..own.clone()
+            },
+            MeasuredCloses {
+                closes: 0,
+                ..own.clone()
+            },
+            MeasuredCloses {
+                last: "\u{1b}[31m".into(),
+                ..own.clone()
+            },
+        ];
+        assert!(OvershootMap::of(wrong).is_empty());
+        let most = MeasuredCloses {
+            closes: u32::MAX,
+            ..own.clone()
+        };
+        let other = MeasuredCloses {
+            kind: kind(300, 500, Stiffness::Rigid),
+            ..most.clone()
+        };
+        let many = OvershootMap::of([most.clone(), most, other]);
+        assert_eq!(many.closes(), u32::MAX);
+        assert_eq!(expected(&many, 250.0, 500.0), (60.0, true));
+    }
+
+    #[test]
     fn no_more_kinds_are_kept_than_there_is_room_for() {
         let mut map = OvershootMap::default();
         for nth in 0..2100_i16 {
-            let day = format!("2026-{:04}", nth);
+            let day = format!("2026-{nth:05}");
             map.add(
                 kind(nth % 1000, nth / 1000 + 100, Stiffness::Rigid),
                 1.0,
@@ -434,6 +491,6 @@ mod tests {
             );
         }
         assert_eq!(map.kinds().len(), KINDS_MAX);
-        assert_eq!(map.kinds()[0].first, "2026-0100");
+        assert_eq!(map.kinds()[0].first, "2026-00100");
     }
 }

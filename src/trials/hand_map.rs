@@ -19,8 +19,11 @@ const LONG: u64 = 1 << 20;
 /// What one joint's close in a trial says: its kind, and how far past the threshold it went, g.
 pub type MeasuredClose = (CloseKind, f64);
 
-/// What the joints of a trial that met their thresholds say.
+/// What the joints of a trial that met their thresholds say. One that was ended early says nothing: its peak may have been to come.
 pub fn closes_of(trial: &Trial) -> Vec<MeasuredClose> {
+    if trial.summary.aborted.is_some() {
+        return Vec::new();
+    }
     let facts = CloseFacts::of(trial);
     let joints = trial.summary.joints.iter().zip(&facts);
     joints

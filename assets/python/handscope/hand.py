@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import numbers
 import os
 import subprocess
 import tempfile
@@ -359,7 +360,17 @@ def _six(joints: Mapping[str, float]) -> List[Optional[int]]:
     unknown = set(joints) - set(JOINTS)
     if unknown:
         raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
-    return [None if (at := joints.get(joint)) is None else round(at) for joint in JOINTS]
+    return [None if (at := joints.get(joint)) is None else _count(joint, at) for joint in JOINTS]
+
+
+def _count(joint: str, at: float) -> int:
+    """An angle of a joint in counts. One of `follow`, 0 to 1, is none: rounded, it would be a fist."""
+    if isinstance(at, bool) or not isinstance(at, numbers.Real) or not float(at).is_integer():
+        raise HandscopeError(
+            f"nothing was moved: {joint}={at!r} is no angle; move() takes whole numbers from 0, bent, to 1000, open,"
+            " and follow() takes 0 to 1"
+        )
+    return int(at)
 
 
 def _options(options: Mapping[str, Any]) -> List[str]:

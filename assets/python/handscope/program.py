@@ -150,7 +150,13 @@ class Program:
         return f"the program at {self.path} is version {version}, which this package cannot speak to: install both from one wheel"
 
     def ask(self, what: str, timeout_s: Optional[float] = _WITHIN_S, **fields: Any) -> Mapping[str, Any]:
-        """Asks one thing and waits for the answer."""
+        """Asks one thing and waits for the answer. A callback of states runs where answers come in: there a stop goes out and is
+        not waited for, and nothing else can be asked."""
+        if threading.current_thread() is self._reader:
+            if what != "stop":
+                raise HandscopeError(f"a callback of on_state cannot ask for '{what}': it would wait for itself")
+            self.tell({"do": what, **fields})
+            return {}
         own = next(self._ids)
         self._waiting[own] = {}
         try:

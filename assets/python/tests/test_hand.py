@@ -142,6 +142,31 @@ class Moves(unittest.TestCase):
             self.assertEqual(hand.state.angle["index"], 1000)
             self.assertEqual(hand.move(index=900, speed=500).end, "reached", "it goes on after that")
 
+    def test_a_share_of_follow_is_no_angle_of_move(self):
+        with handscope.open("sim:") as hand, hand.armed():
+            for wrong in (0.5, True, float("nan"), float("inf"), "400"):
+                with self.assertRaisesRegex(handscope.HandscopeError, "nothing was moved"):
+                    hand.move(index=wrong)
+            self.assertEqual(hand.state.angle["index"], 1000)
+
+    def test_a_callback_of_states_may_stop_the_hand_and_asks_for_nothing_else(self):
+        with handscope.open("sim:") as hand:
+            refused = []
+
+            def watch(state):
+                if state.angle["index"] < 800:
+                    hand.stop()
+                    try:
+                        hand.clear_faults()
+                    except handscope.HandscopeError as error:
+                        refused.append(error)
+
+            hand.on_state(watch)
+            with self.assertRaises(handscope.HandscopeError), hand.armed():
+                hand.move(index=0, speed=100)
+            self.assertGreater(hand.state.angle["index"], 500)
+            self.assertIn("wait for itself", str(refused[0]))
+
     def test_a_loop_is_followed(self):
         with handscope.open("sim:") as hand, hand.armed():
             until = time.monotonic() + 20

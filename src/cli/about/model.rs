@@ -3,7 +3,6 @@
 use crate::cli::out::Out;
 use crate::hand::kinematics::Side;
 use crate::model::{mjcf::mjcf, side_name, table, urdf::urdf};
-use crate::store;
 use anyhow::Context as _;
 use clap::Args;
 use serde_json::json;
@@ -41,7 +40,7 @@ pub(crate) fn run(out: &mut Out, args: &ModelArgs) -> anyhow::Result<()> {
         (true, format!("ftp_{side}_joints.csv"), table::csv),
     ];
     let folder = &args.out;
-    store::create_folder(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut files = Vec::new();
     for (_, name, text) in all.into_iter().filter(|(wanted, ..)| *wanted) {
         let file = folder.join(name);

@@ -1,7 +1,6 @@
 //! What packages and shells take from the program: manual pages, and completions of its command line.
 
 use crate::cli::out::Out;
-use crate::store;
 use anyhow::Context as _;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
@@ -36,7 +35,7 @@ pub(crate) fn completions(
 /// Writes a page for the program and one for each command.
 pub(crate) fn man(out: &mut Out, args: &ManArgs, mut program: Command) -> anyhow::Result<()> {
     let folder = &args.out;
-    store::create_folder(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     program.build();
     let mut pages = Vec::new();
     page(program, "handscope", folder, &mut pages)?;

@@ -1,8 +1,8 @@
 //! `overshoot`: what trials measured of a hand, printed, written as a table, or forgotten. Opens no link.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{Out, WrongUsage};
-use crate::hand::overshoot::{MeasuredCloses, Stages};
+use crate::cli::out::{Out, WrongUsage, say};
+use crate::hand::overshoot::{MeasuredCloses, OvershootMap, Stages};
 use crate::transport::Endpoint;
 use crate::trials::hand_map;
 use anyhow::Context as _;
@@ -36,7 +36,15 @@ pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
     let settings = settings_file::default_path();
     let file = settings.and_then(|settings| hand_map::file_of(&settings, &args.hand));
     let file = file.context("no home folder, in which it would be kept")?;
-    let map = hand_map::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+    let map = match hand_map::read(&file) {
+        Err(error) if args.forget => {
+            say(&format!("{} could not be read: {error}", file.display()));
+            OvershootMap::default()
+        }
+        read => {
+            read.with_context(|| format!("cannot read {}; --forget takes it away", file.display()))?
+        }
+    };
     if let Some(path) = &args.out {
         std::fs::write(path, hand_map::csv(&map))
             .with_context(|| format!("cannot write {}; nothing was forgotten", path.display()))?;

@@ -2,6 +2,7 @@
 
 use crate::setup::process::{Ended, handscope, run, sim_on_tcp};
 use handscope::record::file::reader::RecordingFile;
+use nix::sys::signal::Signal;
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
@@ -267,6 +268,33 @@ fn a_client_stops_what_a_script_moves_which_is_told_and_may_ask_again() {
     drop(window);
     while script.ask(json!({"do": "arm"}))["kind"] == "taken" {}
     assert_eq!(script.end(), Some(0));
+}
+
+#[test]
+fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go() {
+    for ends in [false, true] {
+        let (sim, hand) = sim_on_tcp(&[]);
+        let mut script = Script::start(&hand);
+        script.done(json!({"do": "arm"}));
+        script.tell(&to_index(0, 30));
+        while script.until("state")["angle"][3].as_i64().unwrap() > 980 {}
+        sim.signal(Signal::SIGSTOP);
+        assert_eq!(script.until("link")["state"], "lost");
+        sim.signal(Signal::SIGCONT);
+        assert_eq!(script.until("link")["state"], "live");
+        let at = || {
+            let read = run(&["read", "ANGLE_ACT", "--json", "--hand", &hand]).ok();
+            read.lines()[0]["ANGLE_ACT"][3].as_i64().unwrap()
+        };
+        if ends {
+            assert_eq!(script.end(), Some(0));
+        } else {
+            script.done(json!({"do": "release"}));
+        }
+        let first = at();
+        sleep(Duration::from_millis(500));
+        assert!((first - at()).abs() <= 2 && first > 300, "{ends} {first}");
+    }
 }
 
 #[test]

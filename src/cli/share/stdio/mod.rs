@@ -81,6 +81,8 @@ struct Script<'a> {
     /// Records that were missed, as far as that was told.
     missed: u64,
     right: Option<Right>,
+    /// It had the right, and nothing stopped the hand since as it was asked to.
+    owes_stop: bool,
     task: Option<Task>,
     recording: Option<SideRecording>,
     /// The recording that is being ended, and whom that is told to.
@@ -101,6 +103,7 @@ pub(crate) async fn serve(
         grip: GripEstimator::default(),
         missed: 0,
         right: None,
+        owes_stop: false,
         task: None,
         recording: None,
         ending: None,
@@ -152,7 +155,7 @@ impl Script<'_> {
     /// Stops a hand that may move, and ends the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
-        let may_move = self.holds().is_some() || link.status().state == LinkState::Holding;
+        let may_move = self.is_to_stop() || link.status().state == LinkState::Holding;
         self.task = None;
         let done = if may_move {
             session::stopped(link, &mut link.records()).await
@@ -166,6 +169,13 @@ impl Script<'_> {
             ending.await;
         }
         done
+    }
+
+    /// Whether the hand may go on to where the program sent it, also after a link that was lost and is back; unless another moves it.
+    fn is_to_stop(&self) -> bool {
+        let status = self.hand.link.status();
+        let goes_on = self.owes_stop && status.state.is_live() && status.holder.is_none();
+        goes_on || self.holds().is_some()
     }
 
     /// The right to move the hand, if it still holds.
@@ -255,12 +265,12 @@ impl Script<'_> {
                 if self.holds().is_some() {
                     self.hand.link.disarm();
                 }
-                self.right = None;
+                (self.right, self.owes_stop) = (None, false);
                 Ok(())
             }
             Ok(Ask::Record(path)) => self.record(&id, path.as_deref()),
             Ok(Ask::Stop) => return self.stop(id),
-            Ok(Ask::Release) if self.holds().is_some() => return self.stop(id),
+            Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
             Ok(Ask::Release) => {
                 self.end_task()?;
                 self.right = None;
@@ -324,7 +334,7 @@ impl Script<'_> {
     /// Stops the hand, whoever moves it, and waits for what feedback says of it.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
         self.hand.link.stop();
-        self.right = None;
+        (self.right, self.owes_stop) = (None, false);
         let link = self.hand.link.clone();
         let stopping =
             async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
@@ -452,6 +462,7 @@ impl Script<'_> {
         match done {
             Done::Armed(armed) => {
                 self.right = armed.as_ref().ok().copied();
+                self.owes_stop |= self.right.is_some();
                 self.reply(&id, armed.map(|_right| json!({})))
             }
             Done::Moved(moved) => {
