@@ -20,9 +20,9 @@ const PAUSE_TIMES: u32 = 24;
 /// The shortest such pause after a stretch that the session never reads: however fast the wire is, clients that read here and there
 /// cost it a few requests a second.
 const PAUSE_MIN: Duration = Duration::from_millis(200);
-/// So many such reads go at once after a while without: a program that gets to know the hand asks for a few, and
-/// one that moves it reads back what it set; each of them it waits for no longer than a hand takes.
-const AT_ONCE: u32 = 40;
+/// So many such reads go at once after a while without: a program that gets to know the hand asks for a few, each of which it waits
+/// for no longer than a hand takes.
+const AT_ONCE: u32 = 8;
 /// The longest such pause, so that one slow answer does not keep all others waiting.
 const PAUSE_MAX: Duration = Duration::from_millis(500);
 

@@ -299,7 +299,8 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
 
 #[test]
 fn two_scripts_share_a_hand_and_one_moves_it() {
-    let mut first = Script::start("sim:");
+    let (_sim, at) = sim_on_tcp(&[]);
+    let mut first = Script::start(&at);
     let mut second = Script::start(&format!("tcp:{}", first.gateway));
     first.done(json!({"do": "arm"}));
     let no = second.ask(json!({"do": "arm"}));
@@ -316,7 +317,8 @@ fn two_scripts_share_a_hand_and_one_moves_it() {
 
 #[test]
 fn a_command_moves_the_hand_in_the_place_of_a_script() {
-    let mut script = Script::start("sim:");
+    let (_sim, at) = sim_on_tcp(&[]);
+    let mut script = Script::start(&at);
     script.done(json!({"do": "arm"}));
     script.done(json!({"do": "disarm"}));
     let hand = format!("tcp:{}", script.gateway);

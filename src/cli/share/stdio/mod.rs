@@ -81,7 +81,7 @@ struct Script<'a> {
     /// Records that were missed, as far as that was told.
     missed: u64,
     right: Option<Right>,
-    /// It had the right, and nothing stopped the hand since as it was asked to.
+    /// Its right ended with a link that was lost: nothing stopped the hand.
     owes_stop: bool,
     task: Option<Task>,
     recording: Option<SideRecording>,
@@ -232,6 +232,7 @@ impl Script<'_> {
     /// The right to move the hand is over, which was not asked for.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
         self.right = None;
+        self.owes_stop = why.kind == "link_lost";
         self.told
             .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
@@ -462,7 +463,7 @@ impl Script<'_> {
         match done {
             Done::Armed(armed) => {
                 self.right = armed.as_ref().ok().copied();
-                self.owes_stop |= self.right.is_some();
+                self.owes_stop = false;
                 self.reply(&id, armed.map(|_right| json!({})))
             }
             Done::Moved(moved) => {
