@@ -4,7 +4,7 @@
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::offer::Offer;
-use crate::inputs::pinch::{self, PinchStep, Reach};
+use crate::inputs::pinch::{self, PinchAim, PinchStep, Reach};
 use crate::record::LinkState;
 use std::time::Duration;
 
@@ -255,7 +255,11 @@ impl Follow {
             lead: f32::from(self.limits.lead),
         };
         match offer.gap {
-            Some(gap) => self.step_to_gap(gap, pose, reach),
+            Some(gap) => {
+                // What is locked or left alone has no aim.
+                let moves = offer.aims.map(|aim| aim.is_some());
+                self.step_to_gap(PinchAim { gap, moves }, pose, reach);
+            }
             None => {
                 self.is_pinching = false;
                 self.step_each(&offer.aims, pose, reach);
@@ -295,7 +299,8 @@ impl Follow {
 
     /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known,
     /// nothing goes on.
-    fn step_to_gap(&mut self, gap: Gap, pose: &PerDof<Option<Angle>>, reach: Reach) {
+    fn step_to_gap(&mut self, aim: PinchAim, pose: &PerDof<Option<Angle>>, reach: Reach) {
+        let PinchAim { gap, moves } = aim;
         let Some(is_open) = pinch::is_open(pose) else {
             return;
         };
@@ -313,7 +318,10 @@ impl Follow {
             pinch::opening(pose)
         };
         match step {
-            PinchStep::Open(aims) => self.step_each(&aims, pose, reach),
+            PinchStep::Open(aims) => {
+                let aims = PerDof::from_fn(|dof| aims[dof].filter(|_| moves[dof]));
+                self.step_each(&aims, pose, reach);
+            }
             PinchStep::Along(to) => {
                 // As each joint by itself: what begins begins where the joint is.
                 let begins = Gap::JOINTS
@@ -323,7 +331,8 @@ impl Follow {
                     true => 0.0,
                     false => pinch::share(&sent, &to, &at, reach),
                 };
-                self.step_each(&to.map(Some), pose, reach);
+                let aims = PerDof::from_fn(|dof| moves[dof].then_some(to[dof]));
+                self.step_each(&aims, pose, reach);
                 for dof in Gap::JOINTS {
                     let way = f32::from(to[dof].get()) - sent[dof];
                     self.targets[dof] = Some(sent[dof] + share * way);

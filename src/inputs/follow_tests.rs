@@ -131,6 +131,38 @@ fn a_gap_is_gone_to_along_the_path_within_rate_and_lead_from_wherever_the_hand_i
 }
 
 #[test]
+fn what_is_left_alone_or_locked_stays_where_it_is_while_a_gap_is_gone_to() {
+    let gap = Gap::nearest(30.0);
+    let aims = gap.angles().map(Some);
+    let alone = PerDof::from_fn(|dof| aims[dof].filter(|_| dof != Dof::Little));
+    for from in [PerDof::splat(0), Gap::MAX.angles().map(Angle::get)] {
+        for (aims, moves) in [(aims, true), (alone, false)] {
+            let mut follow = Follow::new(FollowLimits::default(), ms(0));
+            let mut hand = from;
+            hand[Dof::Little] = 200;
+            for n in 0..300 {
+                follow.offer(Offer {
+                    gap: Some(gap),
+                    aims,
+                    mark: None,
+                    ..offer(n * 10, 0)
+                });
+                let seen = FollowInput {
+                    pose: hand.map(|at| Some(Angle::nearest(at))),
+                    ..at(0)
+                };
+                if let Some(FollowOrder::Aim(to)) = follow.tick(seen, ms(n * 10)) {
+                    hand = PerDof::from_fn(|dof| to[dof].map_or(hand[dof], Angle::get));
+                }
+            }
+            assert_eq!(hand[Dof::Little] != 200, moves, "{hand:?}");
+            let index = gap.angles()[Dof::Index].get();
+            assert!(hand[Dof::Index].abs_diff(index) <= 2, "{hand:?}");
+        }
+    }
+}
+
+#[test]
 fn a_gap_that_stays_the_same_is_not_frozen() {
     let mut follow = Follow::new(LIMITS, ms(0));
     let gap = Gap::nearest(30.0);

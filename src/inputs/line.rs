@@ -103,6 +103,18 @@ struct Raw {
 }
 
 impl StreamLine {
+    /// A stop, whatever else stands in its line.
+    fn stop(raw: &Raw) -> Self {
+        Self {
+            seq: raw.seq,
+            aims: PerDof::splat(None),
+            gap: None,
+            held: raw.held,
+            stop: true,
+            mark: 0,
+        }
+    }
+
     /// Reads one line for the hand of this side.
     ///
     /// # Errors
@@ -115,6 +127,9 @@ impl StreamLine {
         if raw.v.is_some_and(|version| version != LINE_VERSION) {
             return Err(LineFault::Version);
         }
+        if raw.stop {
+            return Ok(Self::stop(&raw));
+        }
         if raw.grip_mm.is_some() && (raw.left.is_some() || raw.right.is_some()) {
             return Err(LineFault::Both);
         }
@@ -123,9 +138,8 @@ impl StreamLine {
             Side::Left => raw.left,
             Side::Right => raw.right,
         };
-        // A stop needs no targets.
         let values = match values {
-            None if raw.stop || gap.is_some() => vec![None; Dof::ALL.len()],
+            None if gap.is_some() => vec![None; Dof::ALL.len()],
             values => values.ok_or(LineFault::OtherSide)?,
         };
         let mut aims = PerDof::splat(None);
@@ -143,7 +157,7 @@ impl StreamLine {
             aims: gap.map_or(aims, |gap| gap.angles().map(Some)),
             gap,
             held: raw.held,
-            stop: raw.stop,
+            stop: false,
             mark: hasher.finish(),
         })
     }
@@ -202,6 +216,17 @@ mod tests {
         assert_eq!((line.seq, line.held, line.stop), (Some(7), None, false));
         let stop = parse(r#"{"stop":true}"#).unwrap();
         assert!(stop.stop && stop.aims == PerDof::splat(None));
+        // It stops the hand, whatever else stands there.
+        for beside in [
+            r#""grip_mm":0"#,
+            r#""grip_mm":30,"right":[1,1,1,1,1,1]"#,
+            r#""right":[1]"#,
+            r#""right":[7,1,1,1,1,1]"#,
+            r#""left":[1,1,1,1,1,1]"#,
+        ] {
+            let stop = parse(&format!("{{\"stop\":true,{beside}}}")).unwrap();
+            assert!(stop.stop && stop.gap.is_none(), "{beside}");
+        }
     }
 
     #[test]
