@@ -2,7 +2,7 @@
 
 use crate::app::files::settings_file;
 use crate::cli::out::{Out, say};
-use crate::cli::parse::{force, hand, speed};
+use crate::cli::parse::{force, hand, moving, rated, speed};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::hand::PerDof;
@@ -60,22 +60,11 @@ fn gap(text: &str) -> Result<Gap, String> {
 }
 
 fn moving_speed(text: &str) -> Result<Speed, String> {
-    let speed = speed(text)?;
-    if speed == Speed::MIN {
-        Err("at a speed of 0 nothing moves".into())
-    } else {
-        Ok(speed)
-    }
+    speed(text).and_then(moving)
 }
 
 fn rated_force(text: &str) -> Result<Force, String> {
-    let force = force(text)?;
-    if force > Force::RATED {
-        let rated = Force::RATED.get();
-        Err(format!("a finger is rated for {rated} g (20 N)"))
-    } else {
-        Ok(force)
-    }
+    force(text).and_then(rated)
 }
 
 /// Grips. Fails if it was ended early, or if something stopped the hand that it does not hold.
@@ -159,7 +148,7 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
         GripEnd::Late => Err("the hand did not get there in time".into()),
         GripEnd::Person => Err("ended by a person".into()),
         GripEnd::OtherWrote => Err(
-            "another controller wrote angles or speeds to the hand: let one of them move it".into(),
+            "another controller wrote to the hand, or talks to it: let one of them move it".into(),
         ),
         GripEnd::Broken(why) => Err(match report.disarmed {
             Some(disarmed) => format!("{}: {disarmed}", broken(why)),

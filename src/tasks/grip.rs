@@ -10,7 +10,7 @@ use crate::hand::{
 use crate::link::{Clock, Lease};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{WayPart, pinch_way};
-use crate::record::{Disarmed, Record, Rest};
+use crate::record::{Disarmed, Record, Rest, SetpointRegister};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
 use crate::tasks::series::{self, Stop};
@@ -31,8 +31,6 @@ const ACTS_WITHIN: Duration = Duration::from_millis(150);
 const SEEN_WITHIN: Duration = Duration::from_millis(1500);
 /// So many readings in a row with a value that was not told are another controller's; one may be wrong.
 const STRANGE: u8 = 2;
-/// A hand may round what it is told by so much.
-const ROUNDS_BY: u16 = 5;
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -70,7 +68,7 @@ pub enum GripEnd {
     Late,
     /// The user ended it. The hand was stopped.
     Person,
-    /// Another controller wrote where the joints go or how fast. The hand was stopped.
+    /// Another controller wrote where the joints go or how fast, or talks to the hand. The hand was stopped.
     OtherWrote,
     /// The arming ended, a drive reported a fault, the link was lost, or another moves the hand.
     Broken(PlayEnd),
@@ -207,16 +205,16 @@ impl<H: TaskHand> GripRun<'_, H> {
             to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_WITHIN)
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
-        let is_seen = self.told.is_seen() || now.since(self.sent) >= SEEN_WITHIN;
-        if arrived && !is_last && !is_seen {
-            // What another wrote meanwhile would be overwritten unseen.
-            return None;
-        }
-        if arrived && !is_last {
-            self.legs.as_mut().and_then(VecDeque::pop_front);
-            return self.send();
-        }
         let since = now.since(self.sent);
+        // What another wrote meanwhile would be overwritten unseen.
+        let is_unread = since >= SEEN_WITHIN && !self.told.is_doubted();
+        if arrived && !is_last {
+            if self.told.is_seen() || is_unread {
+                self.legs.as_mut().and_then(VecDeque::pop_front);
+                return self.send();
+            }
+            return (since > limit(&leg)).then_some(GripEnd::Late);
+        }
         let rests = since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting;
         if rests && !self.told.is_doubted() {
             return Some(self.at_rest(leg, arrived));
@@ -333,7 +331,9 @@ impl ToldValues {
     fn read(&mut self, values: &PerDof<Option<i16>>) {
         let is_told = PerDof::from_fn(|dof| {
             let both = values[dof].zip(self.told[dof]);
-            both.is_none_or(|(value, told)| value.abs_diff(told) <= ROUNDS_BY)
+            // As much for speeds.
+            let rounds_by = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
+            both.is_none_or(|(value, told)| value.abs_diff(told) <= rounds_by)
         });
         let is_strange = |dof: Dof| self.is_taken[dof] && !is_told[dof];
         self.strange = match Dof::ALL.into_iter().any(is_strange) {

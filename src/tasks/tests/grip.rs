@@ -299,10 +299,10 @@ async fn a_hand_that_never_arrives_is_stopped_when_its_time_is_over() {
 async fn what_another_writes_to_any_joint_ends_it_even_where_the_next_part_would_overwrite_it() {
     let foreign = [[Some(500), None], [None, Some(900)]];
     for write in foreign {
-        // In the middle of a part, and just before the end of one.
-        for place in [100.0, 90.5] {
+        // In the middle of a part, and just before the end of one; also of one that takes long.
+        for (place, steps) in [(100.0, 20), (90.5, 20), (90.5, 200)] {
             let bench = Bench::opened().await;
-            bench.at(angles(110.0), false, 20).await;
+            bench.at(angles(110.0), false, steps).await;
             bench.foreign.set(write);
             bench.at(angles(place), false, 5).await;
             let asked = bench.hand.asked();
