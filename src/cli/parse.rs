@@ -77,6 +77,23 @@ pub(crate) fn dof(text: &str) -> Result<Dof, String> {
     })
 }
 
+/// A speed at which something moves.
+pub(crate) fn moving(speed: Speed) -> Result<Speed, String> {
+    if speed == Speed::MIN {
+        return Err("at a speed of 0 nothing moves".into());
+    }
+    Ok(speed)
+}
+
+/// A force threshold that needs no consent of its own.
+pub(crate) fn rated(force: Force) -> Result<Force, String> {
+    if force > Force::RATED {
+        let rated = Force::RATED.get();
+        return Err(format!("a finger is rated for {rated} g (20 N)"));
+    }
+    Ok(force)
+}
+
 pub(crate) fn side(text: &str) -> Result<Side, String> {
     match text {
         "right" => Ok(Side::Right),

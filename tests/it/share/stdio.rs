@@ -280,6 +280,9 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
         while script.until("state")["angle"][3].as_i64().unwrap() > 980 {}
         sim.signal(Signal::SIGSTOP);
         assert_eq!(script.until("link")["state"], "lost");
+        if ends {
+            assert_eq!(script.ask(json!({"do": "arm"}))["ok"], Value::Null);
+        }
         sim.signal(Signal::SIGCONT);
         assert_eq!(script.until("link")["state"], "live");
         let at = || {
@@ -294,6 +297,23 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
         let first = at();
         sleep(Duration::from_millis(500));
         assert!((first - at()).abs() <= 2 && first > 300, "{ends} {first}");
+    }
+}
+
+#[test]
+fn an_arming_that_something_else_is_asked_for_meanwhile_gives_the_hand_back() {
+    for instead in ["release", "disarm", "arm"] {
+        let mut script = Script::start("sim:");
+        script.tell(&json!({"id": 1, "do": "arm"}));
+        script.tell(&json!({"id": 2, "do": instead}));
+        let told = [script.until("reply"), script.until("reply")];
+        let replaced = told.iter().any(|reply| reply["kind"] == "replaced");
+        let done = told.iter().filter(|reply| !reply["ok"].is_null()).count();
+        assert!(replaced || done == 2, "{instead}: {told:?}");
+        script.done(json!({"do": "release"}));
+        script.done(json!({"do": "arm"}));
+        script.done(to_index(900, 500));
+        assert_eq!(script.end(), Some(0));
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a program asks of a hand on standard input, one JSON object a line. Pure; a contract with scripts
 //! (`handscope help share`).
 
+use crate::cli::parse::{moving, rated};
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::inputs::line::StreamLine;
@@ -152,23 +153,14 @@ fn targets(angles: &[Option<i64>]) -> Result<Targets, String> {
 
 /// Gentle, where none is asked for.
 fn moving_speed(speed: Option<i64>) -> Result<Speed, String> {
-    match speed.map(Speed::new) {
-        None => Ok(Speed::GENTLE),
-        Some(Ok(Speed::MIN)) => Err("at a speed of 0 nothing moves".into()),
-        Some(speed) => speed.map_err(|error| error.to_string()),
-    }
+    let speed = speed.map_or(Ok(Speed::GENTLE), Speed::new);
+    speed.map_err(|error| error.to_string()).and_then(moving)
 }
 
 /// Gentle, where none is asked for.
 fn rated_force(grams: Option<i64>) -> Result<Force, String> {
-    match grams.map(Force::new) {
-        None => Ok(Force::GENTLE),
-        Some(Ok(force)) if force > Force::RATED => {
-            let rated = Force::RATED.get();
-            Err(format!("a finger is rated for {rated} g (20 N)"))
-        }
-        Some(force) => force.map_err(|error| error.to_string()),
-    }
+    let force = grams.map_or(Ok(Force::GENTLE), Force::new);
+    force.map_err(|error| error.to_string()).and_then(rated)
 }
 
 #[cfg(test)]

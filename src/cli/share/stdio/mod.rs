@@ -62,6 +62,8 @@ struct Task {
     /// Whom its end is told to; `null` for nobody.
     id: Value,
     done: BoxFuture<'static, Done>,
+    /// It takes the right to move the hand, which nobody has yet if it is dropped.
+    arms: bool,
     /// Where targets go while it follows.
     offers: Option<mpsc::Sender<Offer>>,
 }
@@ -81,7 +83,7 @@ struct Script<'a> {
     /// Records that were missed, as far as that was told.
     missed: u64,
     right: Option<Right>,
-    /// Its right ended with a link that was lost: nothing stopped the hand.
+    /// Its right ended with a link that was lost, or the sleep of the computer: nothing stopped the hand.
     owes_stop: bool,
     task: Option<Task>,
     recording: Option<SideRecording>,
@@ -232,7 +234,7 @@ impl Script<'_> {
     /// The right to move the hand is over, which was not asked for.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
         self.right = None;
-        self.owes_stop = why.kind == "link_lost";
+        self.owes_stop = matches!(why.kind, "link_lost" | "resume");
         self.told
             .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
@@ -269,7 +271,7 @@ impl Script<'_> {
                 (self.right, self.owes_stop) = (None, false);
                 Ok(())
             }
-            Ok(Ask::Record(path)) => self.record(&id, path.as_deref()),
+            Ok(Ask::Record(path)) => return self.record(id, path.as_deref()),
             Ok(Ask::Stop) => return self.stop(id),
             Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
             Ok(Ask::Release) => {
@@ -295,10 +297,7 @@ impl Script<'_> {
                 return self.begin(id, clearing.boxed());
             }
         };
-        match done {
-            Ok(()) if self.ending.as_ref().is_some_and(|(own, _)| *own == id) => Ok(()),
-            done => self.reply(&id, done.map(|()| json!({}))),
-        }
+        self.reply(&id, done.map(|()| json!({})))
     }
 
     /// The right to move the hand, or why there is none.
@@ -318,6 +317,11 @@ impl Script<'_> {
         if task.offers.is_some() {
             return Ok(());
         }
+        let holder = self.hand.link.status().holder;
+        let is_own = holder.is_some_and(|holder| holder.owner == Owner::Task);
+        if task.arms && is_own && self.holds().is_none() {
+            self.hand.link.disarm();
+        }
         self.reply(
             &task.id,
             Err(Refused::new("replaced", "something else was asked for")),
@@ -327,8 +331,12 @@ impl Script<'_> {
     /// Begins a task in place of what goes on.
     fn begin(&mut self, id: Value, done: BoxFuture<'static, Done>) -> Result<(), NobodyReads> {
         self.end_task()?;
-        let offers = None;
-        self.task = Some(Task { id, done, offers });
+        self.task = Some(Task {
+            id,
+            done,
+            arms: false,
+            offers: None,
+        });
         Ok(())
     }
 
@@ -347,7 +355,11 @@ impl Script<'_> {
         let held = self.holds();
         let link = self.hand.link.clone();
         let arming = async move { Done::Armed(granted(&link, held, limits).await) };
-        self.begin(id, arming.boxed())
+        self.begin(id, arming.boxed())?;
+        if let Some(task) = &mut self.task {
+            task.arms = true;
+        }
+        Ok(())
     }
 
     fn move_hand(&mut self, id: Value, right: Right, ask: MoveAsk) -> Result<(), NobodyReads> {
@@ -421,30 +433,36 @@ impl Script<'_> {
     }
 
     /// Begins or ends a recording. Its end is told once the file is whole.
-    fn record(&mut self, id: &Value, path: Option<&std::path::Path>) -> Result<(), Refused> {
+    fn record(&mut self, id: Value, path: Option<&std::path::Path>) -> Result<(), NobodyReads> {
         let StdioHand {
             link,
             endpoint,
             side,
             ..
         } = self.hand;
-        match (path, self.recording.take()) {
-            (Some(path), None) => {
-                let begun = SideRecording::begin(Some(path), link, endpoint, side);
-                let begun = begun.map_err(|error| Refused::new("refused", format!("{error:#}")))?;
-                self.recording = Some(begun);
-                Ok(())
-            }
-            (Some(_), Some(goes_on)) => {
-                self.recording = Some(goes_on);
-                Err(Refused::new("refused", "a recording goes on: end it first"))
+        let done = match (path, self.recording.take()) {
+            (Some(path), None) => match SideRecording::begin(Some(path), link, endpoint, side) {
+                Ok(begun) => {
+                    self.recording = Some(begun);
+                    Ok(json!({}))
+                }
+                Err(error) => Err(format!("{error:#}")),
+            },
+            (Some(_), goes_on) => {
+                self.recording = goes_on;
+                Err("a recording goes on: end it first".into())
             }
             (None, Some(recording)) if self.ending.is_none() => {
-                self.ending = Some((id.clone(), recording.end_here().boxed()));
-                Ok(())
+                self.ending = Some((id, recording.end_here().boxed()));
+                return Ok(());
             }
-            (None, _) => Err(Refused::new("refused", "nothing is recorded")),
-        }
+            (None, Some(goes_on)) => {
+                self.recording = Some(goes_on);
+                Err("the recording before is not whole yet: end this one a little later".into())
+            }
+            (None, None) => Err("nothing is recorded".into()),
+        };
+        self.reply(&id, done.map_err(|why| Refused::new("refused", why)))
     }
 
     /// A recording is whole.
@@ -463,7 +481,7 @@ impl Script<'_> {
         match done {
             Done::Armed(armed) => {
                 self.right = armed.as_ref().ok().copied();
-                self.owes_stop = false;
+                self.owes_stop &= armed.is_err();
                 self.reply(&id, armed.map(|_right| json!({})))
             }
             Done::Moved(moved) => {
