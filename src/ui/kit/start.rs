@@ -8,7 +8,7 @@ use crate::ui::kit::controls::{Button, Weight, say_ui, wide_ui};
 use crate::ui::kit::pane::Pane;
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use egui::{CornerRadius, Key, Response, Ui};
+use egui::{CornerRadius, Event, Key, Response, Ui};
 use std::time::Duration;
 
 /// So long the button is held: longer than any click.
@@ -74,8 +74,20 @@ impl StartButton {
         // Not the response's own press: that is over once it is too long for a click.
         let (begins, is_down) = ui.input(|input| {
             let pointer = &input.pointer;
+            // A key that is held repeats itself: that begins nothing anew.
+            let is_enter = |event: &Event| {
+                matches!(
+                    event,
+                    Event::Key {
+                        key: Key::Enter,
+                        pressed: true,
+                        repeat: false,
+                        ..
+                    }
+                )
+            };
             let begins = has_pointer && pointer.primary_pressed()
-                || has_keyboard && input.key_pressed(Key::Enter);
+                || has_keyboard && input.events.iter().any(is_enter);
             let by_key = has_keyboard && input.key_down(Key::Enter);
             (begins, has_pointer && pointer.primary_down() || by_key)
         });
