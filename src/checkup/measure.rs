@@ -134,7 +134,7 @@ impl StepRecord {
             .collect()
     }
 
-    /// What each force sensor says of nothing, g.
+    /// What each force sensor reads at rest, g.
     pub(crate) fn zeros(&self) -> PerDof<Option<f64>> {
         PerDof::from_fn(|dof| mean(&values(&self.curve(dof, |own| own.force))))
     }

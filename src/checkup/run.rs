@@ -7,6 +7,7 @@ use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
     Target, TemperatureReading,
 };
+use crate::record::SetpointConflict;
 use crate::trials::Limits;
 use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
 use crate::trials::series::{Series, SeriesOrder};
@@ -107,10 +108,12 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
-    /// Joints that do not close below what their sensors say of nothing: their drives count that as force.
+    /// Joints that do not close below what their sensors read at rest: their drives count that as force.
     counts_zero: PerDof<bool>,
     figures: Figures,
     plan: CheckupPlan,
+    /// What another was seen to write until the hand was disarmed.
+    foreign: Option<SetpointConflict>,
     is_over: bool,
     aborted: Option<Abort>,
 }
@@ -122,6 +125,7 @@ impl Checkup {
         Self {
             epoch,
             plan,
+            foreign: None,
             total: left.len(),
             left,
             running: None,
@@ -215,19 +219,19 @@ impl Checkup {
         }
     }
 
-    /// Whether the threshold of a joint stops it early enough, whatever its sensor says of nothing.
+    /// Whether the threshold of a joint stops it early enough, whatever its sensor reads at rest.
     fn may_move(&self, dof: Dof) -> bool {
         let zero = self.zero_g[dof].unwrap_or_default();
         OWN_STOP_G.contains(&(f64::from(self.threshold(dof).get()) - zero))
     }
 
-    /// Above what the joint says of nothing.
+    /// Above what its sensor reads at rest.
     fn threshold(&self, dof: Dof) -> Force {
         threshold(self.zero_g[dof].unwrap_or_default())
     }
 
     /// Begins the step anew with thresholds above the zero, for joints that did not begin to close below it.
-    // Manual: whether a drive counts what its sensor says of nothing is not said. The lower threshold is gentle either way.
+    // Manual: whether a drive counts what its sensor reads at rest is not said. The lower threshold is gentle either way.
     fn raise(&mut self, now: Moment) -> Option<SeriesOrder> {
         let running = self.running.as_ref()?;
         let (step, (_, pose)) = (running.record.step, running.pose?);
@@ -300,10 +304,15 @@ impl Checkup {
         })
     }
 
-    /// The same while fingertips are pressed: nothing moves, so that only a lost link ends it.
+    /// The same while fingertips are pressed: the hand is not armed, and nobody else may close it on who presses.
     fn tick_press(&mut self, link: LinkView, now: Moment) -> Option<SeriesOrder> {
         if !link.state.is_live() {
             return Some(self.fail(Abort::LinkLost));
+        }
+        let is_armed_anew = link.armed.is_some_and(|epoch| epoch != self.epoch);
+        if is_armed_anew || link.foreign_setpoint != self.foreign {
+            let wrote = link.foreign_setpoint;
+            return Some(self.fail(Abort::OtherController { wrote }));
         }
         let running = self.running.as_ref()?;
         let Stage::Pressing { last } = running.stage else {
@@ -404,6 +413,7 @@ impl Series for Checkup {
         if let Some(Step::Press(_)) = self.running.as_ref().map(|own| own.record.step) {
             return self.tick_press(link, now);
         }
+        self.foreign = link.foreign_setpoint;
         let seen = Feedback {
             sample,
             rest_g: &self.zero_g,

@@ -89,7 +89,7 @@ impl CheckupReport {
     pub fn remarks(&self) -> Vec<String> {
         let left_alone = self.left_alone.iter().map(|(dof, zero_g)| {
             format!(
-                "{} was left alone: its sensor says {zero_g:.0} g of nothing, so that it could not be stopped gently; calibrate the force sensors with an empty hand (Hand > Device), and check again",
+                "{} was left alone: its sensor reads {zero_g:.0} g at rest, so that it could not be stopped gently; calibrate the force sensors with an empty hand (Hand > Device), and check again",
                 dof.name()
             )
         });
@@ -198,7 +198,7 @@ mod tests {
             "Partial: it ended early, ended by a person",
             "3 figures: 1 as they should be, 0 to watch, 1 to act on, 1 not measured",
             "<h2>index</h2>",
-            "ring was left alone: its sensor says -600 g of nothing",
+            "ring was left alone: its sensor reads -600 g at rest",
             "not kept as this hand&#39;s first: index did not go through its stroke",
             "there are no recordings of this hand",
         ] {

@@ -35,7 +35,7 @@ texts! {
     SAVE: "Save page", "保存页面", "Saves the report as one page that any browser opens.", "把报告保存为单个网页文件。";
     ONLY: "Only what is not fine", "只看异常", "Shows only figures that are to be watched or acted on, that drift, or that were not measured.", "只显示需要关注或处理、有漂移或未测量的项目。";
     ALL_FINE: "Everything is as it should be.", "全部正常。";
-    LEFT_ALONE: "{} was left alone: its sensor says {} g of nothing, so that it could not be stopped gently. Calibrate the force sensors, and check again.", "{}没有动作：空载时传感器读数为 {} g，无法轻柔停下。请校准力传感器后重新体检。";
+    LEFT_ALONE: "{} was left alone: its sensor reads {} g at rest, so that it could not be stopped gently. Calibrate the force sensors, and check again.", "{}没有动作：空载时传感器读数为 {} g，无法轻柔停下。请校准力传感器后重新体检。";
     NOT_AS_FIRST: "It is not kept as this hand's first: {} did not go through its stroke. Take out what is in its way, and check again.", "未作为首次体检保留：{}没有走完行程。请清除障碍后重新体检。";
     NOT_KEPT: "It is not kept: {}", "没有保留：{}";
     BUILT_IN: "Check-ups of the built-in hand are not kept.", "内置仿真手的体检不保留。";

@@ -6,6 +6,7 @@ use handscope::checkup::check::{checks, stopped_early};
 use handscope::checkup::report::{CheckupReport, Keeping};
 use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
+use handscope::record::{SetpointConflict, SetpointRegister};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Object};
 use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
@@ -277,6 +278,23 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
     assert_eq!(silent(Finger::Ring), (Light::Act, "4".to_owned()));
     assert_eq!(silent(Finger::Thumb), (Light::Fine, String::new()));
     assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
+}
+
+#[test]
+fn another_controller_that_moves_the_hand_while_fingertips_are_pressed_ends_it_with_a_stop() {
+    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let wrote = SetpointConflict {
+        register: SetpointRegister::AngleSet,
+        dof: Dof::Index,
+        holds: Some(300),
+        wrote: Some(1000),
+    };
+    hand.other_writes = Some(wrote);
+    let plan = CheckupPlan { press: true };
+    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1), plan), |_, _| ());
+    let wrote = Some(wrote);
+    assert_eq!(checkup.aborted(), Some(Abort::OtherController { wrote }));
+    assert!(stopped && hand.disarmed);
 }
 
 /// Checks a body up, and makes of it what the program does.

@@ -6,7 +6,7 @@ use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, Reply,
     Setpoints, Speed, Target,
 };
-use handscope::record::LinkState;
+use handscope::record::{LinkState, SetpointConflict};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
@@ -40,6 +40,8 @@ pub(crate) struct VirtualHand {
     round: u64,
     /// The series let no setpoint pass any more.
     pub(crate) disarmed: bool,
+    /// What another writes from then on.
+    pub(crate) other_writes: Option<SetpointConflict>,
 }
 
 impl VirtualHand {
@@ -57,6 +59,7 @@ impl VirtualHand {
             sample: HandSample::default(),
             round: 0,
             disarmed: false,
+            other_writes: None,
         }
     }
 
@@ -95,6 +98,11 @@ impl VirtualHand {
         };
         while !series.is_over() {
             self.read(&mut series);
+            let foreign_setpoint = self.other_writes.filter(|_| self.disarmed);
+            let link = LinkView {
+                foreign_setpoint,
+                ..link
+            };
             match series.tick(&self.sample, link, self.now) {
                 Some(SeriesOrder::Set(setpoints)) => {
                     assert!(!self.disarmed, "{setpoints:?}");
