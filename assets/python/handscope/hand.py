@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import threading
 import time
+import weakref
 from collections import deque
 from contextlib import contextmanager
 from types import TracebackType
@@ -54,8 +55,10 @@ class States:
 
     def __next__(self) -> State:
         with self._news:
-            self._news.wait_for(lambda: self._waiting or self._hand._ended)
+            self._news.wait_for(lambda: self._waiting or self._hand._ended or self._hand._link_lost)
             if not self._waiting:
+                if self._hand._link_lost and not self._hand._ended:
+                    raise LinkLost(self._hand._link_lost, "link_lost")
                 raise StopIteration
             state = self._waiting.popleft()
             if self._lost:
@@ -109,7 +112,7 @@ class Hand:
         self._refused: Optional[HandscopeError] = None
         self._armed: Optional[Dict[str, Optional[int]]] = None
         self._callbacks: List[Callback] = []
-        self._readers: set[States] = set()
+        self._readers: "weakref.WeakSet[States]" = weakref.WeakSet()
         self._windows: List["subprocess.Popen[str]"] = []
         options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}", "--writers"]
         self._side = side
@@ -154,6 +157,8 @@ class Hand:
                 lost = told["link"]["state"] == "lost"
                 self._link_lost = (told["link"]["why"] or "the link to the hand is lost") if lost else None
                 self._news.notify_all()
+            for reader in list(self._readers):
+                reader._take(None)
         elif "ended" in told:
             with self._news:
                 self._ended = told["ended"]
@@ -194,7 +199,13 @@ class Hand:
         """Calls back with each state from now on, on a thread of its own; gives what ends that. Be quick: what is not read in
         time is lost, and told as lost."""
         self._callbacks.append(callback)
-        return lambda: self._callbacks.remove(callback)
+
+        def end() -> None:
+            # One that failed is called no more already.
+            if callback in self._callbacks:
+                self._callbacks.remove(callback)
+
+        return end
 
     def rate(self, hz: float) -> None:
         """Reads so many states a second, up to 500, or as many as the wire carries."""
@@ -211,8 +222,8 @@ class Hand:
         limits = {"speed": speed, "force_g": force_g}
         self._armed = limits
         try:
-            self._program.ask("arm", **limits)
             self._disarmed = self._refused = None
+            self._program.ask("arm", **limits)
             yield self
         finally:
             self._armed = None
@@ -296,12 +307,13 @@ class Hand:
         self._may_move()
         self._program.ask("disarm")
         done = program.run([name, "--hand", self.share_url, *_options(options), "--arm", "--json"])
-        if done.why and not done.did_nothing:
+        told = [json.loads(line) for line in done.lines]
+        if done.why and not done.did_nothing and not _is_whole(told):
             # It may have been stopped by a person, who is not overruled.
             self._disarmed = Disarmed(f"'{name}' ended early, and the hand is not armed any more: {done.why}", "ended")
         else:
             self._rearm()
-        return [json.loads(line) for line in done.lines], done.why
+        return told, done.why
 
     def _rearm(self) -> None:
         """Arms again after a command, whose end is known here a moment before the shared hand knows it."""
@@ -385,6 +397,12 @@ def _options(options: Mapping[str, Any]) -> List[str]:
         elif value is not None and value is not False:
             words += [option, str(value)]
     return words
+
+
+def _is_whole(told: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether a command says that it ran to its end, whatever it found."""
+    last: Mapping[str, Any] = next(iter(told[-1].values())) if told else {}
+    return "aborted" in last and last["aborted"] is None
 
 
 def _last(key: str, told: List[Any], why: Optional[str]) -> Mapping[str, Any]:

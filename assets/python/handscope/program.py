@@ -44,7 +44,7 @@ def find() -> str:
     if named:
         raise ProgramNotFound(f"$HANDSCOPE names {named}, which is no program; unset it, or name the program 'handscope'")
     raise ProgramNotFound(
-        "the program 'handscope' is not installed: 'pip install handscope' brings it, or name it in $HANDSCOPE"
+        "the program 'handscope' is not installed: the wheel of this package brings it, or name it in $HANDSCOPE"
     )
 
 
