@@ -148,6 +148,12 @@ impl Speed {
     }
 }
 
+/// The shortest decimal number that is this one, as people write it.
+pub fn decimal(number: f32) -> f64 {
+    let digits = number.to_string().parse();
+    digits.unwrap_or_else(|_never| f64::from(number))
+}
+
 /// What a joint is told to do. There is no default, and "leave alone" is said in words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Target {

@@ -2,7 +2,7 @@
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::poses::grip_row::{GripRow, ThresholdsRow, read_thresholds, thresholds_row};
+use crate::poses::grip_row::{GripRow, ThresholdsRow, read_thresholds, thresholds_row, unplaced};
 use crate::poses::library::{
     ENTRIES_MAX, EntryKey, LibraryPose, Millis, NAME_CHARS_MAX, PoseId, PoseLibrary, Reaction,
     ReactionId, Retries, STEPS_MAX, Sequence, SequenceId, SequenceStep, StepGoal, TAGS_MAX,
@@ -151,13 +151,13 @@ fn pose_row(pose: &LibraryPose) -> PoseRow {
     let angles = &pose.angles;
     let left = Dof::ALL.into_iter().filter(|dof| pose.leave[*dof]);
     PoseRow {
-        name: unplaced(&pose.name),
+        name: unplaced(pose.name.clone()),
         name_zh: chinese(&pose.name_zh),
         key: pose.key,
         tags: pose.tags.clone(),
         speed: pose.speed,
         force: pose.force,
-        leave: Some(Spanned::new(0..0, left.collect())),
+        leave: Some(unplaced(left.collect())),
         angles: pose.gap.is_none().then(|| AnglesRow {
             little: angles[Dof::Little],
             ring: angles[Dof::Ring],
@@ -175,28 +175,25 @@ fn pose_row(pose: &LibraryPose) -> PoseRow {
 fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
     let steps = sequence.steps.iter().filter_map(|step| {
         let (pose, gap) = match step.goal {
-            StepGoal::Pose(id) => (Some(unplaced(&library.pose(id)?.name)), None),
+            StepGoal::Pose(id) => (Some(unplaced(library.pose(id)?.name.clone())), None),
             StepGoal::Gap { gap, force } => (None, Some((gap, force))),
         };
-        Some(Spanned::new(
-            0..0,
-            StepRow {
-                pose,
-                speed: step.speed,
-                force: gap.map(|(_, force)| force),
-                dwell_ms: step.dwell,
-                limit_ms: step.limit,
-                until: step.until.map(|until| UntilRow {
-                    grip: WaitedGrip::Holding,
-                    within_ms: until.within,
-                    retries: until.retries,
-                }),
-                grip: gap.map(|(gap, _)| GripRow::of(gap)),
-            },
-        ))
+        Some(unplaced(StepRow {
+            pose,
+            speed: step.speed,
+            force: gap.map(|(_, force)| force),
+            dwell_ms: step.dwell,
+            limit_ms: step.limit,
+            until: step.until.map(|until| UntilRow {
+                grip: WaitedGrip::Holding,
+                within_ms: until.within,
+                retries: until.retries,
+            }),
+            grip: gap.map(|(gap, _)| GripRow::of(gap)),
+        }))
     });
     SequenceRow {
-        name: unplaced(&sequence.name),
+        name: unplaced(sequence.name.clone()),
         name_zh: chinese(&sequence.name_zh),
         key: sequence.key,
         looped: sequence.looped,
@@ -206,9 +203,9 @@ fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
 }
 
 fn reaction_row(library: &PoseLibrary, reaction: &Reaction) -> Option<ReactionRow> {
-    let name = |pose| Some(unplaced(&library.pose(pose)?.name));
+    let name = |pose| Some(unplaced(library.pose(pose)?.name.clone()));
     Some(ReactionRow {
-        name: unplaced(&reaction.name),
+        name: unplaced(reaction.name.clone()),
         name_zh: chinese(&reaction.name_zh),
         key: reaction.key,
         rest: name(reaction.rest)?,
@@ -219,11 +216,7 @@ fn reaction_row(library: &PoseLibrary, reaction: &Reaction) -> Option<ReactionRo
 }
 
 fn chinese(name: &str) -> Option<Spanned<String>> {
-    (!name.is_empty()).then(|| unplaced(name))
-}
-
-fn unplaced(text: &str) -> Spanned<String> {
-    Spanned::new(0..0, text.to_owned())
+    (!name.is_empty()).then(|| unplaced(name.to_owned()))
 }
 
 /// The library that a text holds.
@@ -343,10 +336,7 @@ impl PoseReader<'_> {
             .clone()
             .find(|dof| gap.is_some() && Gap::JOINTS.contains(dof));
         if let Some(dof) = bad {
-            let cause = FileCause::Value {
-                got: format!("\"{}\"", dof.name()),
-                allowed: "a joint that a grip by size can leave alone: take it away".into(),
-            };
+            let cause = FileCause::Pinches { dof: *dof };
             return Err(self.0.blame(row.span(), "leave", cause));
         }
         Ok(row.into_inner())

@@ -2,6 +2,7 @@
 
 use crate::hand::gap::{Gap, GripKind};
 use crate::hand::grip::{GripThreshold, GripThresholds};
+use crate::hand::units::decimal;
 use crate::store::{FileCause, FileError, FileText};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -19,7 +20,7 @@ impl GripRow {
     pub(super) fn of(gap: Gap) -> Self {
         Self {
             kind: unplaced(GripKind::Pinch),
-            gap_mm: unplaced(written(gap.mm())),
+            gap_mm: unplaced(decimal(gap.mm())),
         }
     }
 
@@ -46,16 +47,9 @@ impl GripRow {
 pub(super) type ThresholdsRow = BTreeMap<Spanned<String>, Spanned<Value>>;
 
 pub(super) fn thresholds_row(thresholds: &GripThresholds) -> ThresholdsRow {
-    let usual = GripThresholds::default();
-    let all = GripThreshold::ALL.into_iter();
-    let own = all.filter(|one| one.of(thresholds) != one.of(&usual));
-    own.map(|one| {
-        (
-            unplaced(one.name().to_owned()),
-            unplaced(value(one.of(thresholds))),
-        )
-    })
-    .collect()
+    let own = thresholds.unusual();
+    own.map(|(one, is)| (unplaced(one.name().to_owned()), unplaced(value(is))))
+        .collect()
 }
 
 pub(super) fn read_thresholds(
@@ -108,13 +102,7 @@ fn value(number: f64) -> Value {
     }
 }
 
-/// The shortest digits that are this number.
-fn written(mm: f32) -> f64 {
-    mm.to_string()
-        .parse()
-        .unwrap_or_else(|_never| f64::from(mm))
-}
-
-fn unplaced<T>(value: T) -> Spanned<T> {
+/// A value that was read from no place of a file.
+pub(super) fn unplaced<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }

@@ -181,7 +181,7 @@ fn what_is_wrong_with_a_grip_is_said_with_line_reason_and_what_to_do() {
         (
             "[\"little\"]",
             "[\"index\"]",
-            "line 9, `leave`: \"index\" is not a joint that a grip by size can leave alone",
+            "line 9, `leave`: a grip by size needs index: take it away from here",
         ),
         (
             "grip = { kind = \"pinch\", gap_mm = 12.5 }\n",

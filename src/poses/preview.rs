@@ -6,9 +6,6 @@ use crate::poses::player::{Cue, cues};
 use crate::poses::way::WayPart;
 use std::time::Duration;
 
-/// Full stroke at full speed without load (manual 2.6.13).
-const FULL_STROKE_S: f64 = 0.6;
-
 /// A dry run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
@@ -109,11 +106,6 @@ fn parts(cue: &Cue, from: &PerDof<f64>) -> Vec<WayPart> {
     cue.parts(&from.map(|angle| Some(angle.round() as i16)))
 }
 
-/// Thousandths of the stroke in a second.
-fn rate(part: &WayPart, dof: Dof) -> f64 {
-    f64::from(part.speeds[dof].get()) / FULL_STROKE_S
-}
-
 /// Seconds until every joint is there, at most the step's own limit.
 fn way_s(part: &WayPart, from: &PerDof<f64>, limit: Duration) -> f64 {
     let limit = limit.as_secs_f64();
@@ -121,7 +113,7 @@ fn way_s(part: &WayPart, from: &PerDof<f64>, limit: Duration) -> f64 {
         let far = (f64::from(part.targets[dof]?.get()) - from[dof]).abs();
         Some(match far {
             0.0 => 0.0,
-            far => far / rate(part, dof),
+            far => far / part.speeds[dof].angle_per_s(),
         })
     };
     let longest = Dof::ALL.into_iter().filter_map(takes);
@@ -132,7 +124,7 @@ fn moved(part: &WayPart, dof: Dof, from: f64, seconds: f64) -> f64 {
     let Some(to) = part.targets[dof].map(|to| f64::from(to.get())) else {
         return from;
     };
-    let reach = rate(part, dof) * seconds;
+    let reach = part.speeds[dof].angle_per_s() * seconds;
     from + (to - from).clamp(-reach, reach)
 }
 

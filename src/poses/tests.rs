@@ -390,11 +390,11 @@ fn a_dry_run_takes_as_long_as_the_speed_says() {
     };
     let preview = dry(false);
     let share = |preview: &Preview, now| preview.at(ms(now)).shares[Dof::Index].unwrap();
-    assert!((share(&preview, 300) - 0.5).abs() < 0.01);
+    assert!((share(&preview, 329) - 0.5).abs() < 0.01);
     assert!(share(&preview, 700) < 0.01, "dwells");
-    assert!((share(&preview, 1100) - 0.5).abs() < 0.01);
-    assert!(!preview.at(ms(1500)).over && preview.at(ms(1700)).over);
+    assert!((share(&preview, 1187) - 0.5).abs() < 0.01);
+    assert!(!preview.at(ms(1650)).over && preview.at(ms(1750)).over);
     let looped = dry(true);
-    assert!((share(&looped, 1600 + 300) - 0.5).abs() < 0.01);
+    assert!((share(&looped, 1716 + 329) - 0.5).abs() < 0.01);
     assert!(!looped.at(ms(1_000_000)).over);
 }

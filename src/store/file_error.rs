@@ -1,5 +1,6 @@
 //! Why a file was rejected: what is wrong, where, and what to do.
 
+use crate::hand::Dof;
 use crate::hand::gap::NotOffered;
 use crate::system::SystemError;
 use std::io;
@@ -103,6 +104,12 @@ pub enum FileCause {
     /// A kind of grip that has no gap in this hand.
     #[error("{0}")]
     NotOffered(NotOffered),
+    /// A joint that a grip by size cannot leave alone.
+    #[error("a grip by size needs {}: take it away from here", dof.name())]
+    Pinches {
+        /// The joint.
+        dof: Dof,
+    },
     /// Another table.
     #[error("this is not a table of samples")]
     NotSamples,

@@ -1,5 +1,6 @@
 //! What a grip's state is told by: one named number for each decision.
 
+use crate::hand::units::decimal;
 use std::time::Duration;
 
 /// Where one state of a grip ends and another begins.
@@ -150,10 +151,14 @@ impl GripThreshold {
     }
 }
 
-/// The shortest decimal number that is this one.
-fn decimal(number: f32) -> f64 {
-    let digits = number.to_string().parse();
-    digits.unwrap_or_else(|_never| f64::from(number))
+impl GripThresholds {
+    /// Those that are not as usual, and what they are.
+    pub fn unusual(&self) -> impl Iterator<Item = (GripThreshold, f64)> {
+        let usual = Self::default();
+        let all = GripThreshold::ALL.into_iter();
+        let both = all.map(move |one| (one, one.of(self), one.of(&usual)));
+        both.filter_map(|(one, own, usual)| (own != usual).then_some((one, own)))
+    }
 }
 
 impl Default for GripThresholds {

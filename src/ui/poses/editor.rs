@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::hand::gap::{Gap, gap_on_path};
-use crate::hand::grip::{GripThreshold, GripThresholds};
+use crate::hand::grip::GripThresholds;
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{EntryId, LibraryPose, NAME_CHARS_MAX};
@@ -106,11 +106,9 @@ fn gap_field_ui(ui: &mut Ui, pane: &mut Pane<'_>, gap: Gap) -> Option<Gap> {
 
 /// The thresholds that are not the usual ones, by the names that files have.
 fn thresholds_words(thresholds: &GripThresholds) -> String {
-    let usual = GripThresholds::default();
-    let all = GripThreshold::ALL.into_iter();
-    let own = all.filter(|one| one.of(thresholds) != one.of(&usual));
+    let own = thresholds.unusual();
     let words: Vec<String> = own
-        .map(|one| format!("{} {}", one.name(), one.of(thresholds)))
+        .map(|(one, is)| format!("{} {is}", one.name()))
         .collect();
     words.join(", ")
 }

@@ -228,6 +228,7 @@ chinese! {
         FileCause::Kind { got, wanted } => "{got} 不是{}", value_kind_zh(*wanted);
         FileCause::Choice { got, known } => "“{got}”不可用，只能是 {known}";
         FileCause::NotOffered(why) => "{}", no_gap(*why).zh.trim_end_matches('。');
+        FileCause::Pinches { dof } => "按尺寸抓握需要{}，请从此处删除", crate::ui::text::words::dof(*dof).zh;
         FileCause::NotSamples => "不是采样表";
         FileCause::Picture(_) => "图片格式不对";
         FileCause::Format { got, wanted } => "文件类型不对，其格式为 {got}，应为 {wanted}";
@@ -727,6 +728,9 @@ mod tests {
                 known: name(),
             },
             FileCause::NotOffered(NotOffered::OnPalm),
+            FileCause::Pinches {
+                dof: crate::hand::Dof::Index,
+            },
             FileCause::NotSamples,
             FileCause::Picture("bad signature".into()),
             FileCause::Format {
