@@ -174,8 +174,8 @@ impl Action {
                 | TrialAction::Forget(_)
                 | TrialAction::ConfirmForget
                 | TrialAction::CancelForget
-                | TrialAction::ForgetMap
-                | TrialAction::ExportMap
+                | TrialAction::ForgetOvershoot
+                | TrialAction::ExportOvershoot
                 | TrialAction::Open(_)
                 | TrialAction::Save(..),
             )

@@ -16,7 +16,7 @@ use crate::app::readings::{Measured, Readings};
 use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, place_name};
-use crate::app::trials::{HandMap, SeriesPlan, SeriesRun, StartRefusal};
+use crate::app::trials::{HandOvershoot, SeriesPlan, SeriesRun, StartRefusal};
 use crate::checkup::CheckupPlan;
 use crate::hand::kinematics::Side;
 use crate::hand::{
@@ -66,7 +66,7 @@ pub struct Hand {
     /// What begins once the arming that was asked for with it holds, and when that was.
     pub series_asked: Option<(AskedSeries, Moment)>,
     /// What trials measured of it.
-    pub overshoot: HandMap,
+    pub overshoot: HandOvershoot,
     /// The check-up that runs, and the last one.
     pub checkup: HandCheckup,
     /// The open procedure: change of id or address, reset, calibration.

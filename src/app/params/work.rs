@@ -34,28 +34,11 @@ const COPY_WITHIN: Duration = Duration::from_secs(5);
 
 /// The hand whose parameters are read or written, and how tasks on it are started.
 #[derive(Clone, Copy)]
-struct HandContext<'a> {
-    connection: &'a Connection,
-    overshoot: &'a Arc<OvershootMap>,
-    env: &'a Env,
-}
-
-/// What is known of the hand whose parameters they are.
-#[derive(Clone, Copy)]
-pub(crate) struct ParamsHand<'a>(
-    pub(crate) &'a Connection,
+pub(crate) struct ParamsHand<'a> {
+    pub(crate) connection: &'a Connection,
     /// What trials measured of it.
-    pub(crate) &'a Arc<OvershootMap>,
-);
-
-impl<'a> ParamsHand<'a> {
-    const fn with(self, env: &'a Env) -> HandContext<'a> {
-        HandContext {
-            connection: self.0,
-            overshoot: self.1,
-            env,
-        }
-    }
+    pub(crate) overshoot: &'a Arc<OvershootMap>,
+    pub(crate) env: &'a Env,
 }
 
 impl ParamsState {
@@ -63,12 +46,11 @@ impl ParamsState {
     pub(crate) fn act(
         &mut self,
         action: ParamAction,
-        of: ParamsHand<'_>,
+        hand: ParamsHand<'_>,
         sample: &HandSample,
-        ctx: &Ctx<'_>,
+        now: Moment,
     ) {
-        let link = &of.0.status;
-        let hand = of.with(ctx.env);
+        let link = &hand.connection.status;
         match action {
             ParamAction::Read if self.read_refusal(link).is_some() => {}
             ParamAction::Read => self.read_rows(hand),
@@ -81,12 +63,12 @@ impl ParamsState {
                 self.apply_rows(undo, Vec::new(), hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(self.staged.clone(), of.1),
+            ParamAction::Save => self.ask_save(self.staged.clone(), hand.overshoot),
             ParamAction::SaveWith(values) => {
                 if self.save_refusal_with(&values, link).is_none() {
                     let before = self.staged.clone();
                     self.stage_all(&values);
-                    self.ask_save(before, of.1);
+                    self.ask_save(before, hand.overshoot);
                 }
             }
             ParamAction::Agree if self.write_refusal(link).is_some() => {}
@@ -110,9 +92,9 @@ impl ParamsState {
                     self.staged = declined.staged_before;
                 }
             }
-            ParamAction::CopyLive => self.copy_live(sample, link, ctx.now),
+            ParamAction::CopyLive => self.copy_live(sample, link, now),
             ParamAction::UnstageAll => self.unstage_all(),
-            ParamAction::Open(typed) => self.open_file(typed, ctx.env),
+            ParamAction::Open(typed) => self.open_file(typed, hand.env),
             ParamAction::Tick(id) => {
                 if let Some(compared) = &mut self.compared {
                     compared.tick(id);
@@ -153,9 +135,9 @@ impl ParamsState {
     }
 
     /// Reads the rows because somebody looks at them, if it is due.
-    pub(crate) fn look_at(&mut self, of: ParamsHand<'_>, env: &Env, now: Moment) {
-        if self.look(now) && self.read_refusal(&of.0.status).is_none() {
-            self.read_rows(of.with(env));
+    pub(crate) fn look_at(&mut self, hand: ParamsHand<'_>, now: Moment) {
+        if self.look(now) && self.read_refusal(&hand.connection.status).is_none() {
+            self.read_rows(hand);
         }
     }
 
@@ -163,7 +145,7 @@ impl ParamsState {
     fn start<F>(
         &mut self,
         doing: Doing,
-        hand: HandContext<'_>,
+        hand: ParamsHand<'_>,
         task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
     ) where
         F: Future<Output = ParamsEnd> + Send + 'static,
@@ -174,14 +156,14 @@ impl ParamsState {
         }
     }
 
-    fn read_rows(&mut self, hand: HandContext<'_>) {
+    fn read_rows(&mut self, hand: ParamsHand<'_>) {
         self.start(Doing::Reading, hand, |link, steps| async move {
             let took = |span, bytes: &[u8]| steps.tell(ParamStep::Read(span, bytes.to_vec()));
             ParamsEnd::Read(rows(&link, took).await)
         });
     }
 
-    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, hand: HandContext<'_>) {
+    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, hand: ParamsHand<'_>) {
         let task = Apply {
             wanted,
             consent: Consent::To(agreed),
@@ -204,7 +186,7 @@ impl ParamsState {
         });
     }
 
-    fn save(&mut self, agreed: Vec<Danger>, hand: HandContext<'_>) {
+    fn save(&mut self, agreed: Vec<Danger>, hand: ParamsHand<'_>) {
         let Some(backups) = self.files.clone() else {
             return;
         };
@@ -228,8 +210,8 @@ impl ParamsState {
     }
 
     /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
-    pub(crate) fn tick(&mut self, of: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
-        let connection = of.0;
+    pub(crate) fn tick(&mut self, hand: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
+        let connection = hand.connection;
         let (link, now) = (&connection.status, ctx.now);
         self.take_task(now);
         if !self.is_busy()
@@ -237,7 +219,7 @@ impl ParamsState {
             && self.question.is_none()
         {
             if self.is_applied() && self.save_refusal(link).is_none() {
-                self.save(agreed, of.with(ctx.env));
+                self.save(agreed, hand);
             } else {
                 self.save = Some((SaveEnd::NotApplied, now));
             }

@@ -58,7 +58,11 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
         hand.disarm(ctx.now);
         ctx.tell(NoticeKind::IdleDisarmed);
     }
-    let of = ParamsHand(&hand.connection, &hand.overshoot.map);
+    let of = ParamsHand {
+        connection: &hand.connection,
+        overshoot: &hand.overshoot.map,
+        env: ctx.env,
+    };
     hand.params.tick(of, ctx);
     start_asked(hand, shared, ctx);
     tick_series(hand, shared.trials, ctx);

@@ -77,8 +77,12 @@ impl Jobs {
     pub(super) fn param_action(&mut self, action: ParamAction, state: &mut State, env: &Env) {
         if action != ParamAction::Dump {
             hands::with_shown(state, env, |hand, _, ctx| {
-                let of = ParamsHand(&hand.connection, &hand.overshoot.map);
-                hand.params.act(action, of, &hand.readings.sample, ctx);
+                let of = ParamsHand {
+                    connection: &hand.connection,
+                    overshoot: &hand.overshoot.map,
+                    env: ctx.env,
+                };
+                hand.params.act(action, of, &hand.readings.sample, ctx.now);
             });
             return;
         }
@@ -129,8 +133,8 @@ impl Jobs {
                 let save = |session| files::save(session, criterion, env);
                 self.sessions = session.and_then(save);
             }
-            TrialAction::ForgetMap => state.hand_mut().overshoot.forget(),
-            TrialAction::ExportMap => {
+            TrialAction::ForgetOvershoot => state.hand_mut().overshoot.forget(),
+            TrialAction::ExportOvershoot => {
                 let map = Arc::clone(&state.hand().overshoot.map);
                 self.export(Export::Overshoot(map), env);
             }

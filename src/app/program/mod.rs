@@ -363,8 +363,12 @@ impl App {
             return;
         }
         let hand = self.state.hands.shown_mut();
-        let of = ParamsHand(&hand.connection, &hand.overshoot.map);
-        hand.params.look_at(of, &self.env, now);
+        let of = ParamsHand {
+            connection: &hand.connection,
+            overshoot: &hand.overshoot.map,
+            env: &self.env,
+        };
+        hand.params.look_at(of, now);
     }
 
     /// Reads the check-ups that were kept of the shown hand because somebody looks at them. Called while they do.

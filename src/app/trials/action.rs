@@ -27,9 +27,9 @@ pub enum TrialAction {
     /// No, it stays.
     CancelForget,
     /// Forget what trials measured of the hand that is shown.
-    ForgetMap,
+    ForgetOvershoot,
     /// Save it as a table.
-    ExportMap,
+    ExportOvershoot,
     /// Read a saved session: one at a place that was typed, else one that is asked for.
     Open(Option<PathBuf>),
     /// Ask for a folder and save a session in a new one inside it; the report names the best by this.

@@ -7,8 +7,8 @@ pub mod comparison;
 pub(crate) mod comparison_tests;
 pub(crate) mod files;
 pub mod form;
-pub mod hand_map;
 pub mod lines;
+pub mod overshoot;
 pub mod run;
 pub mod state;
 pub mod work;
@@ -17,8 +17,8 @@ pub use crate::app::trials::action::TrialAction;
 pub use crate::app::trials::comparison::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, SessionDifference,
 };
-pub use crate::app::trials::hand_map::HandMap;
 pub use crate::app::trials::lines::{JointLines, TrialQuantity};
+pub use crate::app::trials::overshoot::HandOvershoot;
 pub use crate::app::trials::run::SeriesRun;
 pub use crate::app::trials::state::{
     Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialSession,

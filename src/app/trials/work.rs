@@ -14,7 +14,7 @@ use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{self, SeriesStart, SeriesStep};
-use crate::trials::hand_map::{MeasuredClose, closes_of};
+use crate::trials::kept_overshoot::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;
@@ -63,8 +63,8 @@ impl TrialsState {
             TrialAction::Goal(goal) => self.goal = *goal,
             TrialAction::Start(_)
             | TrialAction::ArmAndStart(_)
-            | TrialAction::ForgetMap
-            | TrialAction::ExportMap
+            | TrialAction::ForgetOvershoot
+            | TrialAction::ExportOvershoot
             | TrialAction::Open(_)
             | TrialAction::Save(..) => {}
         }

@@ -16,7 +16,7 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::{self, TableView};
-use crate::ui::trials::hand_map::HandMapView;
+use crate::ui::trials::overshoot::OvershootView;
 use crate::ui::trials::tune_live::{self, LiveChart};
 use egui::{Align2, Panel, ScrollArea, Sense, Ui, vec2};
 
@@ -42,7 +42,7 @@ pub(crate) struct ResultsView {
     best: BestView,
     /// Whether what was measured of this hand is shown in place of trials.
     is_of_hand: bool,
-    map: HandMapView,
+    map: OvershootView,
 }
 
 impl ResultsView {

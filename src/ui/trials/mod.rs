@@ -9,7 +9,7 @@ pub(crate) mod compare_list;
 pub(crate) mod compare_table;
 #[cfg(test)]
 pub(crate) mod compare_tests;
-pub(crate) mod hand_map;
+pub(crate) mod overshoot;
 pub(crate) mod promotion;
 pub(crate) mod search_form;
 pub(crate) mod tune;

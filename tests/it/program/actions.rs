@@ -112,8 +112,8 @@ fn trials() -> Vec<TrialAction> {
         TrialAction::Forget(id),
         TrialAction::ConfirmForget,
         TrialAction::CancelForget,
-        TrialAction::ForgetMap,
-        TrialAction::ExportMap,
+        TrialAction::ForgetOvershoot,
+        TrialAction::ExportOvershoot,
         TrialAction::Open(Some("/dev/null/none".into())),
         TrialAction::Save(id, None),
     ]

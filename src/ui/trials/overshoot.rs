@@ -1,0 +1,291 @@
+//! What trials measured of this hand: how far each close went past its threshold over its speed, the closes in figures, and
+//! what is done with them. Measures nothing.
+
+use crate::app::action::Action;
+use crate::app::trials::TrialAction;
+use crate::hand::Dof;
+use crate::hand::impact::overshoot_g;
+use crate::hand::overshoot::{MeasuredCloses, Stages, Stiffness};
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::plots::scales;
+use crate::ui::text::{tune, words};
+use crate::ui::theme;
+use egui::{Align, Align2, Color32, Layout, Role, Sense, Ui, WidgetInfo, vec2};
+use egui_extras::{Column, TableBuilder, TableRow};
+use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
+
+const ROW: f32 = 20.0;
+/// Share of the height that the table gets at most.
+const TABLE_SHARE: f32 = 0.45;
+/// Least of what the axes span: units of SPEED_SET, and g.
+const LEAST: [f64; 2] = [50.0, 50.0];
+/// Points of the line of the other hand.
+const STEPS: u32 = 60;
+const COLUMNS: [(crate::ui::text::Text, f32); 7] = [
+    (tune::MAP_SPEED, 72.0),
+    (tune::MAP_THRESHOLD, 88.0),
+    (tune::MAP_OBJECT, 88.0),
+    (tune::MAP_CLOSES, 64.0),
+    (tune::MAP_MOST, 80.0),
+    (tune::MAP_MEAN, 80.0),
+    (tune::MAP_LAST, 96.0),
+];
+
+/// What is chosen.
+#[derive(Debug, Default)]
+pub(crate) struct OvershootView {
+    /// The joint that is shown alone.
+    dof: Option<Dof>,
+    /// Whether it is asked if all is to be forgotten.
+    asks: bool,
+}
+
+impl OvershootView {
+    /// Draws it over all of `ui`.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let map = &pane.state.hand().overshoot.map;
+        if map.is_empty() {
+            self.asks = false;
+            return empty_ui(ui, pane);
+        }
+        let has = |dof: Dof| map.kinds().iter().any(|own| own.kind.dof == dof);
+        self.dof = self.dof.filter(|dof| has(*dof));
+        self.head_ui(ui, pane, has);
+        let dof = self.dof;
+        let mut kinds: Vec<&MeasuredCloses> = map.kinds().iter().collect();
+        kinds.retain(|own| dof.is_none_or(|dof| own.kind.dof == dof));
+        kinds.sort_by_key(|own| {
+            let kind = own.kind;
+            (
+                kind.dof,
+                kind.stages,
+                kind.threshold,
+                kind.speed,
+                kind.stiffness,
+            )
+        });
+        let rows = f32::from(u16::try_from(kinds.len() + 1).unwrap_or(u16::MAX));
+        let height = (rows * ROW + theme::GAP).min(ui.available_height() * TABLE_SHARE);
+        let table = kit::bare(egui::Panel::bottom("kinds"), height, theme::GAP_TOP);
+        table.show(ui, |ui| table_ui(ui, pane, &kinds));
+        plot_ui(ui, pane, &kinds);
+    }
+
+    /// The joints to choose from, and what is done with all of it.
+    fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, has: impl Fn(Dof) -> bool) {
+        let look = pane.look;
+        let all = Dof::ALL.into_iter().filter(|dof| has(*dof));
+        let all = all.map(|dof| (Some(dof), words::dof(dof)));
+        let all: Vec<_> = std::iter::once((None, tune::MAP_ALL)).chain(all).collect();
+        ui.horizontal(|ui| {
+            kit::pick_ui(ui, look, (&mut self.dof, tune::MAP_PICK), all);
+            kit::right_ui(ui, |ui| self.use_ui(ui, pane));
+        });
+    }
+
+    /// What is done with all of it, from right to left.
+    fn use_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        let quiet = |text| Button::said(look, text).weight(Weight::Quiet);
+        if self.asks {
+            let sure = Button::said(look, tune::MAP_FORGET_SURE).weight(Weight::Danger);
+            sure.on_click(ui, pane, Action::Trial(TrialAction::ForgetOvershoot));
+            if quiet(tune::MAP_FORGET_NOT).ui(ui, look).clicked() {
+                self.asks = false;
+            }
+        } else {
+            self.asks = quiet(tune::MAP_FORGET).ui(ui, look).clicked();
+        }
+        quiet(tune::MAP_EXPORT).on_click(ui, pane, Action::Trial(TrialAction::ExportOvershoot));
+    }
+}
+
+/// Nothing was measured: what that means, and how it comes.
+fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    ui.vertical_centered(|ui| {
+        ui.add_space(ui.available_height() * 0.24);
+        let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), 64.0), Sense::hover());
+        let (font, center) = (theme::icon_high(place.height()), Align2::CENTER_CENTER);
+        let painter = ui.painter();
+        painter.text(place.center(), center, theme::TUNE, font, palette.faint);
+        let title = Label::said(look, tune::MAP_EMPTY);
+        title.font(theme::title()).ui(ui);
+        Label::muted(look, tune::MAP_EMPTY_BODY).wrap().ui(ui);
+    });
+}
+
+/// Overshoot over speed, a point for each kind of close; the other hand's as a line.
+fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let most = |of: fn(&MeasuredCloses) -> f64, least| {
+        kinds.iter().map(|own| of(own)).fold(least, f64::max) * 1.15
+    };
+    let width = most(|own| f64::from(own.kind.speed.get()), LEAST[0]);
+    let height = most(|own| own.most_over_g, LEAST[1]);
+    let mut thresholds: Vec<i16> = kinds.iter().map(|own| own.kind.threshold.get()).collect();
+    thresholds.sort_unstable();
+    let threshold = thresholds.get(thresholds.len() / 2).copied().unwrap_or(500);
+    let caption = look.fill(tune::MAP_OTHER, &[&threshold]);
+    let other = (0..=STEPS).map(|step| {
+        let speed = width * f64::from(step) / f64::from(STEPS);
+        [speed, overshoot_g(speed, threshold.into())]
+    });
+    let other = other.take_while(|at| at[1] <= height * 1.2);
+    let hints = |hints: AxisHints<'static>| {
+        let hints = hints.tick_label_font(theme::number());
+        hints.tick_label_color(palette.muted)
+    };
+    ui.horizontal_wrapped(|ui| {
+        for stiffness in Stiffness::ALL {
+            if kinds.iter().any(|own| own.kind.stiffness == stiffness) {
+                let text = format!(
+                    "{} {}",
+                    sign(stiffness),
+                    look.say(tune::stiffness(stiffness))
+                );
+                Label::new(&text, palette.text).small().ui(ui);
+            }
+        }
+        Label::new(&format!("- - {caption}"), palette.muted)
+            .small()
+            .ui(ui);
+        Label::note(look, tune::MAP_AXES).ui(ui);
+    });
+    let mut pointed = None;
+    let plot = Plot::new("overshoot of this hand")
+        .height(ui.available_height())
+        .custom_x_axes(vec![hints(AxisHints::new_x())])
+        .custom_y_axes(vec![
+            hints(AxisHints::new_y())
+                .formatter(|mark, _| scales::number(mark.value, mark.step_size)),
+        ])
+        .default_x_bounds(0.0, width)
+        .default_y_bounds(
+            kinds.iter().map(|own| own.mean_over_g).fold(0.0, f64::min),
+            height,
+        )
+        .grid_color(palette.grid)
+        .grid_fade(0.0)
+        .cursor_color(Color32::TRANSPARENT)
+        .show_x(false)
+        .show_y(false)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false);
+    let response = plot.show(ui, |plot| {
+        let line = Line::new("", PlotPoints::from_iter(other)).color(palette.muted);
+        plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
+        let pointer = plot.pointer_coordinate();
+        for own in kinds {
+            let at = [f64::from(own.kind.speed.get()), own.most_over_g];
+            let points = Points::new("", vec![at]).radius(5.0).allow_hover(false);
+            let points = points.shape(shape(own.kind.stiffness));
+            plot.points(points.color(palette.dof[own.kind.dof]));
+            let near = pointer.is_some_and(|to| {
+                (to.x - at[0]).abs() < width * 0.015 && (to.y - at[1]).abs() < height * 0.03
+            });
+            if near {
+                pointed = Some(*own);
+            }
+        }
+    });
+    let response = response.response;
+    let name = look.say(tune::MAP_NAME);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
+    if let Some(own) = pointed {
+        response.on_hover_text_at_pointer(words_of(pane, own));
+    }
+}
+
+/// All of one kind in a sentence.
+fn words_of(pane: &Pane<'_>, own: &MeasuredCloses) -> String {
+    let (look, kind) = (pane.look, own.kind);
+    let [most, mean] = [own.most_over_g, own.mean_over_g].map(|over| format!("{over:+.0}"));
+    let what = format!(
+        "{}, {}, {}",
+        look.say(words::dof(kind.dof)),
+        look.fill(tune::SETTING, &[&kind.speed.get(), &kind.threshold.get()]),
+        look.say(tune::stiffness(kind.stiffness)),
+    );
+    let figures = look.fill(tune::MAP_POINT, &[&own.closes, &most, &mean, &own.last]);
+    format!("{what}\n{figures}")
+}
+
+const fn shape(stiffness: Stiffness) -> MarkerShape {
+    match stiffness {
+        Stiffness::Soft => MarkerShape::Circle,
+        Stiffness::Firm => MarkerShape::Diamond,
+        Stiffness::Rigid => MarkerShape::Square,
+        Stiffness::Unknown => MarkerShape::Cross,
+    }
+}
+
+const fn sign(stiffness: Stiffness) -> &'static str {
+    match stiffness {
+        Stiffness::Soft => "●",
+        Stiffness::Firm => "◆",
+        Stiffness::Rigid => "■",
+        Stiffness::Unknown => "×",
+    }
+}
+
+/// The same in figures.
+fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
+    let mut table = TableBuilder::new(ui)
+        .id_salt("kinds of closes")
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .min_scrolled_height(0.0)
+        .auto_shrink(false)
+        .column(Column::remainder().at_least(96.0).clip(true));
+    for (_, width) in COLUMNS {
+        table = table.column(Column::exact(width).clip(true));
+    }
+    let table = table.header(ROW, |mut row| {
+        let heads = [tune::MAP_JOINT].into_iter();
+        for text in heads.chain(COLUMNS.map(|(text, _)| text)) {
+            row.col(|ui| {
+                let label = Label::new(look.say(text), palette.muted).small();
+                label.ui(ui).on_hover_text(look.tip(text));
+            });
+        }
+    });
+    table.body(|body| {
+        body.rows(ROW, kinds.len(), |mut row| {
+            if let Some(own) = kinds.get(row.index()) {
+                row_ui(&mut row, pane, own);
+            }
+        });
+    });
+}
+
+fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, own: &MeasuredCloses) {
+    let (look, palette, kind) = (pane.look, pane.look.palette, own.kind);
+    let name = look.say(words::dof(kind.dof));
+    let name = match kind.stages {
+        Stages::One => name.to_owned(),
+        Stages::Two => format!("{name}, {}", look.say(tune::MAP_TWO)),
+    };
+    row.col(|ui| {
+        let color = palette.dof[kind.dof];
+        Label::new(&name, color).ui(ui);
+    });
+    let figures = [
+        kind.speed.get().to_string(),
+        format!("{} g", kind.threshold.get()),
+        look.say(tune::stiffness(kind.stiffness)).to_owned(),
+        own.closes.to_string(),
+        format!("{:+.0} g", own.most_over_g),
+        format!("{:+.0} g", own.mean_over_g),
+        own.last.clone(),
+    ];
+    for figure in figures {
+        row.col(|ui| {
+            Label::new(&figure, palette.text).small().number().ui(ui);
+        });
+    }
+}
