@@ -12,6 +12,7 @@ pub use outlet::{BACKLOG_MAX, Outlet, VIEWERS_MAX, Viewer};
 use crate::link::{LinkEntries, LinkHandle};
 use crate::record::file::Opening;
 use crate::share::foxglove::feed::feed;
+use crate::share::foxglove::protocol::Greeting;
 use crate::share::foxglove::viewer::Connection;
 use std::io;
 use std::net::SocketAddr;
@@ -56,7 +57,7 @@ impl FoxgloveServer {
         let _inside = runtime.enter();
         let listener = TcpListener::from_std(listener)?;
         let outlet = Outlet::new();
-        let greeting = Arc::new(protocol::greeting(&config.opening));
+        let greeting = Arc::new(Greeting::new(&config.opening));
         let mut tasks = JoinSet::new();
         tasks.spawn(serve(listener, outlet.clone(), greeting));
         Ok(Self {
@@ -97,7 +98,7 @@ impl FoxgloveServer {
     }
 }
 
-async fn serve(listener: TcpListener, outlet: Outlet, greeting: Arc<[String; 2]>) {
+async fn serve(listener: TcpListener, outlet: Outlet, greeting: Arc<Greeting>) {
     let mut viewers = JoinSet::new();
     loop {
         tokio::select! {

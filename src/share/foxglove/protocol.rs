@@ -1,9 +1,11 @@
 //! The words of the Foxglove WebSocket protocol, as far as a server needs them that only shows: who it is, which topics there
-//! are, and the messages of those that a viewer subscribed to.
+//! are, and the messages of those that a viewer subscribed to. Beside the topics of a recording there is the model of the hand.
 //!
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
+use crate::model::urdf;
 use crate::record::file::Opening;
+use crate::record::file::format::cdr;
 use crate::record::file::format::encode::Message;
 use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
@@ -12,6 +14,8 @@ use serde_json::json;
 /// What viewers call the protocol, the newer name first. Foxglove and PlotJuggler say the newer one, Lichtblick and older clients the
 /// other; what is said here is the same under both.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+/// The channel of the model, far behind those of the topics.
+pub const MODEL_CHANNEL: u64 = 1000;
 /// Begins a message of a topic.
 const MESSAGE_DATA: u8 = 1;
 /// Levels of a status.
@@ -49,8 +53,35 @@ impl Subscription {
     }
 }
 
-/// What a viewer is told first: the hand, and the topics of a recording of it.
-pub(crate) fn greeting(opening: &Opening) -> [String; 2] {
+/// What each viewer is told of the hand.
+#[derive(Debug)]
+pub(crate) struct Greeting {
+    /// First: who serves, and the topics.
+    pub(crate) texts: [String; 2],
+    /// The model, as a message of this time.
+    model: (u64, Vec<u8>),
+}
+
+impl Greeting {
+    pub(crate) fn new(opening: &Opening) -> Self {
+        Self {
+            texts: texts(opening),
+            model: (
+                opening.began_since_1970().as_nanos() as u64,
+                cdr::encode(&urdf(opening.side)),
+            ),
+        }
+    }
+
+    /// The model for the subscription of this number. It does not change, so it is told once.
+    pub(crate) fn model(&self, subscription: u32) -> Vec<u8> {
+        let (nanos, bytes) = &self.model;
+        data(subscription, *nanos, bytes)
+    }
+}
+
+/// The hand, and the topics of a recording of it.
+fn texts(opening: &Opening) -> [String; 2] {
     let badge = if opening.simulated {
         " (SIMULATED)"
     } else {
@@ -75,18 +106,30 @@ pub(crate) fn greeting(opening: &Opening) -> [String; 2] {
             "schema": schema.text,
         })
     };
-    let channels: Vec<_> = Topic::all().map(channel).collect();
+    let model = json!({
+        "id": MODEL_CHANNEL,
+        "topic": "/robot_description",
+        "encoding": "cdr",
+        "schemaName": "std_msgs/msg/String",
+        "schemaEncoding": "ros2msg",
+        "schema": "string data\n",
+    });
+    let channels: Vec<_> = Topic::all().map(channel).chain([model]).collect();
     let topics = json!({ "op": "advertise", "channels": channels });
     [info, topics].map(|told| told.to_string())
 }
 
 /// A message for the subscription of this number.
 pub(crate) fn message_data(subscription: u32, message: &Message) -> Vec<u8> {
-    let mut data = Vec::with_capacity(13 + message.bytes.len());
+    data(subscription, message.log_nanos, &message.bytes)
+}
+
+fn data(subscription: u32, nanos: u64, bytes: &[u8]) -> Vec<u8> {
+    let mut data = Vec::with_capacity(13 + bytes.len());
     data.push(MESSAGE_DATA);
     data.extend(subscription.to_le_bytes());
-    data.extend(message.log_nanos.to_le_bytes());
-    data.extend(&message.bytes);
+    data.extend(nanos.to_le_bytes());
+    data.extend(bytes);
     data
 }
 

@@ -5,7 +5,9 @@ use crate::record::file::format::encode::Message;
 use crate::record::file::format::topic::Topic;
 use crate::share::foxglove::allowance::Allowance;
 use crate::share::foxglove::outlet::Seat;
-use crate::share::foxglove::protocol::{self, Request, SUBPROTOCOLS, Subscription};
+use crate::share::foxglove::protocol::{
+    self, Greeting, MODEL_CHANNEL, Request, SUBPROTOCOLS, Subscription,
+};
 use futures::{SinkExt as _, StreamExt as _};
 use std::io;
 use std::sync::Arc;
@@ -40,12 +42,12 @@ type Socket = WebSocketStream<Allowance<TcpStream>>;
 /// A viewer while it is connected.
 pub(crate) struct Connection {
     seat: Seat,
-    greeting: Arc<[String; 2]>,
-    subscriptions: Vec<(Topic, u32)>,
+    greeting: Arc<Greeting>,
+    subscriptions: Vec<Subscription>,
 }
 
 impl Connection {
-    pub(crate) const fn new(seat: Seat, greeting: Arc<[String; 2]>) -> Self {
+    pub(crate) const fn new(seat: Seat, greeting: Arc<Greeting>) -> Self {
         Self {
             seat,
             greeting,
@@ -61,7 +63,7 @@ impl Connection {
 
     async fn show(&mut self, stream: TcpStream) -> io::Result<()> {
         let mut socket = timeout(SHAKES_HANDS_WITHIN, shake_hands(stream)).await??;
-        for text in self.greeting.iter() {
+        for text in &self.greeting.texts {
             tell(&mut socket, Frame::text(text.as_str())).await?;
         }
         let mut messages = self.seat.messages();
@@ -76,7 +78,7 @@ impl Connection {
                     let answers = self.answers(&said.map_err(io::Error::other)?);
                     heard = Instant::now();
                     for answer in answers {
-                        tell(&mut socket, Frame::text(answer)).await?;
+                        tell(&mut socket, answer).await?;
                     }
                 }
                 message = messages.recv() => {
@@ -127,31 +129,33 @@ impl Connection {
     }
 
     fn number(&self, topic: Topic) -> Option<u32> {
-        let ours = self.subscriptions.iter().find(|(own, _)| *own == topic);
-        ours.map(|(_, number)| *number)
+        let channel = u64::from(topic.channel());
+        let mut ours = self.subscriptions.iter();
+        let ours = ours.find(|own| own.channel_id == channel)?;
+        Some(ours.id)
     }
 
     /// Does what the viewer asks, and gives what it is told of that.
-    fn answers(&mut self, said: &Frame) -> Vec<String> {
+    fn answers(&mut self, said: &Frame) -> Vec<Frame> {
         let answers = match said {
             Frame::Text(text) => match serde_json::from_str(text) {
                 Ok(Request::Subscribe { subscriptions }) => {
-                    let taken = subscriptions
+                    let told = subscriptions
                         .into_iter()
                         .map(|wanted| self.subscribe(wanted));
-                    taken.filter_map(Result::err).collect()
+                    told.flatten().collect()
                 }
                 Ok(Request::Unsubscribe { subscription_ids }) => {
                     self.subscriptions
-                        .retain(|(_, number)| !subscription_ids.contains(number));
+                        .retain(|own| !subscription_ids.contains(&own.id));
                     Vec::new()
                 }
-                Ok(Request::Other) => vec![protocol::warning(
+                Ok(Request::Other) => vec![warning(
                     "ignored: this server shows its topics and takes nothing",
                 )],
-                Err(unknown) => vec![protocol::error(&format!("not understood: {unknown}"))],
+                Err(unknown) => vec![error(&format!("not understood: {unknown}"))],
             },
-            Frame::Binary(_) => vec![protocol::warning("ignored: this server takes no messages")],
+            Frame::Binary(_) => vec![warning("ignored: this server takes no messages")],
             // Those of the connection itself are answered by the crate.
             Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) | Frame::Frame(_) => Vec::new(),
         };
@@ -160,23 +164,29 @@ impl Connection {
         answers
     }
 
-    /// Takes a subscription, or says why not.
-    fn subscribe(&mut self, wanted: Subscription) -> Result<(), String> {
+    /// Takes a subscription, or says why not; to the model it is answered with it.
+    fn subscribe(&mut self, wanted: Subscription) -> Option<Frame> {
         let Subscription { id, channel_id } = wanted;
-        let Some(topic) = wanted.topic() else {
-            return Err(protocol::error(&format!(
-                "there is no channel {channel_id}"
-            )));
-        };
-        let is_taken = |(own, number): &(Topic, u32)| *own == topic || *number == id;
+        if wanted.topic().is_none() && channel_id != MODEL_CHANNEL {
+            return Some(error(&format!("there is no channel {channel_id}")));
+        }
+        let is_taken = |own: &Subscription| own.channel_id == channel_id || own.id == id;
         if self.subscriptions.iter().any(is_taken) {
-            return Err(protocol::warning(&format!(
+            return Some(warning(&format!(
                 "ignored: subscription {id} or channel {channel_id} is subscribed already"
             )));
         }
-        self.subscriptions.push((topic, id));
-        Ok(())
+        self.subscriptions.push(wanted);
+        (channel_id == MODEL_CHANNEL).then(|| Frame::Binary(self.greeting.model(id).into()))
     }
+}
+
+fn warning(words: &str) -> Frame {
+    Frame::text(protocol::warning(words))
+}
+
+fn error(words: &str) -> Frame {
+    Frame::text(protocol::error(words))
 }
 
 async fn tell(socket: &mut Socket, frame: Frame) -> io::Result<()> {

@@ -1,9 +1,13 @@
 //! One client's connection: whole requests in, one answer each, and an end at a deadline for whoever keeps neither to the
-//! protocol nor to the time. It holds at most two messages in memory.
+//! protocol nor to the time. What waits for the hand keeps no other read waiting: requests have numbers, and a client that takes
+//! a few of them without an answer for a silent hand would give up one that is only busy.
 
-use crate::codec::mbap::{ADU_LEN_MAX, MbapSplitter};
+use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
+use crate::codec::pdu::{self, ModbusRole, Pdu};
 use crate::share::gateway::board::{Board, ClientId};
 use crate::share::gateway::service::Service;
+use futures::StreamExt as _;
+use futures::stream::FuturesUnordered;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,6 +22,9 @@ pub const REQUEST_WITHIN: Duration = Duration::from_secs(2);
 pub const IDLE_MAX: Duration = Duration::from_secs(60);
 /// A client that does not take its answer within this is ended.
 pub const TAKES_WITHIN: Duration = Duration::from_secs(2);
+
+/// So many requests of one client wait for the hand at a time; what it asks beyond them stays on the wire.
+const WAITING_MAX: usize = 8;
 
 /// A client while it is connected: it is gone when this is dropped, however its connection ends.
 pub(crate) struct Connection {
@@ -47,31 +54,62 @@ impl Connection {
         let mut chunk = [0; ADU_LEN_MAX];
         let mut heard = Instant::now();
         let mut begun = None;
+        let mut answers = FuturesUnordered::new();
+        // Writes go in their order, one at a time.
+        let (mut next, mut is_writing) = (None, false);
         loop {
-            while let Some(asked) = splitter.next().map_err(io::Error::other)? {
-                let answer = self.service.answer(self.id, &asked).await;
-                timeout(TAKES_WITHIN, stream.write_all(&answer)).await??;
-                (heard, begun) = (Instant::now(), None);
+            while answers.len() < WAITING_MAX {
+                if next.is_none() {
+                    next = splitter.next().map_err(io::Error::other)?;
+                    if next.is_none() {
+                        break;
+                    }
+                    (heard, begun) = (Instant::now(), None);
+                }
+                let Some(asked) = next.take_if(|asked| !is_writing || is_read(asked)) else {
+                    break;
+                };
+                let writes = !is_read(&asked);
+                is_writing |= writes;
+                answers.push(async move { (writes, self.service.answer(self.id, &asked).await) });
             }
-            if splitter.buffered() > 0 {
+            let has_room = next.is_none() && answers.len() < WAITING_MAX;
+            if has_room && splitter.buffered() > 0 {
                 begun.get_or_insert_with(Instant::now);
             }
             let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_WITHIN);
-            let len = tokio::select! {
+            let read = tokio::select! {
                 biased;
                 () = self.granted.notified() => {
                     self.service.leases.granted(self.id).await;
                     continue;
                 }
-                read = timeout_at(deadline, stream.read(&mut chunk)) => read??,
+                Some((wrote, answer)) = answers.next() => {
+                    timeout(TAKES_WITHIN, stream.write_all(&answer)).await??;
+                    is_writing &= !wrote;
+                    heard = Instant::now();
+                    continue;
+                }
+                read = timeout_at(deadline, stream.read(&mut chunk)), if has_room => read,
             };
-            if len == 0 {
+            let Ok(Ok(len @ 1..)) = read else {
+                // A write that has begun is not broken off: it may be taking the right to move the hand.
+                while is_writing && let Some((wrote, _gone)) = answers.next().await {
+                    is_writing &= !wrote;
+                }
                 return Ok(());
-            }
+            };
             // There is room: what is kept is less than one message.
             splitter.push(chunk.get(..len).unwrap_or_default());
         }
     }
+}
+
+fn is_read(asked: &Adu) -> bool {
+    matches!(
+        pdu::parse(ModbusRole::Client, asked.pdu()),
+        Pdu::Read { .. }
+    )
 }
 
 impl Drop for Connection {

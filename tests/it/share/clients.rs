@@ -62,6 +62,31 @@ async fn half_a_request_ends_at_its_deadline_however_slowly_it_goes_on() {
 }
 
 #[tokio::test]
+async fn a_read_that_waits_for_the_hand_keeps_no_other_waiting() {
+    let place = place().await;
+    // Strange stretches are asked for at once only so often.
+    let mut greedy = place.client().await;
+    for at in 0..9 {
+        let _read = greedy.read_holding_registers(2000 + 20 * at, 1).await;
+    }
+    let mut client = connect(&place).await;
+    let strange = [0, 6, 0, 0, 0, 6, 0xFF, 3, 9, 0, 0, 1];
+    client
+        .write_all(&[strange, READ, READ].concat())
+        .await
+        .unwrap();
+    let mut numbers = Vec::new();
+    for _ in 0..3 {
+        let mut head = [0; 6];
+        client.read_exact(&mut head).await.unwrap();
+        numbers.push(head[1]);
+        let mut rest = vec![0; usize::from(head[5])];
+        client.read_exact(&mut rest).await.unwrap();
+    }
+    assert_eq!(numbers, [7, 7, 6]);
+}
+
+#[tokio::test]
 async fn what_is_no_modbus_ends_at_once() {
     let place = place().await;
     for nonsense in [

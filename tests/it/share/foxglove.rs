@@ -111,17 +111,23 @@ impl Client {
         }
     }
 
-    /// The next message: its topic, its time and its bytes.
-    pub(crate) async fn message(&mut self) -> (Topic, u64, Vec<u8>) {
+    /// The next message, whole.
+    async fn data(&mut self) -> Vec<u8> {
         loop {
             if let Frame::Binary(data) = self.0.next().await.unwrap().unwrap() {
                 assert_eq!(data[0], 1);
-                let number = u32::from_le_bytes(data[1..5].try_into().unwrap());
-                let nanos = u64::from_le_bytes(data[5..13].try_into().unwrap());
-                let topic = Topic::by_channel(u16::try_from(number).unwrap() - 100);
-                return (topic.unwrap(), nanos, data[13..].to_vec());
+                return data.to_vec();
             }
         }
+    }
+
+    /// The next message: its topic, its time and its bytes.
+    pub(crate) async fn message(&mut self) -> (Topic, u64, Vec<u8>) {
+        let data = self.data().await;
+        let number = u32::from_le_bytes(data[1..5].try_into().unwrap());
+        let nanos = u64::from_le_bytes(data[5..13].try_into().unwrap());
+        let topic = Topic::by_channel(u16::try_from(number).unwrap() - 100);
+        (topic.unwrap(), nanos, data[13..].to_vec())
     }
 }
 
@@ -172,7 +178,7 @@ async fn a_viewer_is_told_the_topics_and_definitions_of_a_recording() {
         let told = client.told().await;
         assert_eq!(told["op"], "advertise");
         let channels = told["channels"].as_array().unwrap();
-        assert_eq!(channels.len(), Topic::all().count());
+        assert_eq!(channels.len(), Topic::all().count() + 1);
         for (channel, topic) in channels.iter().zip(Topic::all()) {
             assert_eq!(channel["id"], topic.channel());
             assert_eq!(channel["topic"], topic.name());
@@ -226,6 +232,60 @@ async fn all_topics_come_as_they_happen_in_the_bytes_of_a_recording() {
     assert_eq!(kinds, ["stop", "fault"], "what a file derives is seen, too");
     let states = seen["/handscope/state"].len();
     assert!((150..=250).contains(&states), "{states} in two seconds");
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_model_comes_once_to_whoever_asks_and_its_joints_are_those_that_move() {
+    let stage = stage().await;
+    let (mut client, [_, topics]) = Client::of(&stage.server).await;
+    let channel = topics["channels"].as_array().unwrap().last().unwrap();
+    assert_eq!(channel["topic"], "/robot_description");
+    assert_eq!(channel["schemaName"], "std_msgs/msg/String");
+    let subscribe = json!({ "op": "subscribe", "subscriptions": [
+        { "id": 7, "channelId": channel["id"] }, { "id": 8, "channelId": channel["id"] },
+    ] });
+    client.say(subscribe).await;
+    let data = client.data().await;
+    assert_eq!(data[..5], [1, 7, 0, 0, 0]);
+    let model: String = cdr::decode(&data[13..]).unwrap();
+    assert_eq!(client.told().await["level"], 1, "twice is ignored");
+    client.subscribe([Topic::Joints]).await;
+    let joints: JointState = cdr::decode(&client.message().await.2).unwrap();
+    for name in joints.name {
+        assert!(
+            model.contains(&format!("<joint name=\"{name}\" type=\"revolute\"")),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn the_layouts_name_topics_and_fields_that_there_are() {
+    let quoted = |text: &'static str| text.split('"').filter(|word| word.starts_with('/'));
+    let foxglove = include_str!("../../../assets/layouts/foxglove.json");
+    let plotjuggler = include_str!("../../../assets/layouts/plotjuggler.xml");
+    serde_json::from_str::<Value>(foxglove).unwrap();
+    let paths: Vec<_> = quoted(foxglove).map(|path| (path, '.')).collect();
+    let curves: Vec<_> = quoted(plotjuggler).map(|path| (path, '/')).collect();
+    assert!(paths.len() > 20 && curves.len() > 20);
+    for (path, before_field) in [paths, curves].concat() {
+        if path == "/robot_description" {
+            continue;
+        }
+        let is_shown = |topic: &Topic| {
+            let Some(rest) = path.strip_prefix(topic.name()) else {
+                return false;
+            };
+            let field = rest.strip_prefix(before_field);
+            let field = field.map(|field| field.split('[').next().unwrap_or_default());
+            let has = |field| {
+                let mut lines = topic.schema().text.lines();
+                lines.any(|line| line.ends_with(&format!(" {field}")))
+            };
+            rest.is_empty() || field.is_some_and(has)
+        };
+        assert!(Topic::all().any(|topic| is_shown(&topic)), "{path}");
+    }
 }
 
 #[tokio::test(start_paused = true)]
