@@ -48,6 +48,15 @@ pub enum Language {
 }
 
 impl Language {
+    /// The one for a system of this locale, such as `zh_CN` or `zh-Hans-CN`.
+    #[must_use]
+    pub fn of_locale(locale: &str) -> Self {
+        match locale.split(['-', '_', '.']).next() {
+            Some("zh") => Self::Zh,
+            _ => Self::En,
+        }
+    }
+
     /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {
@@ -516,6 +525,16 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_system_that_speaks_chinese_is_answered_in_it() {
+        for locale in ["zh", "zh_CN.UTF-8", "zh-Hans-CN", "zh_TW"] {
+            assert_eq!(Language::of_locale(locale), Language::Zh, "{locale}");
+        }
+        for locale in ["", "C", "en_US.UTF-8", "de-DE", "zhx"] {
+            assert_eq!(Language::of_locale(locale), Language::En, "{locale}");
+        }
+    }
 
     #[test]
     fn the_last_few_hands_are_remembered_once_each_and_the_newest_first() {

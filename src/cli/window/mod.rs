@@ -109,10 +109,19 @@ pub(crate) struct WindowShows {
 #[cfg(feature = "desktop")]
 pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     use crate::app::files::settings_file::{Loaded, default_path, load};
+    use crate::app::settings::Language;
     use crate::shell::desktop;
     use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
     let settings_path = default_path();
-    let loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
+    let mut loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
+    if !settings_path
+        .as_deref()
+        .is_some_and(std::path::Path::exists)
+        && let Some(locale) = sys_locale::get_locale()
+    {
+        // Nobody chose one yet.
+        loaded.settings.language = Language::of_locale(&locale);
+    }
     let drawing = match args.software_because {
         Some(reason) => Drawing::InPlaceOfOpenGl(reason),
         None if args.software => Drawing::Software,

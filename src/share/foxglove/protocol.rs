@@ -3,10 +3,11 @@
 //!
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
-use crate::model::urdf;
+use crate::model::urdf::urdf;
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
 use crate::record::file::format::encode::Message;
+use crate::record::file::format::opening::nanos_of;
 use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
 use serde_json::json;
@@ -67,7 +68,7 @@ impl Greeting {
         Self {
             texts: texts(opening),
             model: (
-                opening.began_since_1970().as_nanos() as u64,
+                nanos_of(opening.base_nanos, opening.began),
                 cdr::encode(&urdf(opening.side)),
             ),
         }

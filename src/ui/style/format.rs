@@ -82,10 +82,11 @@ pub(crate) fn counts(value: Option<i64>) -> String {
 
 /// A rate in hertz, or "-" while there is none.
 pub(crate) fn hertz(value: f64) -> String {
-    if value.is_finite() && value > 0.0 {
-        return format!("{value:.0} Hz");
+    match value {
+        0.5..f64::INFINITY => format!("{value:.0} Hz"),
+        f64::MIN_POSITIVE..0.5 => "<1 Hz".into(),
+        _ => format!("{UNKNOWN} Hz"),
     }
-    format!("{UNKNOWN} Hz")
 }
 
 /// A round trip in milliseconds.
@@ -158,6 +159,7 @@ mod tests {
         assert_eq!(newtons(None), "-");
         assert_eq!(counts(None), "-");
         assert_eq!(hertz(0.0), "- Hz");
+        assert_eq!(hertz(0.3), "<1 Hz");
         assert_eq!(millis(None), "-");
     }
 
