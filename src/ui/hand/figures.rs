@@ -1,4 +1,4 @@
-//! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to its tip.
+//! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to it.
 
 use crate::app::hands::grip;
 use crate::app::readings::Freshness;
@@ -18,8 +18,8 @@ const LEAST: f32 = 200.0;
 /// Room of a figure: its column's width, and its three lines.
 const WIDTH: f32 = 76.0;
 const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
-/// How far apart the figures of the outer fingers are, and how far above the hand they begin: a line comes to its tip from above
-/// the others.
+/// How far apart the figures of the outer fingers are, and how far above the hand they begin: a line comes to its finger from
+/// above the others.
 const APART: f32 = HEIGHT + theme::GAP;
 const ABOVE: f32 = theme::CONTROL;
 /// Where the thumb's is, as a part of the hand's height: below it, as the index has its own above it.
@@ -50,8 +50,44 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
         return;
     };
     for finger in Finger::ALL {
-        let (slot, on_left) = slot(place, &points, finger);
-        figure_ui(ui, pane, finger, (slot, on_left, points.tips[finger]));
+        figure_ui(ui, pane, finger, &Figure::new(place, &points, finger));
+    }
+}
+
+/// Where a finger's figure stands, and its line.
+pub(super) struct Figure {
+    lines: [Rect; 3],
+    on_left: bool,
+    /// The line: it leaves the figure level or upright, and ends at the finger.
+    pub(super) path: [Pos2; 3],
+}
+
+impl Figure {
+    pub(super) fn new(place: Rect, points: &HandPoints, finger: Finger) -> Self {
+        let (slot, on_left) = slot(place, points, finger);
+        let lines = [0.0, 1.0, 2.0].map(|line| {
+            let top = slot.top() + line * theme::TEXT_LINE;
+            Rect::from_min_size(pos2(slot.left(), top), vec2(WIDTH, theme::TEXT_LINE))
+        });
+        let [first, second, _] = lines;
+        let (from, way) = match (finger, on_left) {
+            (Finger::Thumb, _) => (first.center_top(), vec2(0.0, -theme::STEP)),
+            (_, true) => (second.right_center(), vec2(theme::STEP, 0.0)),
+            (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
+        };
+        let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
+        // Lines to tips that stand side by side would cross.
+        let end = match finger {
+            Finger::Ring | Finger::Little => knuckle,
+            Finger::Middle if tip.y > knuckle.y => knuckle,
+            Finger::Middle | Finger::Index | Finger::Thumb => tip,
+        };
+        let knee = from + 3.0 * way;
+        Self {
+            lines,
+            on_left,
+            path: [from + way, knee, end],
+        }
     }
 }
 
@@ -78,30 +114,21 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
     (Rect::from_min_size(corner, size), on_left)
 }
 
-fn figure_ui(
-    ui: &mut Ui,
-    pane: &Pane<'_>,
-    finger: Finger,
-    (slot, on_left, tip): (Rect, bool, Pos2),
-) {
+fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     let look = pane.look;
     let (name, color) = (
         look.say(words::finger(finger)),
         look.palette.dof[finger.bend()],
     );
-    let [first, second, third] = [0.0, 1.0, 2.0].map(|line| {
-        let top = slot.top() + line * theme::TEXT_LINE;
-        Rect::from_min_size(pos2(slot.left(), top), vec2(WIDTH, theme::TEXT_LINE))
-    });
+    let &Figure {
+        lines: [first, second, third],
+        on_left,
+        ..
+    } = figure;
     let ground = look.palette.card.gamma_multiply(GROUND_PART);
     ui.painter()
         .rect_filled(first.union(second), theme::ROUND_SMALL, ground);
-    let from = match (finger, on_left) {
-        (Finger::Thumb, _) => (first.center_top(), vec2(0.0, -theme::STEP)),
-        (_, true) => (second.right_center(), vec2(theme::STEP, 0.0)),
-        (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
-    };
-    line_to(ui, from, tip, color.gamma_multiply(LINE_PART));
+    line_ui(ui, figure.path, color.gamma_multiply(LINE_PART));
     let aligned = |label: Label<'_>, ui: &mut Ui, rect: Rect| {
         let label = if on_left { label.right() } else { label };
         label.put(ui, rect)
@@ -232,11 +259,10 @@ fn lock_ui(ui: &mut Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &s
     lock.named(&named).put(ui, place);
 }
 
-/// A thin line from a figure, which it leaves this way, to its fingertip.
-fn line_to(ui: &Ui, (from, way): (Pos2, Vec2), tip: Pos2, color: Color32) {
-    let knee = from + 3.0 * way;
-    let stop = tip + (knee - tip).normalized() * RING;
+/// A thin line from a figure to its finger, with a ring there.
+fn line_ui(ui: &Ui, [from, knee, end]: [Pos2; 3], color: Color32) {
+    let stop = end + (knee - end).normalized() * RING;
     let painter = ui.painter();
-    painter.line(vec![from + way, knee, stop], Stroke::new(1.0, color));
-    painter.circle_stroke(tip, RING, Stroke::new(theme::FOCUS_LINE, color));
+    painter.line(vec![from, knee, stop], Stroke::new(1.0, color));
+    painter.circle_stroke(end, RING, Stroke::new(theme::FOCUS_LINE, color));
 }

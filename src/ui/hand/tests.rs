@@ -6,6 +6,7 @@ use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
 use crate::sim::object::Object;
 use crate::ui::hand::camera::Turn;
+use crate::ui::hand::figures::{Figure, picture_place};
 use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::render::Sketch;
 use crate::ui::hand::scene::{HandPicture, Hurt};
@@ -281,6 +282,47 @@ impl DrivenView {
     /// Where the tip of the index is seen.
     fn index(&self) -> Pos2 {
         self.view.points().unwrap().tips[Finger::Index] + vec2(0.0, 3.0)
+    }
+}
+
+#[test]
+fn the_lines_to_the_outer_fingers_do_not_cross_in_any_pose() {
+    let place = Rect::from_min_size(Pos2::ZERO, vec2(420.0, 500.0));
+    let turned = |a: Pos2, b: Pos2, c: Pos2| (b - a).rot90().dot(c - a) > 0.0;
+    let cross = |[a, b]: [Pos2; 2], [c, d]: [Pos2; 2]| {
+        turned(a, b, c) != turned(a, b, d) && turned(c, d, a) != turned(c, d, b)
+    };
+    for side in SIDES {
+        for pose in [
+            [1.0; 3],
+            [0.5; 3],
+            [0.0; 3],
+            [0.0, 1.0, 1.0],
+            [1.0, 0.0, 0.0],
+        ] {
+            let mut view = HandView::default();
+            let rect = picture_place(place, side);
+            let setting = DrawSettings {
+                rect,
+                ..setting(side, 1.0)
+            };
+            view.drawn = Some((posed(side, pose), setting));
+            let points = view.points().unwrap();
+            let outer = [Finger::Little, Finger::Ring, Finger::Middle];
+            let paths = outer.map(|finger| Figure::new(place, &points, finger).path);
+            let parts = |[from, knee, end]: [Pos2; 3]| [[from, knee], [knee, end]];
+            for (at, path) in paths.iter().enumerate() {
+                for other in &paths[..at] {
+                    let mut pairs = parts(*path)
+                        .into_iter()
+                        .flat_map(|part| parts(*other).map(|other| (part, other)));
+                    assert!(
+                        !pairs.any(|(part, other)| cross(part, other)),
+                        "{side:?} {pose:?}"
+                    );
+                }
+            }
+        }
     }
 }
 

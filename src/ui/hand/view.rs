@@ -3,7 +3,7 @@
 
 use crate::app::settings::Theme;
 use crate::hand::kinematics::{Segment, Side};
-use crate::hand::{Dof, PerDof, PerFinger};
+use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::hand::camera::{Camera, REACH, Turn};
 use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::light::Light;
@@ -88,6 +88,8 @@ pub(crate) struct HandUse {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HandPoints {
     pub(crate) tips: PerFinger<Pos2>,
+    /// Where the fingers begin. They do not move.
+    pub(crate) knuckles: PerFinger<Pos2>,
     /// What the hand fills in all poses.
     pub(crate) bounds: Rect,
     /// The thumb is at the right.
@@ -190,12 +192,21 @@ impl HandView {
     pub(crate) fn points(&self) -> Option<HandPoints> {
         let (picture, setting) = self.drawn.as_ref()?;
         let (camera, pose) = (setting.camera(picture.side), picture.pose());
-        // The knuckles do not move.
-        let knuckle = |segment| camera.place(pose.frame(segment).translation).x;
+        let knuckles = PerFinger::from_fn(|finger| {
+            let first = match finger {
+                Finger::Little => Segment::Little1,
+                Finger::Ring => Segment::Ring1,
+                Finger::Middle => Segment::Middle1,
+                Finger::Index => Segment::Index1,
+                Finger::Thumb => Segment::Thumb1,
+            };
+            camera.place(pose.frame(first).translation)
+        });
         Some(HandPoints {
             tips: PerFinger::from_fn(|finger| camera.place(pose.tip(finger))),
             bounds: camera.bounds,
-            is_forward: knuckle(Segment::Little1) < knuckle(Segment::Index1),
+            is_forward: knuckles[Finger::Little].x < knuckles[Finger::Index].x,
+            knuckles,
         })
     }
 

@@ -99,13 +99,13 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
         for (ui, parts) in all.iter_mut().zip(COLUMNS) {
             for title in parts {
                 Label::new(look.say(*title), palette.accent).small().ui(ui);
-                let grid = Grid::new(title.en).num_columns(2).min_col_width(84.0);
+                let grid = Grid::new(title.en).num_columns(2).min_col_width(98.0);
                 grid.min_row_height(20.0).show(ui, |ui| {
                     for (keys, words) in rows(*title) {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
-                        Label::said(look, words).ui(ui);
+                        Label::said(look, words).wrap().ui(ui);
                         ui.end_row();
                     }
                 });
