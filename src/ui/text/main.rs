@@ -98,7 +98,7 @@ texts! {
     NAME_IMPACT: "impact warning", "冲击警告";
     RECORDED: "A recording is shown: nothing is sent.", "正在显示记录：不会发送任何内容。";
     HAND_HOLDS: "hand", "手", "The hand holds this instead: read back from it. What you set is sent by arming, or the next time you set it.", "灵巧手当前持有的是此值（回读所得）。你的设定会在使能时或下次设定时发送。";
-    HAND_DIFFERS: "!=", "!=", "The hand holds other values than you set.", "灵巧手持有的值与你的设定不同。";
+    HAND_DIFFERS: "≠", "≠", "The hand holds other values than you set.", "灵巧手持有的值与你的设定不同。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
     LOCK_TIP: "Locks the joint: it is left alone by Open and by its slider.", "锁定：“张开”与滑块都不再移动该自由度。";
