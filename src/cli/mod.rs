@@ -7,7 +7,6 @@ mod doctor;
 mod grip;
 mod hold;
 mod inputs;
-mod interrupt;
 mod listen;
 mod out;
 mod params;

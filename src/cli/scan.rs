@@ -2,7 +2,6 @@
 //! addresses. Writes nothing to any hand.
 
 use crate::app::connect::SimDial;
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{AlreadyReported, Out, WrongUsage, say};
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
@@ -11,6 +10,7 @@ use crate::link::scan::{
     FoundHand, HOSTS_MAX, Hosts, Local, ScanConfig, ScanEvent, ScanHandle, ScanPort, ScanProgress,
     ScanSummary, Speaks, start,
 };
+use crate::shell::interrupt::Interrupt;
 use anyhow::bail;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};

@@ -1,9 +1,9 @@
 //! `sim`: simulated hands on wires that other programs can open, until the program is ended. How a hand behaves is decided in
 //! [`crate::sim`].
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::Out;
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::cli::wires::{ServedWire, WireArgs, failed};
+use crate::shell::interrupt::Interrupt;
 use crate::sim::body_params::file;
 use crate::sim::{
     BodyParams, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands,

@@ -3,6 +3,7 @@
 #[cfg(feature = "desktop")]
 pub mod desktop;
 pub mod headless;
+pub(crate) mod interrupt;
 pub mod raster;
 
 use crate::app::action::Action;

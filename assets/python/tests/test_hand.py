@@ -29,17 +29,19 @@ def simulated():
     """A hand served by another process, and a client of its registers, which knows nothing of Handscope."""
     command = [program.find(), "sim", "--tcp", "127.0.0.1:0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sim:
-        address = sim.stdout.readline().split()[2]
-        host, port = address.rsplit(":", 1)
-        with socket.create_connection((host, int(port))) as client:
-            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        try:
+            address = sim.stdout.readline().split()[2]
+            host, port = address.rsplit(":", 1)
+            with socket.create_connection((host, int(port))) as client:
+                client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-            def read(register):
-                client.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, register, 1))
-                return struct.unpack(">HHHBBBH", client.recv(64))[6]
+                def read(register):
+                    client.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, register, 1))
+                    return struct.unpack(">HHHBBBH", client.recv(64))[6]
 
-            yield f"tcp:{address}", read
-        sim.terminate()
+                yield f"tcp:{address}", read
+        finally:
+            sim.terminate()
 
 
 @contextlib.contextmanager
@@ -49,8 +51,10 @@ def script(hand, text):
     with subprocess.Popen(
         [sys.executable, "-c", head + textwrap.dedent(text)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as running:
-        yield running
-        running.kill()
+        try:
+            yield running
+        finally:
+            running.kill()
 
 
 MOVES = """

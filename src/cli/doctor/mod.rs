@@ -6,12 +6,12 @@ mod json;
 mod text;
 
 use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, Measured};
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::Out;
 use crate::cli::parse::seconds;
 use crate::cli::session;
 use crate::hand::{Span, register};
 use crate::link::{Clock, LinkHandle, PollRates, RequestError, Ticks};
+use crate::shell::interrupt::Interrupt;
 use crate::transport::can_facts::can_facts;
 use crate::transport::{Endpoint, Sysfs, port_facts, route};
 use anyhow::bail;

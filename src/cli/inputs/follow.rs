@@ -2,7 +2,6 @@
 
 use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, say};
 use crate::cli::parse::{self, number};
 use crate::cli::recordings::beside::SideRecording;
@@ -12,6 +11,7 @@ use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LeaseRefusal, LinkHandle, Owner, PollRates, Records};
 use crate::record::{Disarmed, Record};
+use crate::shell::interrupt::Interrupt;
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
 use crate::transport::Endpoint;
 use anyhow::{anyhow, bail};

@@ -1,7 +1,6 @@
 //! `inputs`: the gamepads of this computer, and what the controls of one ask of a hand, without a hand. Moves nothing.
 
 use crate::cli::inputs::source::{is_folder, pad_input};
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::Offer;
@@ -12,6 +11,7 @@ use crate::inputs::pad::{
     PadState, PadTrouble,
 };
 use crate::link::Clock;
+use crate::shell::interrupt::Interrupt;
 use anyhow::bail;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! How far a long command is, on a terminal; and whether the user wishes its end.
 
-use crate::cli::interrupt::Interrupt;
+use crate::shell::interrupt::Interrupt;
 use anyhow::Context as _;
 use std::cell::Cell;
 use std::io::{self, IsTerminal as _, Write as _};

@@ -1,8 +1,8 @@
 //! Ctrl-C while a hand is written to: nothing is left half done without a word. Before the first write it ends the command; after
 //! that the command goes on to its end, or rolls back, and tells what the hand holds; the second Ctrl-C ends it at once.
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::say;
+use crate::shell::interrupt::Interrupt;
 use anyhow::bail;
 use std::cell::Cell;
 use std::rc::Rc;

@@ -2,7 +2,6 @@
 //! hand.
 
 use crate::app::env::day_folder;
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
 use crate::cli::recordings::recording_file::add_files;
@@ -15,6 +14,7 @@ use crate::record::file::{
     Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingFile, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
+use crate::shell::interrupt::Interrupt;
 use crate::store::calendar;
 use crate::tasks::{read, recording};
 use crate::transport::Endpoint;

@@ -1,6 +1,5 @@
 //! `replay`: a hand that says what was recorded, on the wires of the simulated hand.
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
 use crate::cli::recordings::recording_file::{self, FileArgs, lost, say_remarks};
@@ -12,6 +11,7 @@ use crate::params::values::span_of;
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, Stretch};
 use crate::record::{Entry, EventKind, Record};
+use crate::shell::interrupt::Interrupt;
 use crate::sim::{SharedHand, SimConfig, SimHand, SimHands};
 use anyhow::{Context as _, anyhow};
 use std::ops::ControlFlow;

@@ -1,6 +1,5 @@
 //! `fleet`: the hands that Handscopes share on DDS, as they come, change and go. Connects to none of them.
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
 use crate::cli::share::dds::{LOOPBACK, domain};
@@ -8,6 +7,7 @@ use crate::hand::kinematics::Side;
 use crate::link::{Clock, Owner};
 use crate::record::LinkState;
 use crate::share::fleet::{FleetHand, FleetList};
+use crate::shell::interrupt::Interrupt;
 use crate::transport::dds::{DdsNode, DdsPlace};
 use serde_json::json;
 use std::sync::Arc;

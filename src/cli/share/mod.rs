@@ -4,7 +4,6 @@ pub(crate) mod dds;
 pub(crate) mod fleet;
 mod stdio;
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::listen;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::{number, side};
@@ -22,6 +21,7 @@ use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{
     ClientLease, Gateway, GatewayClient, GatewayConfig, MoverChange, MoverEvent, SILENCE, Writers,
 };
+use crate::shell::interrupt::Interrupt;
 use crate::store::calendar;
 use crate::transport::Endpoint;
 use std::net::SocketAddr;

@@ -1,7 +1,6 @@
 //! A series on a real link: the user's word to arm, Ctrl-C as a stop, and the trials as they end. Decides nothing about
 //! trials.
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
@@ -10,6 +9,7 @@ use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{ArmEpoch, HandSample};
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
+use crate::shell::interrupt::Interrupt;
 use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop, stop_words};
 use crate::transport::Endpoint;
 use crate::trials::series::Series;

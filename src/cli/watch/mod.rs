@@ -6,7 +6,6 @@ mod wire;
 
 pub(crate) use args::WatchArgs;
 
-use crate::cli::interrupt::Interrupt;
 use crate::cli::out::{Out, say};
 use crate::cli::session::{self, ANSWER_WITHIN};
 use crate::cli::watch::datagrams::Datagrams;
@@ -16,6 +15,7 @@ use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Group, Moment};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
+use crate::shell::interrupt::Interrupt;
 use anyhow::bail;
 use serde_json::Value;
 use std::pin::pin;

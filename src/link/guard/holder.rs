@@ -15,6 +15,10 @@ pub const MOVES: u8 = b'm';
 /// Told through the pipe: it rests, and nothing is armed.
 pub const RESTS: u8 = b'r';
 
+/// A new process of Windows has no console then.
+#[cfg(windows)]
+const DETACHED_PROCESS: u32 = 8;
+
 /// The program that is started; none in a process that is not this program, such as a test.
 static PROGRAM: OnceLock<(PathBuf, Complain)> = OnceLock::new();
 
@@ -69,6 +73,9 @@ impl HolderTie {
         // What a terminal tells this program's group is not meant for it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        // Without a console it ends neither by Ctrl-C nor with the console.
+        #[cfg(windows)]
+        std::os::windows::process::CommandExt::creation_flags(&mut command, DETACHED_PROCESS);
         let pipe = Arc::new(Mutex::new(HolderPipe::Starts(MOVES)));
         let (tell, started) = oneshot::channel();
         let shared = Arc::clone(&pipe);

@@ -3,6 +3,7 @@
 
 use crate::hand::Moment;
 use crate::link::{Clock, guard};
+use crate::shell::interrupt::Interrupt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -73,26 +74,11 @@ impl Ending {
 }
 
 /// Waits for a signal that ends the program, on the thread of the links, which no window keeps waiting.
-#[cfg(unix)]
 pub(crate) async fn on_signals(ending: Arc<Ending>) {
-    use futures::future::{FutureExt as _, select_all};
-    use tokio::signal::unix::{SignalKind, signal};
-    let kinds = [
-        SignalKind::interrupt(),
-        SignalKind::terminate(),
-        SignalKind::hangup(),
-    ];
-    let listening = kinds.map(|kind| Some((kind, signal(kind).ok()?)));
-    let mut signals: Vec<_> = listening.into_iter().flatten().collect();
-    if signals.is_empty() {
+    let Ok(mut interrupt) = Interrupt::listen() else {
         return;
-    }
-    let signals = signals.iter_mut();
-    let came = signals.map(|(kind, signal)| {
-        let number = kind.as_raw_value();
-        async move { signal.recv().await.map(|()| number) }.boxed()
-    });
-    let (number, ..) = select_all(came).await;
+    };
+    let status = interrupt.status().await;
     guard::hold_all();
     ending.want();
     loop {
@@ -101,11 +87,7 @@ pub(crate) async fn on_signals(ending: Arc<Ending>) {
             // The link task goes on beside this one until all hands rest.
             let held = tokio::task::spawn_blocking(|| guard::hold_all_within(ENDS_WITHIN));
             let _held = held.await;
-            std::process::exit(128 + number.unwrap_or_default());
+            std::process::exit(status);
         }
     }
 }
-
-/// Nothing to listen for here.
-#[cfg(not(unix))]
-pub(crate) async fn on_signals(_ending: Arc<Ending>) {}

@@ -1,0 +1,133 @@
+//! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, on Windows Ctrl-Break and the end of console or session, ask the program to
+//! end; SIGUSR1 cuts the power of the simulated hand, SIGUSR2 freezes what it tells. Ends nothing itself.
+
+use futures::stream::{BoxStream, SelectAll, StreamExt as _, poll_fn, select_all};
+use std::io;
+use std::task::{Context, Poll};
+
+/// A signal that cannot be listened for.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot listen for {signal}")]
+pub(crate) struct ListenError {
+    signal: &'static str,
+    #[source]
+    cause: io::Error,
+}
+
+/// Signals of one meaning. Listens from its creation on, so that no signal is missed.
+pub(crate) struct Interrupt {
+    /// The exit status that each stands for.
+    signals: SelectAll<BoxStream<'static, i32>>,
+}
+
+/// What the system has of one meaning, or why it cannot be listened for.
+type Signals = io::Result<Vec<BoxStream<'static, i32>>>;
+
+impl Interrupt {
+    /// Listens for the wish to end the program. Must be called within a tokio runtime.
+    pub(crate) fn listen() -> Result<Self, ListenError> {
+        Self::of("Ctrl-C", system::end())
+    }
+
+    /// Listens for a request to cut the simulated hand's power for a moment: SIGUSR1. Must be called within a tokio runtime.
+    pub(crate) fn power_cut() -> Result<Self, ListenError> {
+        Self::of("SIGUSR1", system::power_cut())
+    }
+
+    /// Listens for a request to freeze what the simulated hand tells, or to undo that: SIGUSR2. Must be called within a tokio
+    /// runtime.
+    pub(crate) fn freeze() -> Result<Self, ListenError> {
+        Self::of("SIGUSR2", system::freeze())
+    }
+
+    fn of(signal: &'static str, heard: Signals) -> Result<Self, ListenError> {
+        match heard {
+            Ok(signals) => Ok(Self {
+                signals: select_all(signals),
+            }),
+            Err(cause) => Err(ListenError { signal, cause }),
+        }
+    }
+
+    /// Resolves at the next signal. May be dropped and called again.
+    pub(crate) async fn wished(&mut self) {
+        self.status().await;
+    }
+
+    /// The same, to the exit status of a program that this signal ended.
+    pub(crate) async fn status(&mut self) -> i32 {
+        match self.signals.next().await {
+            Some(status) => status,
+            // There is none to listen for on this system.
+            None => std::future::pending().await,
+        }
+    }
+}
+
+fn heard(
+    status: i32,
+    mut poll: impl FnMut(&mut Context<'_>) -> Poll<Option<()>> + Send + 'static,
+) -> BoxStream<'static, i32> {
+    poll_fn(move |context| poll(context).map(|came| came.map(|()| status))).boxed()
+}
+
+#[cfg(unix)]
+mod system {
+    use super::{BoxStream, Signals, heard};
+    use std::io;
+    use tokio::signal::unix::{SignalKind, signal};
+
+    pub(super) fn end() -> Signals {
+        let kinds = [
+            SignalKind::interrupt(),
+            SignalKind::terminate(),
+            SignalKind::hangup(),
+        ];
+        kinds.into_iter().map(on).collect()
+    }
+
+    pub(super) fn power_cut() -> Signals {
+        on(SignalKind::user_defined1()).map(|signal| vec![signal])
+    }
+
+    pub(super) fn freeze() -> Signals {
+        on(SignalKind::user_defined2()).map(|signal| vec![signal])
+    }
+
+    fn on(kind: SignalKind) -> io::Result<BoxStream<'static, i32>> {
+        let mut signal = signal(kind)?;
+        let status = 128 + kind.as_raw_value();
+        Ok(heard(status, move |context| signal.poll_recv(context)))
+    }
+}
+
+#[cfg(windows)]
+mod system {
+    use super::{Signals, heard};
+    use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
+
+    /// What Windows gives a program that Ctrl-C ended: 0xC000013A.
+    const ENDED: i32 = -0x3fff_fec6;
+
+    /// The keys, and the end of the console and of the session, after which Windows leaves a program a few seconds.
+    pub(super) fn end() -> Signals {
+        let (mut key, mut break_key) = (ctrl_c()?, ctrl_break()?);
+        let (mut close, mut logoff, mut shutdown) =
+            (ctrl_close()?, ctrl_logoff()?, ctrl_shutdown()?);
+        Ok(vec![
+            heard(ENDED, move |context| key.poll_recv(context)),
+            heard(ENDED, move |context| break_key.poll_recv(context)),
+            heard(ENDED, move |context| close.poll_recv(context)),
+            heard(ENDED, move |context| logoff.poll_recv(context)),
+            heard(ENDED, move |context| shutdown.poll_recv(context)),
+        ])
+    }
+
+    pub(super) fn power_cut() -> Signals {
+        Ok(Vec::new())
+    }
+
+    pub(super) fn freeze() -> Signals {
+        Ok(Vec::new())
+    }
+}
