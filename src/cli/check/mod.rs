@@ -66,6 +66,12 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
 }
 
 fn files(args: &CheckArgs) -> anyhow::Result<CheckupFiles> {
+    if let Some(folder) = args.recordings.as_deref().filter(|folder| !folder.is_dir()) {
+        bail!(
+            "{} is no folder: nothing was done; name the folder of recordings with --recordings, or leave that out",
+            folder.display()
+        );
+    }
     let settings = settings_file::default_path();
     let beside = || settings.as_ref().map(|path| path.with_file_name("checks"));
     let folder = args.folder.clone().or_else(beside);

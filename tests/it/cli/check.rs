@@ -26,6 +26,8 @@ fn nothing_moves_before_all_is_in_order() {
     };
     let refused = check(&["--out", full.to_str().unwrap()]);
     assert!(refused.contains("not empty"), "{refused}");
+    let refused = check(&["--recordings", "/nowhere"]);
+    assert!(refused.contains("/nowhere is no folder"), "{refused}");
     std::fs::write(&unreadable, "no JSON\n").unwrap();
     let refused = check(&[]);
     assert!(refused.contains("--folder"), "{refused}");
@@ -59,7 +61,7 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
         "--out",
         out.to_str().unwrap(),
         "--recordings",
-        kept.to_str().unwrap(),
+        folder.path().to_str().unwrap(),
     ]);
     while !checks.complaint().contains("3 of 29") {}
     checks.signal(Signal::SIGINT);
