@@ -100,7 +100,7 @@ async fn serve(
     let mut ways = Vec::new();
     let gateway = args.tcp.map(|at| open(link, at, args)).transpose()?;
     ways.extend(gateway.iter().map(|gateway| ("tcp", gateway.address())));
-    let viewers = args.foxglove.map(|at| show(link, at, &args.hand));
+    let viewers = args.foxglove.map(|at| show(link, at, args));
     let viewers = viewers.transpose()?;
     ways.extend(viewers.iter().map(|server| ("foxglove", server.address())));
     let announced = ways.into_iter().filter(|_| !args.stdio);
@@ -179,11 +179,15 @@ fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Res
 }
 
 /// Shows the hand to viewers.
-fn show(link: &LinkHandle, address: SocketAddr, hand: &Endpoint) -> anyhow::Result<FoxgloveServer> {
+fn show(
+    link: &LinkHandle,
+    address: SocketAddr,
+    args: &ShareArgs,
+) -> anyhow::Result<FoxgloveServer> {
     let moments = (link.clock().now(), calendar::since_1970());
     let config = FoxgloveConfig {
         address,
-        opening: Opening::begin(hand.to_string(), moments, Side::Right),
+        opening: Opening::begin(args.hand.to_string(), moments, args.side),
     };
     let mut server = FoxgloveServer::open(config, &Handle::current())
         .map_err(|error| listen::refused(address, &error))?;

@@ -4,10 +4,12 @@
 
 use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
 use crate::codec::pdu::{self, ModbusRole, Pdu};
+use crate::hand::ModbusException;
 use crate::share::gateway::board::{Board, ClientId};
 use crate::share::gateway::service::Service;
-use futures::StreamExt as _;
-use futures::stream::FuturesUnordered;
+use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
+use futures::stream::{FuturesUnordered, StreamExt as _};
+use std::collections::VecDeque;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,8 +25,10 @@ pub const IDLE_MAX: Duration = Duration::from_secs(60);
 /// A client that does not take its answer within this is ended.
 pub const TAKES_WITHIN: Duration = Duration::from_secs(2);
 
-/// So many requests of one client wait for the hand at a time; what it asks beyond them stays on the wire.
-const WAITING_MAX: usize = 8;
+/// So many reads of one client wait for the hand at a time, and so many writes: as many as the standard lets a client have
+/// unanswered. Reads beyond them are told that the hand is busy; a client with more writes is ended, and the hand stops where it
+/// moved it: a queue of targets would go on long after whoever wrote them.
+const WAITING_MAX: usize = 16;
 
 /// A client while it is connected: it is gone when this is dropped, however its connection ends.
 pub(crate) struct Connection {
@@ -49,60 +53,79 @@ impl Connection {
         let _broken = self.talk(stream).await;
     }
 
-    async fn talk(&self, mut stream: TcpStream) -> io::Result<()> {
+    async fn talk(&self, stream: TcpStream) -> io::Result<()> {
+        let mut writing = None;
+        let ended = self.converse(stream, &mut writing).await;
+        // A write that has begun is not broken off: it may be taking the right to move the hand.
+        OptionFuture::from(writing).await;
+        ended
+    }
+
+    /// Answers, and leaves the write that had begun at the end.
+    async fn converse<'a>(
+        &'a self,
+        mut stream: TcpStream,
+        writing: &mut Option<BoxFuture<'a, Vec<u8>>>,
+    ) -> io::Result<()> {
         let mut splitter = MbapSplitter::default();
         let mut chunk = [0; ADU_LEN_MAX];
         let mut heard = Instant::now();
         let mut begun = None;
-        let mut answers = FuturesUnordered::new();
-        // Writes go in their order, one at a time.
-        let (mut next, mut is_writing) = (None, false);
+        let mut reads = FuturesUnordered::new();
+        // Writes go in their order, one at a time, and past the reads.
+        let mut writes = VecDeque::new();
         loop {
-            while answers.len() < WAITING_MAX {
-                if next.is_none() {
-                    next = splitter.next().map_err(io::Error::other)?;
-                    if next.is_none() {
-                        break;
-                    }
-                    (heard, begun) = (Instant::now(), None);
+            while let Some(asked) = splitter.next().map_err(io::Error::other)? {
+                (heard, begun) = (Instant::now(), None);
+                if !is_read(&asked) {
+                    writes.push_back(asked);
+                } else if reads.len() < WAITING_MAX {
+                    reads.push(self.answer(asked));
+                } else {
+                    let busy = pdu::exception_reply(ModbusException::Busy, asked.function());
+                    tell(&mut stream, &asked.reply(asked.unit, &busy)).await?;
                 }
-                let Some(asked) = next.take_if(|asked| !is_writing || is_read(asked)) else {
-                    break;
-                };
-                let writes = !is_read(&asked);
-                is_writing |= writes;
-                answers.push(async move { (writes, self.service.answer(self.id, &asked).await) });
             }
-            let has_room = next.is_none() && answers.len() < WAITING_MAX;
-            if has_room && splitter.buffered() > 0 {
+            if writing.is_none() {
+                *writing = writes.pop_front().map(|asked| self.answer(asked).boxed());
+            }
+            if writes.len() > WAITING_MAX {
+                return Ok(());
+            }
+            if splitter.buffered() > 0 {
                 begun.get_or_insert_with(Instant::now);
             }
             let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_WITHIN);
-            let read = tokio::select! {
+            tokio::select! {
                 biased;
-                () = self.granted.notified() => {
-                    self.service.leases.granted(self.id).await;
-                    continue;
-                }
-                Some((wrote, answer)) = answers.next() => {
-                    timeout(TAKES_WITHIN, stream.write_all(&answer)).await??;
-                    is_writing &= !wrote;
+                () = self.granted.notified() => self.service.leases.granted(self.id).await,
+                Some(answer) = OptionFuture::from(writing.as_mut()) => {
+                    *writing = None;
                     heard = Instant::now();
-                    continue;
+                    tell(&mut stream, &answer).await?;
                 }
-                read = timeout_at(deadline, stream.read(&mut chunk)), if has_room => read,
-            };
-            let Ok(Ok(len @ 1..)) = read else {
-                // A write that has begun is not broken off: it may be taking the right to move the hand.
-                while is_writing && let Some((wrote, _gone)) = answers.next().await {
-                    is_writing &= !wrote;
+                Some(answer) = reads.next() => {
+                    heard = Instant::now();
+                    tell(&mut stream, &answer).await?;
                 }
-                return Ok(());
-            };
-            // There is room: what is kept is less than one message.
-            splitter.push(chunk.get(..len).unwrap_or_default());
+                read = timeout_at(deadline, stream.read(&mut chunk)) => match read {
+                    // There is room: what is kept is less than one message.
+                    Ok(Ok(len @ 1..)) => {
+                        splitter.push(chunk.get(..len).unwrap_or_default());
+                    }
+                    _ => return Ok(()),
+                },
+            }
         }
     }
+
+    async fn answer(&self, asked: Adu) -> Vec<u8> {
+        self.service.answer(self.id, &asked).await
+    }
+}
+
+async fn tell(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
+    timeout(TAKES_WITHIN, stream.write_all(answer)).await?
 }
 
 fn is_read(asked: &Adu) -> bool {

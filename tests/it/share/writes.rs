@@ -6,6 +6,8 @@ use handscope::link::{LeaseRefusal, Owner, PollRates};
 use handscope::record::{Disarmed, Hold, LinkState};
 use handscope::share::gateway::{ClientLease, GatewayClient, GatewayConfig, WriteRefusal, Writers};
 use std::time::Duration;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
 use tokio::time::sleep;
 use tokio_modbus::ExceptionCode;
 use tokio_modbus::client::{Context, Reader as _, Writer as _};
@@ -160,6 +162,65 @@ async fn whoever_may_not_move_the_hand_stops_what_another_moves_and_may_not_move
     assert_eq!(shown[1].lease, ClientLease::Never);
     assert_eq!(put(&mut mover, INDEX, &[0]).await, BUSY, "it was ended");
     assert_eq!(put(&mut other, INDEX, &[0]).await, Ok(()), "the next may");
+}
+
+/// A request on the wire.
+fn asked(pdu: &[u8]) -> Vec<u8> {
+    let len = 1 + pdu.len() as u8;
+    [&[0, 1, 0, 0, 0, len, 255], pdu].concat()
+}
+
+fn set_index(angle: u16) -> Vec<u8> {
+    let [high, low] = INDEX.to_be_bytes();
+    asked(&[&[6, high, low], &angle.to_be_bytes()[..]].concat())
+}
+
+/// Reads for which the hand must be asked, and which are asked seldom.
+fn slow_reads(count: u16) -> Vec<u8> {
+    let addresses = (0..count).map(|nth| (2000 + 20 * nth).to_be_bytes());
+    let reads = addresses.map(|[high, low]| asked(&[3, high, low, 0, 1]));
+    reads.collect::<Vec<_>>().concat()
+}
+
+#[tokio::test]
+async fn whoever_leaves_or_asks_too_much_behind_a_move_stops_the_hand_at_once() {
+    let many_writes = (0..40).flat_map(|_| set_index(0)).collect();
+    for (behind, leaves) in [
+        (slow_reads(15), true),
+        (slow_reads(40), true),
+        (many_writes, false),
+    ] {
+        let place = first_may().await;
+        let mut client = TcpStream::connect(place.address()).await.unwrap();
+        client.write_all(&set_index(0)).await.unwrap();
+        until(|| targets(&place) == [0]).await;
+        sleep(MOVES_AFTER).await;
+        client.write_all(&behind).await.unwrap();
+        if leaves {
+            client.shutdown().await.unwrap();
+        }
+        is_stopped(&place).await;
+        let mut rest = Vec::new();
+        // It hangs up.
+        let _end = client.read_to_end(&mut rest).await;
+        until(|| place.gateway.clients().is_empty()).await;
+    }
+}
+
+#[tokio::test]
+async fn a_stop_goes_past_what_its_client_asked_before() {
+    let place = first_may().await;
+    let mut other = place.client().await;
+    let _mover = mover(&place).await;
+    sleep(MOVES_AFTER).await;
+    let here = read(&mut other, 1546, 6).await;
+    let mut client = TcpStream::connect(place.address()).await.unwrap();
+    let here: Vec<u8> = here.iter().flat_map(|angle| angle.to_be_bytes()).collect();
+    let [high, low] = 1486_u16.to_be_bytes();
+    let stop = asked(&[&[16, high, low, 0, 6, 12], &here[..]].concat());
+    let behind = [slow_reads(40), stop].concat();
+    client.write_all(&behind).await.unwrap();
+    is_stopped(&place).await;
 }
 
 #[tokio::test]
