@@ -1,7 +1,6 @@
 //! Why a port may not be opened, and the command that changes it. Changes nothing itself.
 
 use std::fmt;
-use std::path::Path;
 
 /// What lets the user open a port.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -67,7 +66,7 @@ pub(crate) fn remedy(port: &str) -> Remedy {
     use nix::unistd::{Gid, Group, User, getuid};
     use std::os::unix::fs::MetadataExt as _;
     // A link's own rights say nothing; those of a file that cannot be seen are not known.
-    let Ok(found) = std::fs::metadata(Path::new(port)) else {
+    let Ok(found) = std::fs::metadata(port) else {
         return Remedy::GiveRight(port.into());
     };
     let group = Group::from_gid(Gid::from_raw(found.gid())).ok().flatten();

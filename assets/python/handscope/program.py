@@ -191,6 +191,8 @@ class Program:
     def _read(self) -> None:
         assert self._child.stdout
         for line in self._child.stdout:
+            if not line.endswith("\n"):
+                break  # The program was killed within this line.
             told = json.loads(line)
             if "state" in told:
                 self._on_told(told)

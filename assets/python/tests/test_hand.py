@@ -357,6 +357,15 @@ class Begins(unittest.TestCase):
         """
         self.assertRegex(self.in_place_of_the_program(newer), "^the program at .* is version 9.0.0, which .*\n$")
 
+    def test_a_line_that_the_end_of_the_program_cut_short_is_its_end(self):
+        cut = """
+        import sys
+        print('{"state": {"angle"', end="", flush=True)
+        sys.exit(print("error: killed", file=sys.stderr))
+        """
+        told = self.in_place_of_the_program(cut)
+        self.assertTrue(told.endswith("HandscopeError: killed\n") and "thread" not in told, told)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -75,9 +75,16 @@ impl PadReader {
 ///
 /// # Errors
 /// [`PadTrouble`] if none was found and something was in the way.
+#[cfg(target_os = "linux")]
 pub fn find(folder: &std::path::Path) -> Result<Vec<PadFacts>, PadTrouble> {
-    #[cfg(target_os = "linux")]
-    return reader::find(folder, &SystemPads);
-    #[cfg(not(target_os = "linux"))]
-    return Err(PadTrouble::LinuxOnly);
+    reader::find(folder, &SystemPads)
+}
+
+/// Says that there is none to find.
+///
+/// # Errors
+/// Always [`PadTrouble::LinuxOnly`].
+#[cfg(not(target_os = "linux"))]
+pub fn find(_folder: &std::path::Path) -> Result<Vec<PadFacts>, PadTrouble> {
+    Err(PadTrouble::LinuxOnly)
 }

@@ -1,11 +1,11 @@
 //! Where recording files are put: the system's disk, or one that fails on purpose.
 
-use std::fs::{DirBuilder, File, Metadata, OpenOptions};
-use std::io::{self, ErrorKind, Seek as _, SeekFrom, Write as _};
-use std::os::fd::AsRawFd as _;
-use std::os::unix::fs::MetadataExt as _;
+use std::fs::{DirBuilder, File, OpenOptions};
+use std::io::{self, Seek as _, SeekFrom, Write as _};
 #[cfg(unix)]
 use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
+#[cfg(windows)]
+use std::os::windows::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 /// A place for files.
@@ -52,6 +52,10 @@ pub enum FilePlace {
     Removed,
 }
 
+/// Without the right to delete: Windows lets nobody move or remove the file while it is written.
+#[cfg(windows)]
+const FILE_SHARE_READ_WRITE: u32 = 3;
+
 /// The system's disk. Nobody but the user who records can read the files, or enter the folders that are made for them.
 #[derive(Debug, Clone, Copy)]
 pub struct SystemDisk;
@@ -69,6 +73,8 @@ impl Disk for SystemDisk {
         options.write(true).create_new(true);
         #[cfg(unix)]
         options.mode(0o600);
+        #[cfg(windows)]
+        options.share_mode(FILE_SHARE_READ_WRITE);
         Ok(Box::new(options.open(path)?))
     }
 
@@ -88,20 +94,31 @@ impl DiskFile for File {
     }
 
     fn place(&self, path: &Path) -> FilePlace {
-        let Ok(own) = self.metadata() else {
-            return FilePlace::There;
-        };
-        if own.nlink() == 0 {
-            return FilePlace::Removed;
-        }
-        let is_own = |there: Metadata| (there.dev(), there.ino()) == (own.dev(), own.ino());
-        match std::fs::metadata(path).map(is_own) {
-            Ok(true) => FilePlace::There,
-            Err(error) if error.kind() != ErrorKind::NotFound => FilePlace::There,
-            _ => {
-                let link = format!("/proc/self/fd/{}", self.as_raw_fd());
-                FilePlace::Moved(std::fs::read_link(link).ok())
-            }
+        place_of(self, path)
+    }
+}
+
+#[cfg(unix)]
+fn place_of(file: &File, path: &Path) -> FilePlace {
+    use std::os::{fd::AsRawFd as _, unix::fs::MetadataExt as _};
+    let Ok(own) = file.metadata() else {
+        return FilePlace::There;
+    };
+    if own.nlink() == 0 {
+        return FilePlace::Removed;
+    }
+    let is_own = |there: std::fs::Metadata| (there.dev(), there.ino()) == (own.dev(), own.ino());
+    match std::fs::metadata(path).map(is_own) {
+        Ok(true) => FilePlace::There,
+        Err(error) if error.kind() != io::ErrorKind::NotFound => FilePlace::There,
+        _ => {
+            let link = format!("/proc/self/fd/{}", file.as_raw_fd());
+            FilePlace::Moved(std::fs::read_link(link).ok())
         }
     }
+}
+
+#[cfg(windows)]
+const fn place_of(_file: &File, _path: &Path) -> FilePlace {
+    FilePlace::There
 }
