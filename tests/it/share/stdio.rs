@@ -272,7 +272,8 @@ fn a_client_stops_what_a_script_moves_which_is_told_and_may_ask_again() {
 
 #[test]
 fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go() {
-    for ends in [false, true] {
+    // It lets go once the link is back, or ends then, or ends before.
+    for (ends, before) in [(false, false), (true, false), (true, true)] {
         let (sim, hand) = sim_on_tcp(&[]);
         let mut script = Script::start(&hand);
         script.done(json!({"do": "arm"}));
@@ -283,20 +284,33 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
         if ends {
             assert_eq!(script.ask(json!({"do": "arm"}))["ok"], Value::Null);
         }
-        sim.signal(Signal::SIGCONT);
-        assert_eq!(script.until("link")["state"], "live");
+        let back = || sim.signal(Signal::SIGCONT);
+        if !before {
+            back();
+            assert_eq!(script.until("link")["state"], "live");
+        }
         let at = || {
             let read = run(&["read", "ANGLE_ACT", "--json", "--hand", &hand]).ok();
             read.lines()[0]["ANGLE_ACT"][3].as_i64().unwrap()
         };
-        if ends {
+        if before {
+            std::thread::scope(|threads| {
+                let ended = threads.spawn(|| script.end());
+                sleep(Duration::from_millis(700));
+                back();
+                assert_eq!(ended.join().unwrap(), Some(0));
+            });
+        } else if ends {
             assert_eq!(script.end(), Some(0));
         } else {
             script.done(json!({"do": "release"}));
         }
         let first = at();
         sleep(Duration::from_millis(500));
-        assert!((first - at()).abs() <= 2 && first > 300, "{ends} {first}");
+        assert!(
+            (first - at()).abs() <= 2 && first > 300,
+            "{ends} {before} {first}"
+        );
     }
 }
 

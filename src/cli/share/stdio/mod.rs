@@ -35,6 +35,8 @@ const VERSION: u64 = 1;
 const LOOK_EACH: Duration = Duration::from_millis(20);
 /// How long the hand may take to be armed, a stop before it included.
 const ARMS_WITHIN: Duration = Duration::from_secs(5);
+/// A lost link that comes back is back by then. Until then the hand may go on to where the program sent it.
+const BACK_WITHIN: Duration = Duration::from_secs(3);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
 
@@ -157,7 +159,19 @@ impl Script<'_> {
     /// Stops a hand that may move, and ends the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
-        let may_move = self.is_to_stop() || link.status().state == LinkState::Holding;
+        // Nobody reads any more what it tells.
+        let _told = self.look();
+        if self.owes_stop {
+            let back = async {
+                while !link.status().state.is_live() {
+                    sleep(LOOK_EACH).await;
+                }
+            };
+            let _back = timeout(BACK_WITHIN, back).await;
+        }
+        let status = link.status();
+        let is_lost = self.owes_stop && !status.state.is_live();
+        let may_move = is_lost || self.is_to_stop() || status.state == LinkState::Holding;
         self.task = None;
         let done = if may_move {
             session::stopped(link, &mut link.records()).await
