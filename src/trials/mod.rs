@@ -4,14 +4,14 @@
 //! time and gives what to send ([`runner`] one trial, [`limits`] what ends it); [`recording`] keeps what was read;
 //! [`measure`] computes from it, without looking at the hand again; [`summary`] is one trial that is over; [`columns`] are
 //! the columns of every table; [`session`] is a folder of them, [`report`] its page, [`best`]
-//! finds the best setting; [`search`] searches for it close after close; [`kept_overshoot`] keeps what all of them measured of a hand.
+//! finds the best setting; [`search`] searches for it close after close; [`overshoot_file`] keeps what all of them measured of a hand.
 
 pub mod best;
 pub mod columns;
 pub mod estimate;
-pub mod kept_overshoot;
 pub mod limits;
 pub mod measure;
+pub mod overshoot_file;
 pub mod plan;
 pub mod plan_settings;
 pub mod recording;

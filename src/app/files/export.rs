@@ -15,7 +15,7 @@ use crate::params::file::ParamsFile;
 use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
 use crate::store::{BackgroundJob, on_thread, write_private};
-use crate::trials::kept_overshoot;
+use crate::trials::overshoot_file;
 use std::io;
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl Export {
             Self::Picture(bytes) => bytes.clone(),
             Self::Poses(library) => pose_file::text(library)?.into_bytes(),
             Self::Params(file) => file.to_toml().into_bytes(),
-            Self::Overshoot(map) => kept_overshoot::csv(map).into_bytes(),
+            Self::Overshoot(map) => overshoot_file::csv(map).into_bytes(),
         })
     }
 }

@@ -6,7 +6,7 @@ use crate::hand::overshoot::OvershootMap;
 use crate::store::calendar::{day, since_1970};
 use crate::store::{BackgroundJob, on_thread};
 use crate::transport::Endpoint;
-use crate::trials::kept_overshoot::{self, MeasuredClose};
+use crate::trials::overshoot_file::{self, MeasuredClose};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -85,15 +85,15 @@ impl HandOvershoot {
         let Some(file) = self.file(ctx) else { return };
         let work = on_thread(move || {
             if forgets {
-                kept_overshoot::forget(&file)?;
+                overshoot_file::forget(&file)?;
             }
-            kept_overshoot::add(&file, &closes, &day(since_1970()))
+            overshoot_file::add(&file, &closes, &day(since_1970()))
         });
         self.under_way = Some(BackgroundJob::start(&ctx.env.runtime, &ctx.env.wake, work));
     }
 
     fn file(&self, ctx: &Ctx<'_>) -> Option<PathBuf> {
         let settings = ctx.env.settings_path.as_ref()?;
-        kept_overshoot::file_of(settings, self.of.as_ref()?)
+        overshoot_file::file_of(settings, self.of.as_ref()?)
     }
 }

@@ -14,7 +14,7 @@ use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::{self, SeriesStart, SeriesStep};
-use crate::trials::kept_overshoot::{MeasuredClose, closes_of};
+use crate::trials::overshoot_file::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;

@@ -8,7 +8,7 @@ use crate::tasks::Reach;
 use crate::tasks::hand::answers;
 use crate::tasks::place::Decisions;
 use crate::transport::Endpoint;
-use crate::trials::kept_overshoot;
+use crate::trials::overshoot_file;
 use std::future::ready;
 use std::sync::Arc;
 use std::time::Duration;
@@ -57,7 +57,7 @@ pub(crate) fn said_yes() -> Decisions {
 /// What trials measured of a hand, by which its warnings go. Where that cannot be read they go by another hand.
 pub(crate) fn overshoot(hand: &Endpoint) -> Arc<OvershootMap> {
     let file =
-        settings_file::default_path().and_then(|settings| kept_overshoot::file_of(&settings, hand));
-    let map = file.and_then(|file| kept_overshoot::read(&file).ok());
+        settings_file::default_path().and_then(|settings| overshoot_file::file_of(&settings, hand));
+    let map = file.and_then(|file| overshoot_file::read(&file).ok());
     Arc::new(map.unwrap_or_default())
 }

@@ -4,7 +4,7 @@ use crate::app::files::settings_file;
 use crate::cli::out::{Out, WrongUsage, say};
 use crate::hand::overshoot::{MeasuredCloses, OvershootMap, Stages};
 use crate::transport::Endpoint;
-use crate::trials::kept_overshoot;
+use crate::trials::overshoot_file;
 use anyhow::Context as _;
 use clap::Args;
 use serde_json::json;
@@ -34,9 +34,9 @@ pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
         ));
     }
     let settings = settings_file::default_path();
-    let file = settings.and_then(|settings| kept_overshoot::file_of(&settings, &args.hand));
+    let file = settings.and_then(|settings| overshoot_file::file_of(&settings, &args.hand));
     let file = file.context("no home folder, in which it would be kept")?;
-    let map = match kept_overshoot::read(&file) {
+    let map = match overshoot_file::read(&file) {
         Err(error) if args.forget => {
             say(&format!("{} could not be read: {error}", file.display()));
             OvershootMap::default()
@@ -46,7 +46,7 @@ pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
         }
     };
     if let Some(path) = &args.out {
-        std::fs::write(path, kept_overshoot::csv(&map))
+        std::fs::write(path, overshoot_file::csv(&map))
             .with_context(|| format!("cannot write {}; nothing was forgotten", path.display()))?;
     }
     let object = json!({ "overshoot": {
@@ -69,7 +69,7 @@ pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
     out.result(args.json, &object, lines)?;
     out.flush()?;
     if args.forget {
-        kept_overshoot::forget(&file)
+        overshoot_file::forget(&file)
             .with_context(|| format!("cannot remove {}", file.display()))?;
     }
     Ok(())

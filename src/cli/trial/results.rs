@@ -10,7 +10,7 @@ use crate::link::quirks::book;
 use crate::store::calendar::{day, since_1970};
 use crate::tasks::series::SeriesStep;
 use crate::transport::Endpoint;
-use crate::trials::kept_overshoot::{self, MeasuredClose, closes_of};
+use crate::trials::overshoot_file::{self, MeasuredClose, closes_of};
 use crate::trials::session::SessionHead;
 use crate::trials::session_writer::TrialSessionWriter;
 use crate::trials::{Abort, Criterion, EarlyEnd, Trial, TrialPlan, TrialSummary};
@@ -81,7 +81,7 @@ impl<'a> TrialResults<'a> {
             writer: wanted.folder.map(started).transpose()?,
             trials: Vec::new(),
             map: settings_file::default_path()
-                .and_then(|settings| kept_overshoot::file_of(&settings, hand)),
+                .and_then(|settings| overshoot_file::file_of(&settings, hand)),
             adding: Vec::new(),
             total: 0,
             error: None,
@@ -123,7 +123,7 @@ impl<'a> TrialResults<'a> {
     /// Adds what a trial measured to what is known of the hand.
     fn keep(&mut self, closes: Vec<MeasuredClose>) {
         if let Some(file) = self.map.clone().filter(|_| !closes.is_empty()) {
-            let add = move || kept_overshoot::add(&file, &closes, &day(since_1970()));
+            let add = move || overshoot_file::add(&file, &closes, &day(since_1970()));
             self.adding.push(std::thread::spawn(add));
         }
     }
