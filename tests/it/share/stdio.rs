@@ -284,6 +284,10 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
         if ends {
             assert_eq!(script.ask(json!({"do": "arm"}))["ok"], Value::Null);
         }
+        if !ends {
+            // Nothing was stopped yet, which is said.
+            assert_eq!(script.ask(json!({"do": "release"}))["kind"], "link_lost");
+        }
         let back = || sim.signal(Signal::SIGCONT);
         if !before {
             back();

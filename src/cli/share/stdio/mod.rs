@@ -21,6 +21,7 @@ use crate::link::{ArmRequest, Lease, LinkHandle, LinkStatus, Owner, Records};
 use crate::record::{Disarmed, LinkState, Record};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
+use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use serde_json::{Value, json};
@@ -35,8 +36,9 @@ const VERSION: u64 = 1;
 const LOOK_EACH: Duration = Duration::from_millis(20);
 /// How long the hand may take to be armed, a stop before it included.
 const ARMS_WITHIN: Duration = Duration::from_secs(5);
-/// A lost link that comes back is back by then. Until then the hand may go on to where the program sent it.
-const BACK_WITHIN: Duration = Duration::from_secs(3);
+/// So long a lost link is waited for at the end, as the hand may go on to where the program sent it: for one dial that fails, and
+/// one that does not.
+const BACK_WITHIN: Duration = Duration::from_secs(6);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
 
@@ -159,6 +161,7 @@ impl Script<'_> {
     /// Stops a hand that may move, and ends the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
+        self.task = None;
         // Nobody reads any more what it tells.
         let _told = self.look();
         if self.owes_stop {
@@ -172,7 +175,6 @@ impl Script<'_> {
         let status = link.status();
         let is_lost = self.owes_stop && !status.state.is_live();
         let may_move = is_lost || self.is_to_stop() || status.state == LinkState::Holding;
-        self.task = None;
         let done = if may_move {
             session::stopped(link, &mut link.records()).await
         } else {
@@ -288,6 +290,9 @@ impl Script<'_> {
             Ok(Ask::Record(path)) => return self.record(id, path.as_deref()),
             Ok(Ask::Stop) => return self.stop(id),
             Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
+            Ok(Ask::Release) if self.owes_stop && !self.is_live => {
+                Err(Refused::new("link_lost", STOP_LOST))
+            }
             Ok(Ask::Release) => {
                 self.end_task()?;
                 self.right = None;
@@ -357,7 +362,8 @@ impl Script<'_> {
     /// Stops the hand, whoever moves it, and waits for what feedback says of it.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
         self.hand.link.stop();
-        (self.right, self.owes_stop) = (None, false);
+        // Until it is confirmed.
+        (self.right, self.owes_stop) = (None, true);
         let link = self.hand.link.clone();
         let stopping =
             async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
@@ -493,10 +499,15 @@ impl Script<'_> {
             return Ok(());
         };
         match done {
-            Done::Armed(armed) => {
-                self.right = armed.as_ref().ok().copied();
-                self.owes_stop &= armed.is_err();
-                self.reply(&id, armed.map(|_right| json!({})))
+            Done::Armed(Ok(right)) => {
+                (self.right, self.owes_stop) = (Some(right), false);
+                self.reply(&id, Ok(json!({})))
+            }
+            // What it had before may hold, or have ended meanwhile.
+            Done::Armed(Err(no)) => {
+                let lost = self.right.is_some() && self.holds().is_none();
+                self.reply(&id, Err(no.clone()))?;
+                if lost { self.lose(&no) } else { Ok(()) }
             }
             Done::Moved(moved) => {
                 let done = moved.and_then(|report| self.moved(&report));
@@ -506,6 +517,7 @@ impl Script<'_> {
             }
             Done::Followed(followed) => self.followed(followed),
             Done::Stopped(stopped) => {
+                self.owes_stop = stopped.is_err();
                 let done = stopped.map_err(|not| Refused::new("not_confirmed", not.to_string()));
                 self.reply(&id, done.map(|()| json!({})))
             }
