@@ -1,6 +1,6 @@
 //! One client's connection: whole requests in, one answer each, and an end at a deadline for whoever keeps neither to the
-//! protocol nor to the time. What waits for the hand keeps no other read waiting: requests have numbers, and a client that takes
-//! a few of them without an answer for a silent hand would give up one that is only busy.
+//! protocol nor to the time. Reads are answered as they are ready, writes one at a time in their order. Some clients take a few
+//! unanswered requests for a dead hand, so one request that waits for the hand does not hold up the others.
 
 use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
 use crate::codec::pdu::{self, ModbusRole, Pdu};
@@ -25,9 +25,9 @@ pub const IDLE_MAX: Duration = Duration::from_secs(60);
 /// A client that does not take its answer within this is ended.
 pub const TAKES_WITHIN: Duration = Duration::from_secs(2);
 
-/// So many reads of one client wait for the hand at a time, and so many writes: as many as the standard lets a client have
-/// unanswered. Reads beyond them are told that the hand is busy; a client with more writes is ended, and the hand stops where it
-/// moved it: a queue of targets would go on long after whoever wrote them.
+/// So many reads of one client wait for the hand at a time, and so many writes behind the one under way: as many as the standard
+/// lets a client have unanswered. Reads beyond them are told that the hand is busy; a client with more writes is ended, and the
+/// hand stops where it moved it: a queue of targets would go on long after whoever wrote them.
 const WAITING_MAX: usize = 16;
 
 /// A client while it is connected: it is gone when this is dropped, however its connection ends.
@@ -65,7 +65,7 @@ impl Connection {
     async fn converse<'a>(
         &'a self,
         mut stream: TcpStream,
-        writing: &mut Option<BoxFuture<'a, Vec<u8>>>,
+        writing: &mut Option<BoxFuture<'a, Option<Vec<u8>>>>,
     ) -> io::Result<()> {
         let mut splitter = MbapSplitter::default();
         let mut chunk = [0; ADU_LEN_MAX];
@@ -87,7 +87,8 @@ impl Connection {
                 }
             }
             if writing.is_none() {
-                *writing = writes.pop_front().map(|asked| self.answer(asked).boxed());
+                let next = writes.pop_front();
+                *writing = next.map(|asked| self.answer(asked).map(Some).boxed());
             }
             if writes.len() > WAITING_MAX {
                 return Ok(());
@@ -98,11 +99,17 @@ impl Connection {
             let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_WITHIN);
             tokio::select! {
                 biased;
-                () = self.granted.notified() => self.service.leases.granted(self.id).await,
+                // It takes the turn of a write, which may take the right as well.
+                () = self.granted.notified(), if writing.is_none() => {
+                    let granted = self.service.leases.granted(self.id);
+                    *writing = Some(granted.map(|()| None).boxed());
+                }
                 Some(answer) = OptionFuture::from(writing.as_mut()) => {
                     *writing = None;
                     heard = Instant::now();
-                    tell(&mut stream, &answer).await?;
+                    if let Some(answer) = answer {
+                        tell(&mut stream, &answer).await?;
+                    }
                 }
                 Some(answer) = reads.next() => {
                     heard = Instant::now();
@@ -113,10 +120,20 @@ impl Connection {
                     Ok(Ok(len @ 1..)) => {
                         splitter.push(chunk.get(..len).unwrap_or_default());
                     }
+                    Ok(Ok(0)) => break,
                     _ => return Ok(()),
                 },
             }
         }
+        // It asks no more, but may listen on. What it moved is stopped first.
+        self.service.leases.disconnect(self.id);
+        if let Some(Some(answer)) = OptionFuture::from(writing.take()).await {
+            tell(&mut stream, &answer).await?;
+        }
+        while let Some(answer) = reads.next().await {
+            tell(&mut stream, &answer).await?;
+        }
+        Ok(())
     }
 
     async fn answer(&self, asked: Adu) -> Vec<u8> {
@@ -128,6 +145,7 @@ async fn tell(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
     timeout(TAKES_WITHIN, stream.write_all(answer)).await?
 }
 
+/// Whatever else is asked takes its turn among the writes.
 fn is_read(asked: &Adu) -> bool {
     matches!(
         pdu::parse(ModbusRole::Client, asked.pdu()),

@@ -87,6 +87,17 @@ async fn a_read_that_waits_for_the_hand_keeps_no_other_waiting() {
 }
 
 #[tokio::test]
+async fn who_asks_no_more_is_answered_all_the_same() {
+    let place = place().await;
+    let mut client = connect(&place).await;
+    client.write_all(&READ).await.unwrap();
+    client.shutdown().await.unwrap();
+    let mut answer = Vec::new();
+    client.read_to_end(&mut answer).await.unwrap();
+    assert_eq!(answer.len(), 9 + 12, "{answer:?}");
+}
+
+#[tokio::test]
 async fn what_is_no_modbus_ends_at_once() {
     let place = place().await;
     for nonsense in [
