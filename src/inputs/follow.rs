@@ -297,10 +297,13 @@ impl Follow {
         }
     }
 
-    /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known,
-    /// nothing goes on.
+    /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known
+    /// or may not move, nothing goes on.
     fn step_to_gap(&mut self, aim: PinchAim, pose: &PerDof<Option<Angle>>, reach: Reach) {
         let PinchAim { gap, moves } = aim;
+        if !Gap::JOINTS.into_iter().all(|dof| moves[dof]) {
+            return;
+        }
         let Some(is_open) = pinch::is_open(pose) else {
             return;
         };

@@ -103,7 +103,7 @@ struct Raw {
 }
 
 impl StreamLine {
-    /// A stop, whatever else stands in its line.
+    /// A stop, whatever version or targets stand beside it.
     fn stop(raw: &Raw) -> Self {
         Self {
             seq: raw.seq,
@@ -124,11 +124,11 @@ impl StreamLine {
             return Err(LineFault::TooLong);
         }
         let raw: Raw = serde_json::from_slice(line).map_err(|_unread| malformed(line))?;
-        if raw.v.is_some_and(|version| version != LINE_VERSION) {
-            return Err(LineFault::Version);
-        }
         if raw.stop {
             return Ok(Self::stop(&raw));
+        }
+        if raw.v.is_some_and(|version| version != LINE_VERSION) {
+            return Err(LineFault::Version);
         }
         if raw.grip_mm.is_some() && (raw.left.is_some() || raw.right.is_some()) {
             return Err(LineFault::Both);
@@ -218,6 +218,7 @@ mod tests {
         assert!(stop.stop && stop.aims == PerDof::splat(None));
         // It stops the hand, whatever else stands there.
         for beside in [
+            r#""v":2"#,
             r#""grip_mm":0"#,
             r#""grip_mm":30,"right":[1,1,1,1,1,1]"#,
             r#""right":[1]"#,

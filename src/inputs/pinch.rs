@@ -8,7 +8,7 @@ use crate::poses::way::{Targets, way};
 /// Targets nearer to the path than this, in counts, are on it; a part of it that is nearer is done.
 const NEAR: f32 = 1.5;
 
-/// A gap that is gone to, and with which joints; thumb and index are among them.
+/// A gap that is gone to, and the joints that may move.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PinchAim {
     pub(super) gap: Gap,
