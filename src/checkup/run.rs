@@ -309,8 +309,10 @@ impl Checkup {
         if !link.state.is_live() {
             return Some(self.fail(Abort::LinkLost));
         }
-        let is_armed_anew = link.armed.is_some_and(|epoch| epoch != self.epoch);
-        if is_armed_anew || link.foreign_setpoint != self.foreign {
+        if link.armed.is_some_and(|epoch| epoch != self.epoch) {
+            return Some(self.fail(Abort::Disarmed));
+        }
+        if link.foreign_setpoint != self.foreign {
             let wrote = link.foreign_setpoint;
             return Some(self.fail(Abort::OtherController { wrote }));
         }
