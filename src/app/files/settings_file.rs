@@ -19,6 +19,8 @@ pub fn default_path() -> Option<PathBuf> {
 pub struct Loaded {
     /// The settings in force.
     pub settings: Settings,
+    /// True if they are the file's.
+    pub found: bool,
     /// What the user should know about the file.
     pub notice: Option<NoticeKind>,
 }
@@ -31,10 +33,12 @@ pub fn load(path: &Path) -> Loaded {
     match toml_file::load(path, FILE_LEN_MAX, |text| FileText::plain(text).parse()) {
         Ok(settings) => Loaded {
             settings,
+            found: true,
             notice: None,
         },
         Err(error) => Loaded {
             settings: Settings::default(),
+            found: false,
             notice: Some(put_aside(path, error)),
         },
     }
@@ -85,6 +89,7 @@ mod tests {
             load(&path),
             Loaded {
                 settings: some(),
+                found: true,
                 notice: None
             }
         );

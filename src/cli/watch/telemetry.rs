@@ -1,6 +1,7 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
 use crate::hand::grip::{Grip, GripEstimate};
+use crate::hand::units::decimal;
 use crate::hand::{
     Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, RateClass, Status, TactileBlock,
 };
@@ -189,9 +190,9 @@ pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Valu
     json!({
         "finger": finger.name(),
         "raw": block.map(|block| block.raw),
-        "normal_n": block.and_then(TactileBlock::normal).and_then(plain),
+        "normal_n": block.and_then(TactileBlock::normal).map(decimal),
         "normal_delta": block.map(|block| block.normal_delta),
-        "tangential_n": block.and_then(TactileBlock::tangential).and_then(plain),
+        "tangential_n": block.and_then(TactileBlock::tangential).map(decimal),
         "tangential_delta": block.map(|block| block.tangential_delta),
         "direction_deg": block.and_then(TactileBlock::direction_deg),
         "proximity": block.map(|block| block.proximity),
@@ -217,11 +218,6 @@ fn fault_words(faults: Faults) -> String {
         names if names.is_empty() => "none".into(),
         names => names.join("+"),
     }
-}
-
-/// The shortest decimal that stands for this float: 0.3, not 0.30000001192092896.
-fn plain(newtons: f32) -> Option<f64> {
-    newtons.to_string().parse().ok()
 }
 
 fn millis(value: Option<Duration>) -> Option<f64> {

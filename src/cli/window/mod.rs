@@ -114,9 +114,7 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
     let settings_path = default_path();
     let mut loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
-    if !settings_path
-        .as_deref()
-        .is_some_and(std::path::Path::exists)
+    if !loaded.found
         && let Some(locale) = sys_locale::get_locale()
     {
         // Nobody chose one yet.

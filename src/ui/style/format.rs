@@ -83,8 +83,8 @@ pub(crate) fn counts(value: Option<i64>) -> String {
 /// A rate in hertz, or "-" while there is none.
 pub(crate) fn hertz(value: f64) -> String {
     match value {
-        0.5..f64::INFINITY => format!("{value:.0} Hz"),
-        f64::MIN_POSITIVE..0.5 => "<1 Hz".into(),
+        1.0..f64::INFINITY => format!("{value:.0} Hz"),
+        f64::MIN_POSITIVE..1.0 => "<1 Hz".into(),
         _ => format!("{UNKNOWN} Hz"),
     }
 }
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(newtons(None), "-");
         assert_eq!(counts(None), "-");
         assert_eq!(hertz(0.0), "- Hz");
-        assert_eq!(hertz(0.3), "<1 Hz");
+        assert_eq!((hertz(0.3), hertz(0.5)), ("<1 Hz".into(), "<1 Hz".into()));
         assert_eq!(millis(None), "-");
     }
 
