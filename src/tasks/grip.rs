@@ -331,7 +331,7 @@ impl ToldValues {
     fn read(&mut self, values: &PerDof<Option<i16>>) {
         let is_told = PerDof::from_fn(|dof| {
             let both = values[dof].zip(self.told[dof]);
-            // As much for speeds.
+            // As much as it may round speeds.
             let rounds_by = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
             both.is_none_or(|(value, told)| value.abs_diff(told) <= rounds_by)
         });
