@@ -23,6 +23,8 @@ use std::collections::HashMap;
 const COLUMNS_MOST: f32 = 8192.0;
 /// A box of a smaller part of a chart's height marks time alone.
 const BOX_LEAST: f64 = 0.15;
+/// What is left of a title beside the values under the pointer.
+const TITLE_LEAST: f32 = 64.0;
 
 /// Where the points of a curve come from: seconds and values, oldest first.
 #[derive(Debug, Clone, Copy)]
@@ -339,12 +341,8 @@ impl<'a> Chart<'a> {
             let title = Label::new(look.say(self.title), look.palette.muted).small();
             let is_fixed = view.scales.chosen(self.title).is_some();
             if let Some(at_s) = view.pointed_s() {
-                // The title is read first: the values get what it leaves.
-                let words = [Some(self.title), is_fixed.then_some(panels::RANGE_FIXED)];
-                let words = words.into_iter().flatten();
-                let widths = words.map(|text| kit::text_width(ui, look.say(text), theme::small()));
-                let taken: f32 = widths.map(|width| width + theme::GAP).sum();
-                let room = ui.available_width() - theme::PLOT_AXIS - taken;
+                // Whoever points there wants the values: the title is cut before they are.
+                let room = ui.available_width() - theme::PLOT_AXIS - TITLE_LEAST;
                 self.readings_ui(ui, at_s, room);
             }
             kit::left_ui(ui, |ui| {

@@ -2,7 +2,7 @@
 //! no text is shortened or cut. No hand. With `HANDSCOPE_PICTURES=folder` the states are drawn into files, to be looked at.
 
 use crate::setup::states;
-use crate::setup::view::{self, Shown};
+use crate::setup::view::{self, LARGE, Shown};
 use egui::accesskit::Role;
 use egui::{Pos2, Rect, Shape, Vec2, vec2};
 use egui_kittest::Harness;
@@ -337,4 +337,38 @@ fn nothing_is_cut_or_covered_on_a_fine_display() {
             walk_at(&mut harness, SIZES[0], &format!("scale {scale}"));
         }
     }
+}
+
+/// How bright the name of a view is painted: 1 in full.
+fn brightness(harness: &Harness<'static, Shown>) -> f32 {
+    let mut shapes = harness.output().shapes.iter();
+    let title = shapes.find_map(|clipped| match &clipped.shape {
+        Shape::Text(text) if text.galley.text() == "Connection" => Some(text.opacity_factor),
+        _ => None,
+    });
+    title.expect("the name of the view")
+}
+
+#[test]
+fn a_place_fades_in_and_is_there_at_once_where_nothing_is_to_move_by_itself() {
+    let display = view::display(LARGE).with_step_dt(0.02);
+    let mut harness = view::open(states::empty(), View::Live, display);
+    harness
+        .ctx
+        .all_styles_mut(|style| style.animation_time = 0.12);
+    harness.state_mut().window.set_view(View::Connection);
+    harness.run_steps(3);
+    let begun = brightness(&harness);
+    assert!((0.1..0.9).contains(&begun), "{begun}");
+    harness.run_steps(5);
+    assert!((brightness(&harness) - 1.0).abs() < 1e-6);
+
+    harness
+        .ctx
+        .all_styles_mut(|style| style.animation_time = 0.0);
+    for view in [View::Live, View::Connection] {
+        harness.state_mut().window.set_view(view);
+        harness.step();
+    }
+    assert!((brightness(&harness) - 1.0).abs() < 1e-6);
 }

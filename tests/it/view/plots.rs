@@ -168,6 +168,17 @@ fn the_values_under_the_pointer_are_read_out_while_live() {
 }
 
 #[test]
+fn a_long_title_leaves_room_for_all_values_under_the_pointer() {
+    let mut harness = open();
+    hover(&mut harness, 0.5);
+    let [short, long] = ["Force, g", "Angle, 0 bent to 1000 open"].map(|title| {
+        let name = format!("{title} under the pointer");
+        rect(&harness, Role::Label, &name).width()
+    });
+    near(f64::from(long), f64::from(short), 0.1);
+}
+
+#[test]
 fn the_wheel_zooms_around_the_pointer_and_a_double_click_follows_again() {
     let mut harness = open();
     let before = time_at(&mut harness, 0.25);
