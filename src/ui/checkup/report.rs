@@ -77,11 +77,9 @@ impl ReportView {
         let words = format!("{earlier}. {}", checkup::usage(look, report));
         kit::say_ui(ui, &words, palette.muted);
         let only = Button::said(look, checkup::ONLY).choice(self.only);
-        if only.ui(ui, look).clicked() {
-            self.only = !self.only;
-        }
+        only.flips(ui, look, &mut self.only);
         ui.add_space(theme::STEP);
-        table::ui(ui, pane, (report, self.only));
+        table::ui(ui, pane, report, self.only);
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
 }
 
 /// Draws the figures, or those that are not fine.
-pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, bool)) {
+pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
     let is_told = |own: &&Check| !only || own.light != Light::Fine || own.drift().is_some();
     let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
@@ -62,7 +62,7 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, 
             .column(Column::remainder().at_least(ADVICE).clip(true))
             .header(ROW, |mut row| {
                 for head in heads {
-                    row.col(|ui| drop(Label::note(look, head).ui(ui)));
+                    Label::note(look, head).column_ui(&mut row);
                 }
             });
         table.body(|body| {
@@ -80,8 +80,8 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     let of = look.say(checkup::part(check.measured.of));
     let what = look.say(checkup::subject(check.measured.what));
     let unit = check.measured.what.row();
-    row.col(|ui| drop(Label::new(of, palette.muted).ui(ui)));
-    row.col(|ui| drop(Label::new(what, palette.text).ui(ui)));
+    Label::new(of, palette.muted).column_ui(row);
+    Label::new(what, palette.text).column_ui(row);
     let name = |column: Text| format!("{of} {what} {}", look.say(column).to_lowercase());
     row.col(|ui| {
         let color = color(pane, check.light);
@@ -102,10 +102,8 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
         (checkup::COLUMN_LAST, unit.known(&check.last)),
     ];
     for (column, value) in before {
-        row.col(|ui| {
-            let label = Label::new(&value, palette.muted).number();
-            label.named(&name(column)).ui(ui);
-        });
+        let label = Label::new(&value, palette.muted).number();
+        label.named(&name(column)).column_ui(row);
     }
     row.col(|ui| drop(trend_ui(ui, pane, check)));
     row.col(|ui| {

@@ -74,7 +74,7 @@ impl MessageLog {
             self.copied = Some((newest, text.lines().count()));
             ui.ctx().copy_text(text);
         }
-        kit::edit_ui(ui, look.both(notices::LOG_FILTER), &mut self.words);
+        kit::edit_said_ui(ui, look, notices::LOG_FILTER, &mut self.words);
     }
 
     /// The messages with these words, each with its level and words in a line, newest first.

@@ -65,9 +65,8 @@ impl FaultsView {
         let look = pane.look;
         kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
             let shut = Button::said(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
-            if shut.weight(Weight::Quiet).ui(ui, look).clicked() {
-                pane.open(ViewRequest::Faults);
-            }
+            let shut = shut.weight(Weight::Quiet);
+            shut.opens(ui, pane, ViewRequest::Faults);
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -99,7 +98,7 @@ impl FaultsView {
     /// The messages, or the recordings.
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recordings = match pane.state.hand().measured.recorder.iter().count() {
+        let recordings = match pane.hand().measured.recorder.iter().count() {
             0 => look.say(notices::RECORDINGS).to_owned(),
             count => format!("{} ({count})", look.say(notices::RECORDINGS)),
         };
@@ -124,7 +123,7 @@ impl FaultsView {
 
 fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let reason = match hand.readings.faults.nothing_to_clear() {
         _ if !hand.connection.status.state.is_live() => Some(main::REFUSED_OFFLINE),
         _ if hand.readings.sample.faults.is_none() => Some(notices::CLEAR_UNREAD),
@@ -143,7 +142,6 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let asked = pane
-        .state
         .hand()
         .readings
         .sample
@@ -180,7 +178,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
-    let sample = &pane.state.hand().readings.sample;
+    let sample = &pane.hand().readings.sample;
     let status = sample.status.map(|group| group.value[dof]);
     // A fault is explained by its entry below; what the status adds to it is said here.
     let faulty = sample

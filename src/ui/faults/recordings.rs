@@ -8,9 +8,9 @@ use crate::hand::{Dof, PerDof};
 use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
-use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Pick, Weight, format};
 use crate::ui::plots;
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points, height_over_axis};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
 use crate::ui::recordings::stretch::ReplayedStretch;
@@ -102,8 +102,7 @@ impl FaultRecordingsView {
 
     /// The open one, if it is still kept.
     pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<FaultRecording>> {
-        pane.state
-            .hand()
+        pane.hand()
             .measured
             .recorder
             .get(self.open?)
@@ -113,7 +112,7 @@ impl FaultRecordingsView {
     /// Draws the list.
     pub(crate) fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recorder = &pane.state.hand().measured.recorder;
+        let recorder = &pane.hand().measured.recorder;
         let mut pressed = None;
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
@@ -181,14 +180,10 @@ impl FaultRecordingsView {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
-            let axis = if is_lowest {
-                theme::PLOT_TIME_AXIS
-            } else {
-                0.0
-            };
+            let height = height_over_axis(height, is_lowest);
             let plot = Chart {
                 is_lowest,
-                ..chart(look, recording, panel, height + axis)
+                ..chart(look, recording, panel, height)
             };
             plot.ui(ui, &mut self.chart);
         }
@@ -210,7 +205,7 @@ impl FaultRecordingsView {
                 let title = title(pane, recording);
                 let title = format!("{}: {title}", look.say(notices::RECORDING));
                 kit::left_ui(ui, |ui| {
-                    let title = Label::new(&title, look.palette.text).font(theme::title());
+                    let title = Label::new(&title, look.palette.text).title();
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });
             });
@@ -238,8 +233,8 @@ impl FaultRecordingsView {
                 (true, notices::RECORDING_NEAR),
                 (false, notices::RECORDING_WHOLE),
             ];
-            let chosen = (&mut self.near, notices::RECORDING_NEAR.tip());
-            if kit::pick_ui(ui, look, chosen, near) {
+            let pick = Pick::new(look, notices::RECORDING_NEAR.tip());
+            if pick.ui(ui, &mut self.near, near) {
                 self.chart = ChartView::default();
             }
         });

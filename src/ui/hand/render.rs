@@ -23,6 +23,14 @@ struct Seen {
     edges: u8,
 }
 
+/// A place of the hand that is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SeenPlace {
+    pub(crate) segment: Segment,
+    /// How near to the eye it is.
+    pub(crate) depth: f32,
+}
+
 /// What is drawn, and how it is seen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Model<'a> {
@@ -145,8 +153,8 @@ impl Sketch {
             .sum()
     }
 
-    /// The segment of the hand that is seen at a place of the mesh drawn last, and how near it is there.
-    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<(Segment, f32)> {
+    /// What of the hand is seen at a place of the mesh drawn last.
+    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<SeenPlace> {
         let corner = |at: u32| {
             mesh.vertices
                 .get(at as usize)
@@ -163,7 +171,8 @@ impl Sketch {
             let whole: f32 = sides.iter().sum();
             let depths = seen.corners.map(depth).into_iter().zip(sides);
             let depth = depths.map(|(depth, part)| depth * part).sum::<f32>() / whole;
-            (is_in && whole != 0.0).then_some((seen.segment?, depth))
+            let segment = seen.segment?;
+            (is_in && whole != 0.0).then_some(SeenPlace { segment, depth })
         };
         let nearest_first = self.order.iter().rev();
         let seen = nearest_first.filter_map(|number| self.seen.get((number & 0xFFFF) as usize));

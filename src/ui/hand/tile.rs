@@ -8,6 +8,7 @@ use crate::ui::hand::light::Light;
 use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, TURN, draw, fade_out};
+use crate::ui::kit::Look;
 use crate::ui::theme::Palette;
 use egui::cache::{ComputerMut, FrameCache};
 use egui::emath::{Float, OrderedFloat};
@@ -45,30 +46,18 @@ const fn turn(yaw: f32, pitch: f32) -> Turn {
     }
 }
 
-/// Draws a pose that changes: the picture holds still while the hand moves in it.
-pub(crate) fn pose_ui(ui: &Ui, palette: &Palette, rect: Rect, picture: &HandPicture) {
-    tile_ui(ui, palette, rect, (picture, false));
+/// Draws a pose that changes, for dry runs and editors: the picture holds still while the hand moves in it. `shares` of the way
+/// to open; a finger with an unknown joint is a shell.
+pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    Tile::new(ui, look, rect, shares).paint(ui, rect);
 }
 
-/// Draws a pose that is to be told from others at the size of a button.
-pub(crate) fn sign_ui(ui: &Ui, palette: &Palette, rect: Rect, picture: &HandPicture) {
-    tile_ui(ui, palette, rect, (picture, true));
-}
-
-fn tile_ui(ui: &Ui, palette: &Palette, rect: Rect, (picture, is_sign): (&HandPicture, bool)) {
-    let tile = Tile {
-        side: picture.side,
-        shares: picture.actual.map(|share| share.map(Float::ord)),
-        size: [rect.width().ord(), rect.height().ord()],
-        theme: palette.theme,
-        feather: (1.0 / ui.pixels_per_point()).ord(),
-        is_sign,
-    };
-    type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
-    let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(tile)));
-    let mut mesh = Mesh::clone(&mesh);
-    mesh.translate(rect.min.to_vec2());
-    ui.painter().with_clip_rect(rect).add(mesh);
+/// Draws a pose that is to be told from others at the size of a button: from where its fingers are seen best, those that matter
+/// in colour.
+pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    let pose = Tile::new(ui, look, rect, shares);
+    let is_sign = true;
+    Tile { is_sign, ..pose }.paint(ui, rect);
 }
 
 /// What a tile shows, and how.
@@ -80,6 +69,27 @@ struct Tile {
     theme: Theme,
     feather: OrderedFloat<f32>,
     is_sign: bool,
+}
+
+impl Tile {
+    fn new(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) -> Self {
+        Self {
+            side: look.side,
+            shares: shares.map(|share| share.map(Float::ord)),
+            size: [rect.width().ord(), rect.height().ord()],
+            theme: look.palette.theme,
+            feather: (1.0 / ui.pixels_per_point()).ord(),
+            is_sign: false,
+        }
+    }
+
+    fn paint(self, ui: &Ui, rect: Rect) {
+        type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
+        let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(self)));
+        let mut mesh = Mesh::clone(&mesh);
+        mesh.translate(rect.min.to_vec2());
+        ui.painter().with_clip_rect(rect).add(mesh);
+    }
 }
 
 #[derive(Default)]

@@ -98,7 +98,7 @@ impl JointsView {
             self.each = Some(!each);
         }
         age_ui(ui, pane);
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let live =
             pane.freshness(hand.readings.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
         // A first look must find what comes before moving; the header says why it cannot be armed.
@@ -118,13 +118,7 @@ impl JointsView {
 /// How old the angles are, where they are not live.
 pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane
-        .state
-        .hand()
-        .readings
-        .sample
-        .angle
-        .map(|angle| angle.asked);
+    let asked = pane.hand().readings.sample.angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),

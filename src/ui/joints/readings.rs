@@ -34,7 +34,7 @@ impl JointRow {
 
     fn angle_in_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, unit: AngleUnit) {
         let palette = pane.look.palette;
-        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
+        let (angle, freshness) = pane.newest(self.dof, pane.hand().readings.sample.angle);
         let documented = angle.and_then(|angle| angle.documented());
         let text = match unit {
             AngleUnit::Raw => format::whole(angle.map(|angle| i64::from(angle.raw())), 4),
@@ -53,7 +53,7 @@ impl JointRow {
 
     pub(crate) fn force_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let palette = pane.look.palette;
-        let (force, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.force);
+        let (force, freshness) = pane.newest(self.dof, pane.hand().readings.sample.force);
         let odd = force.is_some_and(|force| force.documented().is_none());
         let live = if odd { palette.warn } else { palette.text };
         let raw = force.map(|force| i64::from(force.raw()));
@@ -66,9 +66,8 @@ impl JointRow {
     /// Current and temperature, in another colour where the drive is warm or hot.
     pub(crate) fn drive_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
-        let (current, current_age) =
-            pane.newest(self.dof, pane.state.hand().readings.sample.current);
-        let (heat, heat_age) = pane.newest(self.dof, pane.state.hand().readings.sample.temperature);
+        let (current, current_age) = pane.newest(self.dof, pane.hand().readings.sample.current);
+        let (heat, heat_age) = pane.newest(self.dof, pane.hand().readings.sample.temperature);
         let raw = current.map(|current| i64::from(current.raw()));
         let milliamps = format::with_unit(raw, 4, Quantity::Current.row().unit);
         let degrees = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);

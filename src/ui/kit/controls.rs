@@ -1,16 +1,17 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::app::action::Action;
-use crate::ui::kit::pane::Pane;
+use crate::ui::kit::pane::{Pane, ViewRequest};
 use crate::ui::style::Look;
 use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
-    PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TouchPhase, Ui,
-    Vec2, WidgetInfo, vec2,
+    PointerButton, Pos2, ProgressBar, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
+    TouchPhase, Ui, Vec2, WidgetInfo, vec2,
 };
+use egui_extras::TableRow;
 
 /// Seconds for which a press on what cannot be pressed is answered.
 const TOLD_S: f32 = 3.0;
@@ -66,6 +67,11 @@ impl<'a> Label<'a> {
         self.font(theme::small())
     }
 
+    /// As the title of what is below it.
+    pub(crate) fn title(self) -> Self {
+        self.font(theme::title())
+    }
+
     /// With digits of one width.
     pub(crate) fn number(self) -> Self {
         self.font(theme::number())
@@ -105,10 +111,19 @@ impl<'a> Label<'a> {
             label.truncate()
         });
         if let Some(name) = self.name {
-            ui.ctx()
-                .accesskit_node_builder(response.id, |node| node.set_label(name));
+            rename(&response, name);
         }
         response
+    }
+
+    /// Draws it in a place of this width in a row.
+    pub(crate) fn cell_ui(self, ui: &mut Ui, width: f32) -> Response {
+        cell_ui(ui, vec2(width, theme::CONTROL), |ui| self.ui(ui))
+    }
+
+    /// Draws it in the next column of a table's row.
+    pub(crate) fn column_ui(self, row: &mut TableRow<'_, '_>) {
+        row.col(|ui| drop(self.ui(ui)));
     }
 
     /// Draws it.
@@ -120,9 +135,7 @@ impl<'a> Label<'a> {
         let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
-            ui.ctx().accesskit_node_builder(response.id, |node| {
-                node.set_label(name);
-            });
+            rename(&response, name);
         }
         if elided {
             response = response.on_hover_text(self.text);
@@ -140,6 +153,22 @@ impl<'a> Label<'a> {
         let at = self.align.align_size_within_rect(galley.size(), rect).min;
         ui.painter().galley(at, galley, self.color);
         elided
+    }
+}
+
+/// Lets a screen reader call something else than what it says.
+pub(crate) fn rename(response: &Response, name: &str) {
+    response
+        .ctx
+        .accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// What can be clicked if that is so.
+pub(crate) fn click_if(enabled: bool) -> Sense {
+    if enabled {
+        Sense::click()
+    } else {
+        Sense::hover()
     }
 }
 
@@ -291,6 +320,18 @@ impl<'a> Button<'a> {
         }
     }
 
+    /// Draws it, and opens something when it is pressed.
+    pub(crate) fn opens(self, ui: &mut Ui, pane: &mut Pane<'_>, opens: ViewRequest) {
+        if self.ui(ui, pane.look).clicked() {
+            pane.open(opens);
+        }
+    }
+
+    /// Draws it, and turns something on or off when it is pressed.
+    pub(crate) fn flips(self, ui: &mut Ui, look: Look, on: &mut bool) {
+        *on ^= self.ui(ui, look).clicked();
+    }
+
     const fn font(&self) -> FontId {
         match self.weight {
             Weight::Stop => theme::large(),
@@ -338,12 +379,7 @@ impl<'a> Button<'a> {
     /// The button without its text, for those that paint their own.
     pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let enabled = self.disabled.is_none() && ui.is_enabled();
-        let sense = if enabled {
-            Sense::click()
-        } else {
-            Sense::hover()
-        };
-        let response = ui.interact(rect, id, sense);
+        let response = ui.interact(rect, id, click_if(enabled));
         let name = self.name.unwrap_or(self.text);
         response.widget_info(|| match self.selected {
             Some(selected) => WidgetInfo::selected(Role::Button, enabled, selected, name),
@@ -537,11 +573,10 @@ pub(crate) fn head_ui<R>(
     row.inner
 }
 
-/// A line of text that counts as it is typed.
-pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String) -> Response {
+/// A line of text that counts as it is typed: what a screen reader says, and what is shown while it is empty.
+pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
-        .align(Align2::LEFT_CENTER)
         .char_limit(EDIT_MAX)
         .margin(theme::FIELD_INSET)
         .align(Align2::LEFT_CENTER)
@@ -549,6 +584,11 @@ pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String
     let response = ui.add(edit);
     named_field(&response, name, true, text);
     response
+}
+
+/// The same with a name and a hint in the window's language.
+pub(crate) fn edit_said_ui(ui: &mut Ui, look: Look, said: Text, text: &mut String) -> Response {
+    edit_ui(ui, look.say(said), look.tip(said), text)
 }
 
 /// A panel of one size without a border, with this room left free around what is in it.
@@ -587,6 +627,19 @@ pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R
     cell.inner
 }
 
+/// How much of a whole is done.
+pub(crate) fn share(done: usize, total: usize) -> f32 {
+    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
+    count(done) / count(total.max(1))
+}
+
+/// How much is done, as a bar that has a name.
+pub(crate) fn progress_ui(ui: &mut Ui, look: Look, name: &str, share: f32) {
+    let bar = ProgressBar::new(share).desired_height(6.0);
+    let bar = ui.add(bar.fill(look.palette.accent));
+    bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
+}
+
 /// Small words that wrap.
 pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
     Label::new(text, color).small().wrap().ui(ui)
@@ -601,23 +654,47 @@ pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: 
     });
 }
 
-/// A button for each value, of which one is chosen; `tip` explains those whose text has none. True if another was chosen.
-pub(crate) fn pick_ui<T: Copy + PartialEq>(
-    ui: &mut Ui,
+/// A button for each of several values, of which one is chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pick {
     look: Look,
-    (chosen, tip): (&mut T, Text),
-    all: impl IntoIterator<Item = (T, Text)>,
-) -> bool {
-    let before = *chosen;
-    for (value, text) in all {
-        let own = look.tip(text);
-        let tip = if own.is_empty() { look.say(tip) } else { own };
-        let button = Button::new(look.say(text), tip).choice(before == value);
-        if button.ui(ui, look).clicked() {
-            *chosen = value;
-        }
+    tip: Text,
+}
+
+impl Pick {
+    /// `tip` explains those whose text has none.
+    pub(crate) const fn new(look: Look, tip: Text) -> Self {
+        Self { look, tip }
     }
-    before != *chosen
+
+    /// Draws the buttons; true if another was chosen.
+    pub(crate) fn ui<T: Copy + PartialEq>(
+        self,
+        ui: &mut Ui,
+        chosen: &mut T,
+        all: impl IntoIterator<Item = (T, Text)>,
+    ) -> bool {
+        let (look, before) = (self.look, *chosen);
+        for (value, text) in all {
+            let own = look.tip(text);
+            let tip = if own.is_empty() {
+                look.say(self.tip)
+            } else {
+                own
+            };
+            let button = Button::new(look.say(text), tip).choice(before == value);
+            if button.ui(ui, look).clicked() {
+                *chosen = value;
+            }
+        }
+        before != *chosen
+    }
+}
+
+/// A tick with what it stands for; true if it was changed.
+pub(crate) fn tick_ui(ui: &mut Ui, look: Look, text: Text, on: &mut bool) -> bool {
+    let tick = ui.checkbox(on, look.say(text));
+    tick.on_hover_text(look.tip(text)).changed()
 }
 
 /// One of several, from a list that opens; true if another one was chosen.
@@ -636,9 +713,7 @@ pub(crate) fn choose_ui<T: Clone + PartialEq>(
                 ui.selectable_value(chosen, value.clone(), *text);
             }
         });
-    ui.ctx().accesskit_node_builder(shown.response.id, |node| {
-        node.set_label(name);
-    });
+    rename(&shown.response, name);
     *chosen != before
 }
 

@@ -20,6 +20,13 @@ const TYPED_MAX: usize = 8;
 /// What was read, or why it is none, in words.
 type Read<T> = Result<T, String>;
 
+/// Where a field is drawn, and whether what stands in it was refused.
+struct FieldPlace {
+    id: Id,
+    rect: Rect,
+    is_refused: bool,
+}
+
 /// What both kinds of fields have in common.
 #[derive(Debug, Clone, Copy)]
 struct Field<'a> {
@@ -63,7 +70,12 @@ impl Field<'_> {
         let typed = own.field.map(|(_, text)| text);
         let mut refused = own.refused;
         let mut text = typed.clone().unwrap_or_else(|| value.to_owned());
-        let response = self.edit_ui(ui, (pane.look, refused.is_some()), &mut text, (id, rect));
+        let place = FieldPlace {
+            id,
+            rect,
+            is_refused: refused.is_some(),
+        };
+        let response = self.edit_ui(ui, pane.look, &mut text, &place);
         let by_tab = ui.input(|input| input.key_pressed(Key::Tab));
         if (self.is_number || by_tab) && response.gained_focus() {
             select_all(ui, id, &text);
@@ -102,17 +114,11 @@ impl Field<'_> {
         new
     }
 
-    fn edit_ui(
-        self,
-        ui: &mut Ui,
-        (look, is_refused): (Look, bool),
-        text: &mut String,
-        (id, rect): (Id, Rect),
-    ) -> Response {
-        let palette = look.palette;
+    fn edit_ui(self, ui: &mut Ui, look: Look, text: &mut String, place: &FieldPlace) -> Response {
+        let (palette, rect) = (look.palette, place.rect);
         let enabled = self.disabled.is_none();
-        let has_focus = ui.memory(|memory| memory.has_focus(id));
-        let edge = match (is_refused, has_focus) {
+        let has_focus = ui.memory(|memory| memory.has_focus(place.id));
+        let edge = match (place.is_refused, has_focus) {
             (true, _) => palette.bad,
             (false, true) => palette.accent,
             (false, false) => palette.edge,
@@ -133,7 +139,7 @@ impl Field<'_> {
             .corner_radius(theme::ROUND_SMALL)
             .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(text)
-            .id(id)
+            .id(place.id)
             .font(font)
             .text_color(ink)
             .hint_text(self.hint)

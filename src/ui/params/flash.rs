@@ -34,7 +34,7 @@ pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let reason = hand.params.save_refusal(&hand.connection.status);
     let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
@@ -60,7 +60,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
 
 /// What is known, the newest first.
 fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
-    let (look, book) = (pane.look, &pane.state.hand().params);
+    let (look, book) = (pane.look, &pane.hand().params);
     let palette = look.palette;
     let mut lines = Vec::new();
     if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
@@ -119,7 +119,7 @@ pub(crate) fn moment(stamp: &str) -> String {
 
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let nothing = pane.state.hand().params.live_params().is_empty();
+    let nothing = pane.hand().params.live_params().is_empty();
     let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
         let dump = Button::said(look, device::DUMP);
@@ -128,7 +128,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             .on_click(ui, pane, Action::Param(ParamAction::Dump));
         open.on_click(ui, pane, Action::Param(ParamAction::Open(None)));
     });
-    if let Some(refused) = &pane.state.hand().params.file_refused {
+    if let Some(refused) = &pane.hand().params.file_refused {
         let words = notices::notice(look, refused);
         Label::new(&words, look.palette.warn).small().wrap().ui(ui);
         if let Some(path) = path_ui(ui, look, "parameters") {
@@ -138,7 +138,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     let title = Label::said(look, device::BACKUPS);
     title.font(theme::title()).ui(ui);
-    let backups = &pane.state.hand().params.backups;
+    let backups = &pane.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
     let area = ScrollArea::vertical().auto_shrink(false).max_height(most);
     let area = area.id_salt("backups").min_scrolled_height(0.0);
@@ -187,7 +187,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
 /// The buttons of what is done to a hand only under a card. Each opens its card and does nothing else.
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let live = pane.state.hand().connection.status.state.is_live();
+    let live = pane.hand().connection.status.state.is_live();
     for (text, action) in [
         (cards::RESET_ENTRY, Action::FactoryReset),
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),

@@ -34,7 +34,7 @@ impl DeviceView {
         flash.show(ui, |ui| flash::flash_ui(ui, pane));
         kit::card_ui(ui, pane.look, |ui| {
             ui.set_min_height(ui.available_height());
-            if let Some(compared) = &pane.state.hand().params.compared {
+            if let Some(compared) = &pane.hand().params.compared {
                 return file::file_ui(ui, pane, compared);
             }
             ui.horizontal(|ui| self.find_ui(ui, pane));
@@ -50,29 +50,26 @@ impl DeviceView {
         let look = pane.look;
         ui.scope(|ui| {
             ui.set_max_width(200.0);
-            kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
+            kit::edit_said_ui(ui, look, device::FIND, &mut self.shown.words);
         });
         kit::right_ui(ui, |ui| {
             let refusal = pane
-                .state
                 .hand()
                 .params
-                .read_refusal(&pane.state.hand().connection.status);
+                .read_refusal(&pane.hand().connection.status);
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
             read.disabled(refusal)
                 .on_click(ui, pane, Action::Param(ParamAction::Read));
-            let only = Button::said(look, device::ONLY);
-            if only.choice(self.shown.only).ui(ui, look).clicked() {
-                self.shown.only = !self.shown.only;
-            }
+            let only = Button::said(look, device::ONLY).choice(self.shown.only);
+            only.flips(ui, look, &mut self.shown.only);
         });
     }
 }
 
 /// What is done with what is staged.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
     let apply = match hand.params.to_apply().iter().count() {
         0 => look.say(device::APPLY).to_owned(),
@@ -116,7 +113,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// What is going on, or how old it all is.
 fn status(pane: &Pane<'_>) -> (String, Color32) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let book = &hand.params;
     if let Some(doing) = device::doing(book.doing) {
         return (look.say(doing).into(), look.palette.accent);

@@ -3,7 +3,7 @@
 use crate::history::{History, Series, Trace};
 use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::plots::bars;
-use crate::ui::plots::scales::{self, Scales};
+use crate::ui::plots::scales::{self, ScaleAxis, Scales};
 use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
 use crate::ui::text::{Text, panels};
@@ -53,6 +53,12 @@ pub(crate) struct ChartCurve<'a> {
 }
 
 impl<'a> ChartCurve<'a> {
+    /// A plain line of what was measured.
+    pub(crate) fn measured(history: &'a History, series: Series, color: Color32) -> Self {
+        let stroke = Stroke::new(theme::LINE, color);
+        Self::new(Points::Measured(history, series), stroke)
+    }
+
     /// A plain line.
     pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
         Self {
@@ -76,6 +82,14 @@ impl<'a> ChartCurve<'a> {
                 pieces.map(|piece| (self, piece.as_slice())).collect()
             }
         }
+    }
+
+    /// True if a column of pixels holds more than one point of a piece.
+    fn is_dense(&self, piece: &[[f64; 2]], per_s: f64) -> bool {
+        let ends = piece.first().zip(piece.last());
+        let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
+        let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
+        self.style == LineStyle::Solid && count > columns + 2.0
     }
 
     fn line(&self, piece: &[[f64; 2]]) -> Line<'static> {
@@ -150,6 +164,16 @@ pub(crate) struct Chart<'a> {
     pub(crate) is_sparkline: bool,
 }
 
+/// Height of one of several charts over one axis of time, which the lowest has below it.
+pub(crate) const fn height_over_axis(height: f32, is_lowest: bool) -> f32 {
+    let axis = if is_lowest {
+        theme::PLOT_TIME_AXIS
+    } else {
+        0.0
+    };
+    height + axis
+}
+
 /// What was drawn, with the response of the numbers beside it.
 pub(crate) type ChartResponse = PlotResponse<Response>;
 
@@ -198,16 +222,19 @@ impl<'a> Chart<'a> {
         let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
         let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
         let per_s = f64::from(columns) / (to_s - from_s);
-        let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
+        let (dense, sparse): (Vec<_>, Vec<_>) =
+            pieces.partition(|(curve, piece)| curve.is_dense(piece, per_s));
         let marks = ui.input(|input| input.modifiers.shift);
         let is_fixed = view.scales.chosen(self.title).is_some();
-        let plot = self.plot(is_fixed).width(width);
-        let plot = plot.allow_drag([!marks, false]);
-        let plot = plot.boxed_zoom_pointer_button(if marks {
+        let boxes = if marks {
             PointerButton::Primary
         } else {
             PointerButton::Secondary
-        });
+        };
+        let plot = self.plot(is_fixed).width(width);
+        let plot = plot
+            .allow_drag([!marks, false])
+            .boxed_zoom_pointer_button(boxes);
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             self.items(plot);
@@ -245,8 +272,8 @@ impl<'a> Chart<'a> {
             hovered_plot_item: None,
         };
         if !self.is_sparkline {
-            let of = (self.title, aim);
-            view.scales.axis_ui(ui, &shown.inner, self.look, of);
+            let axis = ScaleAxis::new(self.title, aim, &shown.inner);
+            view.scales.axis_ui(ui, self.look, &axis);
         }
         view.act(ui, &shown, self.title, bounds);
         shown
@@ -391,8 +418,7 @@ impl<'a> Chart<'a> {
             look.say(self.title),
             look.say(panels::UNDER_POINTER)
         );
-        ui.ctx()
-            .accesskit_node_builder(response.id, |node| node.set_label(name));
+        kit::rename(&response, &name);
     }
 
     fn plot(&self, is_fixed: bool) -> Plot<'_> {
@@ -488,14 +514,6 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// True if a column of pixels holds more than one point.
-fn is_dense((curve, piece): (&ChartCurve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
-    let ends = piece.first().zip(piece.last());
-    let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
-    let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
-    curve.style == LineStyle::Solid && count > columns + 2.0
-}
-
 /// From a place to a piece of a line.
 fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
     let way = to - from;
@@ -504,6 +522,21 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 }
 
 impl ChartView {
+    /// Time went on to `now_s`: it is shown from where a history begins, so many seconds of it while it follows.
+    pub(crate) fn advance(&mut self, history: &History, now_s: f64, window_s: f64) {
+        let first_s = history.first_secs().unwrap_or(now_s);
+        self.time.advance((first_s.min(now_s), now_s), window_s);
+    }
+
+    /// How times are told: from now on backwards, unless the chart stands still.
+    pub(crate) fn times(&self, look: Look) -> Times {
+        if self.time.is_held() {
+            Times::Clock
+        } else {
+            Times::From(self.time.span().1, look.say(panels::NOW))
+        }
+    }
+
     /// The time that the pointer is at in one of the charts.
     pub(crate) fn pointed_s(&self) -> Option<f64> {
         let (from_s, to_s) = self.time.span();

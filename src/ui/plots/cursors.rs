@@ -34,7 +34,7 @@ pub(crate) struct Cursors(pub(crate) Option<[f64; 2]>);
 
 /// What two cursors say of one line: A, B, B - A, change a second, smallest, largest, mean; `None` = not known.
 fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64>; 7] {
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let read = |at_s| {
         history
             .reading(series, at_s)

@@ -78,7 +78,7 @@ impl DrivesPlace<'_> {
         let mark = bar.translate(vec2(-theme::STEP - BAR / 2.0, 0.0));
         let mark = mark.with_max_x(mark.left() + BAR);
         ui.painter().rect_filled(mark, 0.0, palette.dof[dof]);
-        let history = &pane.state.hand().measured.history;
+        let history = &pane.hand().measured.history;
         let (from_s, to_s) = self.span;
         let runs = history.status(dof, from_s, to_s).map(|run| {
             let fault = run.faults.and_then(|faults| faults.iter().next());
@@ -126,7 +126,7 @@ fn seen(
 /// What the drive of a joint said at a time, and since when.
 fn told(pane: &Pane<'_>, dof: Dof, at_s: f64) -> Option<String> {
     let look = pane.look;
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let run = history.status(dof, at_s, at_s).last()?;
     let lasted = Duration::from_secs_f64((run.until_s - run.from_s).max(0.0));
     let since = clock(run.from_s, 0.1);

@@ -115,6 +115,23 @@ struct SettledScale {
     roomy_since: Option<f64>,
 }
 
+/// The numbers beside a plot.
+pub(crate) struct ScaleAxis<'a> {
+    title: Text,
+    ends: (f64, f64),
+    response: &'a Response,
+}
+
+impl<'a> ScaleAxis<'a> {
+    pub(crate) const fn new(title: Text, ends: (f64, f64), response: &'a Response) -> Self {
+        Self {
+            title,
+            ends,
+            response,
+        }
+    }
+}
+
 /// The scales that the user chose; others follow their values.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
@@ -166,13 +183,8 @@ impl Scales {
     }
 
     /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
-    pub(crate) fn axis_ui(
-        &mut self,
-        ui: &Ui,
-        axis: &Response,
-        look: Look,
-        (title, (low, high)): (Text, (f64, f64)),
-    ) {
+    pub(crate) fn axis_ui(&mut self, ui: &Ui, look: Look, axis: &ScaleAxis<'_>) {
+        let (title, (low, high), axis) = (axis.title, axis.ends, axis.response);
         let per_point = (high - low) / f64::from(axis.rect.height().max(1.0));
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
         if axis.double_clicked() {

@@ -54,7 +54,7 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 /// Why no gap can be sent now, though the hand is armed.
 fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
     let closed = (!grip::is_open_for_pinch(hand)).then(|| look.say(poses::GAP_CLOSED));
     pane.unready().or(locked).or(closed)
@@ -62,7 +62,7 @@ fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
 
 /// Where the hand was sent, or is; the widest if it does not pinch.
 fn gap_now(pane: &Pane<'_>) -> Gap {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let targets = hand.controls.joints.map(|joint| joint.target).all();
     let sent = targets.map(|angles| angles.map(|angle: Angle| f32::from(angle.get())));
     let gap = [sent, grip::counts(hand)].into_iter().flatten();
@@ -73,9 +73,9 @@ fn gap_now(pane: &Pane<'_>) -> Gap {
 /// The gap: sent while the hand is armed, else shown on the drawn hand.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let is_armed = pane.state.hand().connection.is_armed();
+    let is_armed = pane.hand().connection.is_armed();
     let refused = refusal(pane);
-    let id = Id::unique(("gap in the drawer", pane.state.hand().label.slot));
+    let id = Id::unique(("gap in the drawer", pane.hand().label.slot));
     let wish = ui
         .data(|data| data.get_temp::<f32>(id))
         .filter(|_| !is_armed);
@@ -118,7 +118,7 @@ fn pose(look: Look, gap: Gap) -> LibraryPose {
 
 /// Before a gap can be sent: that the hand is not armed, or the button that opens it.
 fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     if !is_armed {
         Label::note(look, poses::GAP_WISH).wrap().ui(ui);
     } else if !grip::is_open_for_pinch(hand) {
@@ -152,7 +152,7 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             pane.actions.push(Action::MeasureBlock(size_mm as f32));
         }
     });
-    let endpoint = pane.state.hand().connection.endpoint.as_ref();
+    let endpoint = pane.hand().connection.endpoint.as_ref();
     let blocks = pane.state.settings.size_blocks(endpoint);
     let sizes = blocks.blocks().iter();
     let sizes: Vec<String> = sizes.map(|own| format!("{} mm", own.size_mm)).collect();

@@ -11,15 +11,15 @@ use crate::app::action::Action;
 use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, PoseId};
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Pane, Pick, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, for_all_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
-use egui::{ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,8 +79,8 @@ impl PoseView {
     /// The sections, and what is done with all poses.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let sections = (&mut self.section, poses::SECTION_TIP);
-        kit::pick_ui(ui, look, sections, PoseSection::ALL);
+        let sections = Pick::new(look, poses::SECTION_TIP);
+        sections.ui(ui, &mut self.section, PoseSection::ALL);
         if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
             kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
@@ -97,7 +97,7 @@ impl PoseView {
             capture_ui(ui, pane, capture.weight(Weight::Strong));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
-                kit::edit_ui(ui, look.both(poses::FIND), &mut self.find);
+                kit::edit_said_ui(ui, look, poses::FIND, &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
@@ -129,8 +129,11 @@ impl PoseView {
                 ui.spacing_mut().item_spacing = vec2(gap, theme::GAP);
                 for (index, (_, pose)) in shown.iter().enumerate() {
                     let (id, place) = ui.allocate_space(vec2(width, 158.0));
-                    let moved = self.order.place(ui, pane.look, place, (index, id));
-                    if tile_ui(ui, place, pane, (pose, self.chosen == Some(pose.id))) {
+                    let moved = self.order.place(ui, pane.look, index, (id, place));
+                    let tile = UiBuilder::new().id_salt(pose.id).max_rect(place);
+                    let tile = tile.layout(Layout::top_down_justified(Align::Min));
+                    let is_chosen = self.chosen == Some(pose.id);
+                    if tile_ui(&mut ui.new_child(tile), pane, pose, is_chosen) {
                         self.chosen = Some(pose.id);
                     }
                     let Some((from, to)) = moved else { continue };
@@ -181,7 +184,7 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.add_space(ui.available_height() * 0.2);
         let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
         let open = PerDof::splat(Some(1.0));
-        panel::pose_ui(ui, look, picture, &open);
+        tile::pose_ui(ui, look, picture, &open);
         let title = Label::said(look, poses::EMPTY_TITLE);
         title.font(theme::title()).ui(ui);
         Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);

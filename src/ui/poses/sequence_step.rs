@@ -7,7 +7,7 @@ use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{
     EntryId, Millis, Retries, Sequence, SequenceStep, StepGoal, UntilHolding,
 };
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, main, poses};
@@ -33,18 +33,16 @@ pub(crate) fn step_now(pane: &Pane<'_>, sequence: &Sequence) -> Option<usize> {
     if let Some(preview) = preview.filter(|own| own.sequence == sequence.id) {
         return Some(preview.at(pane.state.now).step);
     }
-    let run = pane.state.hand().sequence.as_ref();
+    let run = pane.hand().sequence.as_ref();
     let run = run.filter(|run| run.entry == EntryId::Sequence(sequence.id))?;
     run.is_running().then_some(run.view.at)
 }
 
 /// Draws the row of one step.
-pub(crate) fn step_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    sequence: &Sequence,
-    (at, step): (usize, &SequenceStep),
-) {
+pub(crate) fn step_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
+    let Some(step) = sequence.steps.get(at) else {
+        return;
+    };
     let look = pane.look;
     let place = ui.max_rect();
     let fill = if step_now(pane, sequence) == Some(at) {
@@ -70,7 +68,7 @@ pub(crate) fn step_ui(
     until_ui(&mut top, look, at, &mut new);
     numbers_ui(&mut bottom, pane, at, &mut new);
     if let Some((name, angles)) = shown(pane, step.goal) {
-        panel::sign_ui(ui, look, picture, &shares(&angles));
+        tile::sign_ui(ui, look, picture, &shares(&angles));
         kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &name));
     }
     if new != *step {

@@ -7,7 +7,7 @@ use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_ui};
 use crate::ui::text::{panels, poses};
@@ -96,12 +96,12 @@ impl SequenceView {
             .max_height(most)
             .min_scrolled_height(0.0);
         area.show(ui, |ui| {
-            for (at, step) in sequence.steps.iter().enumerate() {
+            for at in 0..sequence.steps.len() {
                 let width = ui.available_width() - theme::GAP;
                 let (id, place) = ui.allocate_space(vec2(width, ROW));
-                let moved = self.order.place(ui, pane.look, place, (at, id));
+                let moved = self.order.place(ui, pane.look, at, (id, place));
                 let builder = UiBuilder::new().max_rect(place).id_salt((sequence.id, at));
-                step_ui(&mut ui.new_child(builder), pane, sequence, (at, step));
+                step_ui(&mut ui.new_child(builder), pane, sequence, at);
                 if let Some((from, to)) = moved {
                     change(pane, sequence, SequenceEdit::Move(from, to));
                 }
@@ -189,7 +189,7 @@ fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
     ui.painter()
         .rect_filled(rect, theme::ROUND, look.palette.sunken);
-    panel::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
+    tile::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
 }
 
 fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, egui::Color32) {
@@ -198,7 +198,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     if let Some(step) = dry {
         return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
-    let run = pane.state.hand().sequence.as_ref();
+    let run = pane.hand().sequence.as_ref();
     let Some(run) = run.filter(|run| run.entry == EntryId::Sequence(sequence.id)) else {
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
@@ -233,7 +233,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
 fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let id = sequence.id;
-    let own = pane.state.hand().sequence.as_ref();
+    let own = pane.hand().sequence.as_ref();
     let own = own.filter(|run| run.entry == EntryId::Sequence(id));
     let running = own.is_some_and(|run| run.is_running());
     let paused = own.is_some_and(|run| run.is_paused());

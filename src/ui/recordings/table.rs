@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, RecordingItem};
 use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{Button, Label, Look, Pane, TextField, ViewRequest, Weight, format};
 use crate::ui::plots::times::length;
 use crate::ui::recordings::marks;
@@ -355,7 +355,7 @@ fn moment_ui(ui: &mut Ui, look: Look, item: &RecordingItem, part: f64) {
     if let Some(pose) = item.poses.get(column) {
         let (_, place) = ui.allocate_space(HAND);
         let shares = PerDof::from_fn(|dof| pose[dof].map(|angle| f32::from(angle) / 1000.0));
-        panel::pose_ui(ui, look, place, &shares);
+        tile::pose_ui(ui, look, place, &shares);
     }
     let at = item.moment(part);
     let force = item.strip.get(column).filter(|force| force.is_finite());

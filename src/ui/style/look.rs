@@ -60,11 +60,6 @@ impl Look {
         }
     }
 
-    /// The name of a control and its tooltip or hint in the window's language.
-    pub(crate) const fn both(self, text: Text) -> (&'static str, &'static str) {
-        (self.say(text), self.tip(text))
-    }
-
     /// The tooltip of a control in the window's language.
     pub(crate) const fn tip(self, text: Text) -> &'static str {
         self.say(text.tip())

@@ -7,7 +7,7 @@ use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
 use crate::ui::joints::track::SlideTrack;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView};
 use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
@@ -53,7 +53,7 @@ impl TipDetail {
     /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
     pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
         for finger in Finger::ALL {
-            let block = pane.state.hand().readings.sample.tactile[finger];
+            let block = pane.hand().readings.sample.tactile[finger];
             let live = pane.tip_freshness(finger) == Freshness::Live;
             let block = block.filter(|_| live).map(|block| block.value);
             self.holds[finger] =
@@ -95,7 +95,7 @@ impl TipDetail {
     }
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
-        let block = pane.state.hand().readings.sample.tactile[self.finger].as_ref();
+        let block = pane.hand().readings.sample.tactile[self.finger].as_ref();
         let freshness = pane.tip_freshness(self.finger);
         (block.map(|block| &block.value), freshness)
     }
@@ -211,7 +211,7 @@ impl TipDetail {
 
     fn forces_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let history = &pane.state.hand().measured.history;
+        let history = &pane.hand().measured.history;
         let own = look.palette.dof[self.finger.bend()];
         let lines = [
             (Touch::Normal, panels::TIP_NORMAL, own),
@@ -224,14 +224,10 @@ impl TipDetail {
         };
         legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
-        let first = history.first_secs().unwrap_or(now);
-        self.chart.time.advance((first.min(now), now), 10.0);
-        let curve = |(touch, _, color): (Touch, Text, Color32)| {
-            let points = Points::Measured(history, Series::Tip(touch, self.finger));
-            ChartCurve {
-                told: Some(2),
-                ..ChartCurve::new(points, Stroke::new(theme::LINE, color))
-            }
+        self.chart.advance(history, now, 10.0);
+        let curve = |(touch, _, color): (Touch, Text, Color32)| ChartCurve {
+            told: Some(2),
+            ..ChartCurve::measured(history, Series::Tip(touch, self.finger), color)
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),

@@ -32,7 +32,7 @@ impl<'a> Promotion<'a> {
         for (id, value) in settings.flat_map(|(dof, setting)| defaults(dof, setting)) {
             values.put(id, value);
         }
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let refusal = hand
             .params
             .save_refusal_with(&values, &hand.connection.status);
@@ -58,7 +58,7 @@ impl<'a> Promotion<'a> {
     /// Whether they are kept, and why they cannot be.
     pub(crate) fn end_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
-        let book = &pane.state.hand().params;
+        let book = &pane.hand().params;
         let is_held =
             !self.values.is_empty() && book.live_params().with(&self.values) == book.live_params();
         if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {

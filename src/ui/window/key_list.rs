@@ -3,7 +3,7 @@
 use crate::ui::kit::{self, Button, Label, Look, Weight};
 use crate::ui::text::{Text, main, window};
 use crate::ui::theme;
-use crate::ui::window::keys::{ROWS, Wish, ZOOM};
+use crate::ui::window::keys::{COMMAND_NAME, ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
 
 /// The list, shown or not.
@@ -81,7 +81,7 @@ fn rows(group: Text) -> Vec<(String, Text)> {
         rows.push(("Shift+F".to_owned(), window::KEY_ENTRY));
     }
     if group == window::KEY_WINDOW {
-        rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
+        rows.extend(ZOOM.map(|(key, words)| (format!("{COMMAND_NAME}+{key}"), words)));
     }
     rows
 }

@@ -5,7 +5,6 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::hands::action::HandsAction;
 use crate::app::layout::RoomLayouts;
-use crate::app::recordings::RecordingAction;
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
 use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
@@ -13,6 +12,7 @@ use crate::ui::plots::head::span_text;
 use crate::ui::text::{Text, exhibit, inputs, panels, window};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
+use crate::ui::window::header::record_or_not;
 use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
 use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
@@ -106,7 +106,7 @@ impl CommandPalette {
             .constrain_to(place);
         let shown = window.show(ui.ctx(), |ui| {
             ui.set_width((place.width() - 4.0 * theme::PAD).min(WIDTH));
-            query.ui(ui, (look, unready), &found)
+            query.ui(ui, look, unready, &found)
         })?;
         let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
         let entered = entered.filter(|listed| unready.is_none() || !listed.command.needs_arming());
@@ -128,11 +128,11 @@ impl Query {
     fn ui(
         &mut self,
         ui: &mut Ui,
-        (look, unready): (Look, Option<&str>),
+        look: Look,
+        unready: Option<&str>,
         found: &[Listed],
     ) -> Option<Command> {
-        let (name, hint) = look.both(window::COMMANDS);
-        let field = kit::edit_ui(ui, (name, hint), &mut self.text);
+        let field = kit::edit_said_ui(ui, look, window::COMMANDS, &mut self.text);
         field.request_focus();
         if field.changed() {
             self.chosen = 0;
@@ -192,41 +192,28 @@ const fn name(wish: Wish) -> Text {
 /// What has no key: settings of the window, recording, exhibitions. None of it moves a hand.
 fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
     let settings = &pane.state.settings;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let lay_out = |rooms| Action::Layout(pane.layout(ui, rooms));
-    let record = hand.recording.is_none();
-    let record = if hand.connection.is_simulated() {
-        RecordingAction::RecordSimulated(record)
-    } else {
-        RecordingAction::Record(record)
-    };
     let hold_to_run = Action::HoldToRun(!settings.hold_to_run);
     let disarm_idle = Action::DisarmIdle(!settings.disarm_idle);
+    let enter_file = Action::Exhibit(ExhibitAction::EnterFile);
     let mut acts = vec![
         (window::RESET, "", lay_out(RoomLayouts::default())),
         (inputs::HOLD_TO_RUN, "", hold_to_run),
         (inputs::DISARM_IDLE, "", disarm_idle),
         (exhibit::ENTER, "", Action::Exhibit(ExhibitAction::Enter)),
-        (
-            exhibit::ENTER_FILE,
-            "",
-            Action::Exhibit(ExhibitAction::EnterFile),
-        ),
+        (exhibit::ENTER_FILE, "", enter_file),
     ];
     let is_new = |span: &PlotWindow| *span != settings.plot_window;
-    let spans = PlotWindow::ALL.into_iter().filter(is_new);
-    acts.extend(spans.map(|span| {
-        (
-            panels::WINDOW_NAME,
-            span_text(span),
-            Action::PlotWindow(span),
-        )
-    }));
+    for span in PlotWindow::ALL.into_iter().filter(is_new) {
+        let action = Action::PlotWindow(span);
+        acts.push((panels::WINDOW_NAME, span_text(span), action));
+    }
     if pane.state.hands.has_room() {
         acts.push((window::ADD_HAND, "", Action::Hands(HandsAction::Add)));
     }
     if pane.recorded().is_none() {
-        acts.push((window::RECORD, "", Action::Recording(record)));
+        acts.push((window::RECORD, "", record_or_not(hand)));
         if hand.readings.faults.nothing_to_clear().is_none() {
             acts.push((panels::CLEAR, "", Action::ClearErrors));
         }

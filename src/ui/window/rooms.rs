@@ -13,6 +13,7 @@ use egui::{Frame, Panel, Popup, Ui};
 /// How large a room is, points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RoomSize {
+    pub(crate) room: WindowRoom,
     /// As it first opens.
     pub(crate) designed: f32,
     /// What it needs.
@@ -58,9 +59,10 @@ impl Rooms {
         &self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        (room, size): (WindowRoom, RoomSize),
+        size: RoomSize,
         add: impl FnOnce(&mut Ui, &mut Pane<'_>),
     ) {
+        let room = size.room;
         let is_upright = room != WindowRoom::Strip;
         let extent = along(ui.available_size(), is_upright);
         let standing = self.layouts.room(room);

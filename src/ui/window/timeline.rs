@@ -7,7 +7,7 @@ use crate::record::EventKind;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
 use crate::ui::recordings::marks::{clock, shown};
 use crate::ui::recordings::{beside, strip};
-use crate::ui::text::{Text, panels, recordings};
+use crate::ui::text::{panels, recordings};
 use crate::ui::theme;
 use egui::{
     Color32, Event, PointerButton, Popup, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
@@ -52,21 +52,26 @@ fn recording(pane: &mut Pane<'_>, action: RecordingAction) {
 
 fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
-    let icon = |text: Text, icon| Button::said(look, text).icon(icon);
-    let back = icon(recordings::STEP_BACK, theme::TO_LEFT);
-    back.on_click(ui, pane, Action::Recording(RecordingAction::Step(false)));
-    let run = if line.runs {
-        icon(recordings::PAUSE, theme::PAUSE)
-    } else {
-        icon(recordings::RUN, theme::PLAY)
+    let (run, run_icon) = match line.runs {
+        true => (recordings::PAUSE, theme::PAUSE),
+        false => (recordings::RUN, theme::PLAY),
     };
-    run.on_click(
-        ui,
-        pane,
-        Action::Recording(RecordingAction::Run(!line.runs)),
-    );
-    let on = icon(recordings::STEP_ON, theme::TO_RIGHT);
-    on.on_click(ui, pane, Action::Recording(RecordingAction::Step(true)));
+    for (text, icon, action) in [
+        (
+            recordings::STEP_BACK,
+            theme::TO_LEFT,
+            RecordingAction::Step(false),
+        ),
+        (run, run_icon, RecordingAction::Run(!line.runs)),
+        (
+            recordings::STEP_ON,
+            theme::TO_RIGHT,
+            RecordingAction::Step(true),
+        ),
+    ] {
+        let button = Button::said(look, text).icon(icon);
+        button.on_click(ui, pane, Action::Recording(action));
+    }
     let mut pace = line.pace;
     let name = look.say(recordings::PACE);
     ui.scope(|ui| {
@@ -91,9 +96,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     marks_ui(ui, pane, line);
     beside::beside_ui(ui, pane, line);
     let note = Button::said(look, recordings::NOTE_HERE);
-    if note.ui(ui, look).clicked() {
-        pane.open(kit::ViewRequest::Note);
-    }
+    note.opens(ui, pane, kit::ViewRequest::Note);
     if line.damaged {
         kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(recordings::DAMAGED));
     }
