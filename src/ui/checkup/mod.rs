@@ -30,8 +30,7 @@ impl CheckupView {
         let look = pane.look;
         let width = (ui.available_width() * 0.22).clamp(232.0, 300.0);
         kit::bare(Panel::left("checkup"), width, theme::GAP_RIGHT).show(ui, |ui| {
-            kit::card_ui(ui, look, |ui| {
-                ui.set_min_height(ui.available_height());
+            kit::full_card_ui(ui, look, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
                 kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
                 match &pane.hand().checkup.run {

@@ -24,8 +24,7 @@ impl ReportView {
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, state) = (pane.look, pane.state);
         let own = &state.hand().checkup;
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             if let Some(recorded) = pane.recorded() {
                 kit::say_ui(ui, recorded, look.palette.muted);
                 return;

@@ -211,11 +211,10 @@ fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     let chosen = ui.horizontal(|ui| {
         let label = Label::new(caption, look.palette.muted).ui(ui);
         label.on_hover_text(look.say(panels::FIRST_TIP));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        kit::right_ui(ui, |ui| {
             ui.spacing_mut().combo_width = 120.0;
             kit::choose_ui(ui, caption, &mut first, &all)
         })
-        .inner
     });
     chosen.inner.then_some(first)
 }

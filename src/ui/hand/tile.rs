@@ -8,11 +8,12 @@ use crate::ui::hand::light::Light;
 use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, TURN, draw, fade_out};
-use crate::ui::kit::Look;
+use crate::ui::kit::{Label, Look};
+use crate::ui::text::Text;
 use crate::ui::theme::Palette;
 use egui::cache::{ComputerMut, FrameCache};
 use egui::emath::{Float, OrderedFloat};
-use egui::{Mesh, Pos2, Rect, Ui};
+use egui::{Mesh, Pos2, Rect, Ui, vec2};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -58,6 +59,14 @@ pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f3
     let pose = Tile::new(ui, look, rect, shares);
     let is_sign = true;
     Tile { is_sign, ..pose }.paint(ui, rect);
+}
+
+/// Where there is no pose yet: an open hand so far as this, and a title.
+pub(crate) fn empty_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
+    ui.add_space(ui.available_height() * 0.2);
+    let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
+    pose_ui(ui, look, picture, &PerDof::splat(Some(share)));
+    Label::said(look, title).title().ui(ui);
 }
 
 /// What a tile shows, and how.

@@ -66,8 +66,7 @@ impl HandColumn {
     fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, at: usize, hand: &Hand) {
         let look = pane.look;
         let words = HandWords::of(look, at, hand, pane.state.now);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             let title = format!("{}  {}", words.number, words.name);
             let [_, side] = words.side;
             kit::head_ui(ui, look, &title, |ui| Label::note(look, side).ui(ui));

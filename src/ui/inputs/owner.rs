@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
-use crate::ui::text::{Text, inputs, words};
+use crate::ui::text::{inputs, words};
 use crate::ui::theme;
 use egui::Ui;
 
@@ -79,16 +79,6 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-const fn phase(phase: FollowPhase) -> Text {
-    match phase {
-        FollowPhase::Waiting => inputs::PHASE_WAITING,
-        FollowPhase::Following => inputs::PHASE_FOLLOWING,
-        FollowPhase::Frozen => inputs::PHASE_FROZEN,
-        FollowPhase::Silent => inputs::PHASE_SILENT,
-        FollowPhase::Released => inputs::PHASE_RELEASED,
-    }
-}
-
 /// Who moves the hand from outside, with name and rate, for every view.
 pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let look = pane.look;
@@ -123,7 +113,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     };
     match view {
         Some(view) if view.phase != FollowPhase::Following => {
-            format!("{words} · {}", look.say(phase(view.phase)))
+            format!("{words} · {}", look.say(inputs::phase(view.phase)))
         }
         _ => words,
     }

@@ -14,8 +14,7 @@ use egui::{Align, Frame, Layout, Ui, vec2};
 /// Draws the rail. Where joints can be set, its head opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
-    kit::card_ui(ui, look, |ui| {
-        ui.set_min_height(ui.available_height());
+    kit::full_card_ui(ui, look, |ui| {
         let title = look.say(main::JOINTS);
         if can_open {
             let name = look.told(window::OPEN, title);

@@ -56,7 +56,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
     room.below += u32::from(below.clicked());
     let card = room.card.clone();
     let asked = room.cards.ui(ui, body, card);
-    if !asked.is_empty() {
+    if asked.is_some() {
         room.card = None;
     }
     room.asked.extend(asked);

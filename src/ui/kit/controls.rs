@@ -8,10 +8,10 @@ use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
-    PointerButton, Pos2, ProgressBar, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind,
-    TouchPhase, Ui, Vec2, WidgetInfo, vec2,
+    PointerButton, Popup, PopupCloseBehavior, Pos2, ProgressBar, Rect, Response, RichText, Role,
+    Sense, Stroke, StrokeKind, TouchPhase, Ui, Vec2, WidgetInfo, vec2,
 };
-use egui_extras::TableRow;
+use egui_extras::{TableBuilder, TableRow};
 
 /// Seconds for which a press on what cannot be pressed is answered.
 const TOLD_S: f32 = 3.0;
@@ -243,6 +243,12 @@ impl<'a> Button<'a> {
     pub(crate) const fn tip(mut self, tip: &'a str) -> Self {
         self.tip = tip;
         self
+    }
+
+    /// The thing to do now, if that is so.
+    pub(crate) const fn strong_if(self, is_so: bool) -> Self {
+        let strong = Weight::Strong;
+        self.weight(if is_so { strong } else { Weight::Normal })
     }
 
     /// As high as what matters most.
@@ -556,6 +562,12 @@ pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// A table whose cells have what stands in them beside each other, in the middle of their height.
+pub(crate) fn table<'a>(ui: &'a mut Ui, id: impl egui::AsIdSalt) -> TableBuilder<'a> {
+    let row = Layout::left_to_right(Align::Center);
+    TableBuilder::new(ui).id_salt(id).cell_layout(row)
+}
+
 /// The title of a card, and what stands at the right end of its row, from right to left.
 pub(crate) fn head_ui<R>(
     ui: &mut Ui,
@@ -689,6 +701,17 @@ impl Pick {
         }
         before != *chosen
     }
+}
+
+/// A menu behind a button that stays open while something in it is pressed.
+pub(crate) fn drawer(button: &Response) -> Popup<'_> {
+    Popup::menu(button).close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+}
+
+/// An entry of a menu; true if it was pressed.
+pub(crate) fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
+    let button = ui.button(look.say(text));
+    button.on_hover_text(look.tip(text)).clicked()
 }
 
 /// A tick with what it stands for; true if it was changed.

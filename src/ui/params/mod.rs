@@ -11,7 +11,7 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::ParamRefusal;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::params::table::ShownRows;
 use crate::ui::text::{device, errors};
 use crate::ui::theme;
@@ -32,8 +32,7 @@ impl DeviceView {
             kit::bare(Panel::bottom("flash"), 172.0, theme::GAP_TOP)
         };
         flash.show(ui, |ui| flash::flash_ui(ui, pane));
-        kit::card_ui(ui, pane.look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, pane.look, |ui| {
             if let Some(compared) = &pane.hand().params.compared {
                 return file::file_ui(ui, pane, compared);
             }
@@ -53,10 +52,8 @@ impl DeviceView {
             kit::edit_said_ui(ui, look, device::FIND, &mut self.shown.words);
         });
         kit::right_ui(ui, |ui| {
-            let refusal = pane
-                .hand()
-                .params
-                .read_refusal(&pane.hand().connection.status);
+            let hand = pane.hand();
+            let refusal = hand.params.read_refusal(&hand.connection.status);
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
             read.disabled(refusal)
@@ -80,27 +77,18 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let is_known =
         hand.readings.sample.speed_set.is_some() && hand.connection.status.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
-    let weight = match hand.params.apply_refusal(&hand.connection.status) {
-        None => Weight::Strong,
-        Some(_) => Weight::Normal,
-    };
+    let link = &hand.connection.status;
+    let no_apply = why(hand.params.apply_refusal(link));
+    let no_undo = why(hand.params.undo_refusal(link));
     let apply = Button::new(&apply, look.tip(device::APPLY))
         .named(look.say(device::APPLY))
-        .weight(weight);
+        .strong_if(no_apply.is_none());
     let undo = Button::said(look, device::UNDO);
     let drop = Button::said(look, device::UNSTAGE_ALL);
     let copy = Button::said(look, device::COPY);
     let tools = [
-        (
-            apply,
-            why(hand.params.apply_refusal(&hand.connection.status)),
-            ParamAction::Apply,
-        ),
-        (
-            undo,
-            why(hand.params.undo_refusal(&hand.connection.status)),
-            ParamAction::Undo,
-        ),
+        (apply, no_apply, ParamAction::Apply),
+        (undo, no_undo, ParamAction::Undo),
         (drop, nothing, ParamAction::UnstageAll),
         (copy, unknown, ParamAction::CopyLive),
     ];

@@ -77,23 +77,18 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
     let width = ui.available_width();
+    let row = Layout::left_to_right(Align::Center);
     let mut table = TableBuilder::new(ui)
-        .cell_layout(Layout::left_to_right(Align::Center))
+        .cell_layout(row)
         .auto_shrink(false)
         .min_scrolled_height(SCROLLED_LEAST);
     for column in COLUMNS {
         table = table.column(Column::exact(column * (width / WIDTH).min(1.0)));
     }
     let table = table.column(Column::remainder());
-    let heads = [
-        poses::NAME,
-        device::LIVE,
-        device::STAGED,
-        device::SAVED,
-        device::RANGE,
-    ];
+    let (live, staged, saved) = (device::LIVE, device::STAGED, device::SAVED);
     let table = table.header(theme::LIST_LINE, |mut head| {
-        for text in heads {
+        for text in [poses::NAME, live, staged, saved, device::RANGE] {
             Label::note(look, text).column_ui(&mut head);
         }
     });
@@ -104,7 +99,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                Label::said(look, title).font(theme::title()).ui(ui);
+                Label::said(look, title).title().ui(ui);
                 Label::note(look, about).ui(ui);
             });
             for id in own {

@@ -607,9 +607,9 @@ mod tests {
     fn only_more_points_than_columns_are_a_band() {
         let points: Vec<[f64; 2]> = (0..100_u8).map(|n| [f64::from(n), 1.0]).collect();
         let curve = ChartCurve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
-        assert!(is_dense((&curve, &points), 0.5));
-        assert!(!is_dense((&curve, &points), 2.0));
+        assert!(curve.is_dense(&points, 0.5));
+        assert!(!curve.is_dense(&points, 2.0));
         let alone = points.get(..1).unwrap_or_default();
-        assert!(!is_dense((&curve, alone), 0.5));
+        assert!(!curve.is_dense(alone, 0.5));
     }
 }

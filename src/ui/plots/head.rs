@@ -9,10 +9,10 @@ use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::plots::times::length;
-use crate::ui::text::{Text, panels, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
+use egui::{Color32, Popup, Role, Ui, WidgetInfo};
 
 /// Width of the menu.
 const MENU: f32 = 264.0;
@@ -48,8 +48,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         .named(look.say(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
-    let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    menu.show(|ui| {
+    kit::drawer(&button).show(|ui| {
         ui.set_max_width(MENU);
         ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
@@ -58,7 +57,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         legend_ui(ui, look, view);
         ui.separator();
         ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
-        if entry_ui(ui, look, look.say(panels::NOTE_NAME), panels::NOTE_NAME) {
+        if kit::entry_ui(ui, look, panels::NOTE_NAME) {
             pane.open(ViewRequest::Note);
             Popup::close_all(ui.ctx());
         }
@@ -72,10 +71,6 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
-}
-
-fn entry_ui(ui: &mut Ui, look: Look, words: &str, text: Text) -> bool {
-    ui.button(words).on_hover_text(look.tip(text)).clicked()
 }
 
 /// A switch for each plot. The last one that is shown stays.
@@ -96,12 +91,13 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
     let words = look.fill(panels::SAVE_CSV, &[&length(to_s - from_s)]);
-    let save = entry_ui(ui, look, &words, panels::SAVE_CSV).then(|| {
+    let save = ui.button(words).on_hover_text(look.tip(panels::SAVE_CSV));
+    let save = save.clicked().then(|| {
         let history = &pane.hand().measured.history;
         let series = view.shown_series(pane);
         Action::Save(Export::Plots(history.table(&series, from_s, to_s)))
     });
-    let picture = entry_ui(ui, look, look.say(panels::SAVE_PNG), panels::SAVE_PNG);
+    let picture = kit::entry_ui(ui, look, panels::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);

@@ -7,31 +7,19 @@ use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
 use crate::ui::hand::{aim, figures};
-use crate::ui::kit::{Button, Label, Look, NumberField, Pane};
-use crate::ui::text::errors::no_gap;
-use crate::ui::text::{Text, main, poses};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane};
+use crate::ui::text::{main, poses};
 use crate::ui::theme;
-use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
+use egui::{Id, Slider, Ui, vec2};
 
 /// Width of the drawer.
 const DRAWER: f32 = 420.0;
-
-/// What a kind is called.
-pub(crate) const fn kind_words(kind: GripKind) -> Text {
-    match kind {
-        GripKind::Pinch => poses::KIND_PINCH,
-        GripKind::ThreeFingers => poses::KIND_THREE,
-        GripKind::AllFingers => poses::KIND_ALL,
-        GripKind::Around => poses::KIND_AROUND,
-    }
-}
 
 /// The button in the strip of poses, with its drawer.
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
-    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    drawer.width(DRAWER).show(|ui| {
+    kit::drawer(&button).width(DRAWER).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         kinds_ui(ui, pane);
         gap_ui(ui, pane);
@@ -45,8 +33,8 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.horizontal(|ui| {
         for kind in GripKind::ALL {
             let offered = kind.offered();
-            let button = Button::said(look, kind_words(kind)).choice(offered.is_ok());
-            let no_gap = offered.err().map(|why| look.say(no_gap(why)));
+            let button = Button::said(look, poses::kind(kind)).choice(offered.is_ok());
+            let no_gap = offered.err().map(|why| look.say(poses::no_gap(why)));
             button.disabled(no_gap).ui(ui, look);
         }
     });
@@ -76,9 +64,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let is_armed = pane.hand().connection.is_armed();
     let refused = refusal(pane);
     let id = Id::unique(("gap in the drawer", pane.hand().label.slot));
-    let wish = ui
-        .data(|data| data.get_temp::<f32>(id))
-        .filter(|_| !is_armed);
+    let wish: Option<f32> = ui.data(|data| data.get_temp(id)).filter(|_| !is_armed);
     let mut mm = wish.unwrap_or_else(|| gap_now(pane).mm().round());
     ui.spacing_mut().slider_width = DRAWER / 2.0;
     let range = Gap::MIN.mm()..=Gap::MAX.mm();
@@ -142,12 +128,8 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let range = f64::from(from)..=f64::from(to);
         let field = NumberField::new(look.say(poses::BLOCK), look.tip(poses::BLOCK), range);
         let not_held = held.is_none().then(|| look.say(poses::BLOCK_NOT_HELD));
-        let typed = field
-            .decimals(1)
-            .needs_enter()
-            .disabled(not_held)
-            .ui(ui, pane, None);
-        if let Some(size_mm) = typed {
+        let field = field.decimals(1).needs_enter().disabled(not_held);
+        if let Some(size_mm) = field.ui(ui, pane, None) {
             #[expect(clippy::cast_possible_truncation, reason = "a size of at most 120 mm")]
             pane.actions.push(Action::MeasureBlock(size_mm as f32));
         }
@@ -156,7 +138,6 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let blocks = pane.state.settings.size_blocks(endpoint);
     let sizes = blocks.blocks().iter();
     let sizes: Vec<String> = sizes.map(|own| format!("{} mm", own.size_mm)).collect();
-    let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
     let known = if blocks.is_empty() {
         look.say(poses::BLOCKS_NONE).to_owned()
     } else {

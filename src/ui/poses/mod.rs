@@ -8,7 +8,6 @@ pub(crate) mod shipped;
 pub(crate) mod tiles;
 
 use crate::app::action::Action;
-use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, PoseId};
 use crate::ui::hand::tile;
@@ -60,8 +59,7 @@ impl PoseView {
         if newest != self.shown {
             (self.shown, self.chosen) = (newest, newest);
         }
-        kit::card_ui(ui, pane.look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, pane.look, |ui| {
             ui.horizontal(|ui| self.head_ui(ui, pane));
             if self.section != PoseSection::InHand {
                 for_all_ui(ui, pane);
@@ -171,8 +169,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let words = notices::notice(pane.look, refused);
-    let label = Label::new(&words, pane.look.palette.warn);
-    label.small().wrap().ui(ui);
+    kit::say_ui(ui, &words, pane.look.palette.warn);
     if let Some(path) = path_ui(ui, pane.look, "poses") {
         pane.actions.push(Action::ImportPoses(Some(path)));
     }
@@ -181,12 +178,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.2);
-        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
-        let open = PerDof::splat(Some(1.0));
-        tile::pose_ui(ui, look, picture, &open);
-        let title = Label::said(look, poses::EMPTY_TITLE);
-        title.font(theme::title()).ui(ui);
+        tile::empty_ui(ui, look, 1.0, poses::EMPTY_TITLE);
         Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let tip = look.tip(poses::CAPTURE);

@@ -1,7 +1,7 @@
 //! One step of a sequence as a row: its pose, its times and its place. Every change is an action.
 
 use crate::app::action::Action;
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, GripKind};
 use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{
@@ -84,7 +84,7 @@ fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
             Some((pose.name.clone(), pose.angles))
         }
         StepGoal::Gap { gap, .. } => {
-            let name = pane.look.say(poses::KIND_PINCH);
+            let name = pane.look.say(poses::kind(GripKind::Pinch));
             Some((format!("{name} {} mm", gap.mm()), gap.angles()))
         }
     }
@@ -176,9 +176,7 @@ impl StepNumber {
             ui.set_min_width(NUMBER.x);
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
-            Label::new(look.say(self.caption), look.palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(look, self.caption).ui(ui);
             field.ui(ui, pane, Some(self.now))
         });
         typed.inner
@@ -198,32 +196,31 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
     if let StepGoal::Gap { gap, force } = &mut step.goal {
         gap_ui(ui, pane, at, gap);
         let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
-        let typed = number.whole_ui(ui, pane);
-        *force = typed
-            .and_then(|typed| Force::new(typed).ok())
-            .unwrap_or(*force);
+        keep(force, number.whole_ui(ui, pane).map(Force::new));
     }
     let number = StepNumber {
         caption: main::NAME_SPEED,
         ..StepNumber::whole(at, poses::SPEED, step.speed.get(), Speed::MAX.get())
     };
-    let speed = number.whole_ui(ui, pane);
-    let speed = speed.and_then(|typed| Speed::new(typed).ok());
-    step.speed = speed.unwrap_or(step.speed);
+    keep(&mut step.speed, number.whole_ui(ui, pane).map(Speed::new));
     let mut millis = |caption: Text, time: &mut Millis| {
         let number = StepNumber::whole(at, caption, time.get(), Millis::MAX);
-        let typed = number.whole_ui(ui, pane);
-        let typed = typed.and_then(|typed| Millis::try_from(typed).ok());
-        *time = typed.unwrap_or(*time);
+        keep(time, number.whole_ui(ui, pane).map(Millis::try_from));
     };
     millis(poses::DWELL, &mut step.dwell);
     millis(poses::LIMIT, &mut step.limit);
     if let Some(until) = &mut step.until {
         millis(poses::WITHIN, &mut until.within);
         let number = StepNumber::whole(at, poses::RETRIES, until.retries.get(), Retries::MAX);
-        let typed = number.whole_ui(ui, pane);
-        let typed = typed.and_then(|typed| Retries::try_from(typed).ok());
-        until.retries = typed.unwrap_or(until.retries);
+        let typed = number.whole_ui(ui, pane).map(Retries::try_from);
+        keep(&mut until.retries, typed);
+    }
+}
+
+/// Takes what was typed, if it can be taken.
+fn keep<T, E>(own: &mut T, typed: Option<Result<T, E>>) {
+    if let Some(Ok(typed)) = typed {
+        *own = typed;
     }
 }
 
@@ -235,8 +232,6 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, gap: &mut Gap) {
         ..StepNumber::whole(at, poses::GAP, gap.mm(), Gap::MAX.mm())
     };
     #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
-    let typed = number
-        .ui(ui, pane)
-        .and_then(|typed| Gap::new(typed as f32).ok());
-    *gap = typed.unwrap_or(*gap);
+    let typed = number.ui(ui, pane).map(|typed| Gap::new(typed as f32));
+    keep(gap, typed);
 }

@@ -14,9 +14,7 @@ use crate::ui::poses::grip_size;
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{
-    Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2,
-};
+use egui::{Id, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 
 /// An entry on the shelf, and its least height where that is low.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
@@ -148,8 +146,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     }
     let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
-    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    drawer.width(DRAWER).show(|ui| {
+    kit::drawer(&button).width(DRAWER).show(|ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             for gesture in named {
@@ -211,10 +208,8 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     if let Some(key) = key {
         let corner = Rect::from_min_size(picture.right_top() - vec2(14.0, 0.0), vec2(14.0, 16.0));
         let key = key.get().to_string();
-        Label::new(&key, look.palette.muted)
-            .small()
-            .right()
-            .paint(ui, corner);
+        let label = Label::new(&key, look.palette.muted).small();
+        label.right().paint(ui, corner);
     }
     if runs {
         let ring = Stroke::new(3.0, look.palette.accent);

@@ -8,7 +8,7 @@ use crate::record::file::FileMark;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::recordings::marks::{clock, shown};
 use crate::ui::text::recordings;
-use egui::{Popup, PopupCloseBehavior, ScrollArea, Ui};
+use egui::{Popup, ScrollArea, Ui};
 
 /// Recordings that are offered, the newest first.
 const OFFERED: usize = 200;
@@ -26,9 +26,7 @@ pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let off = off.named(&name).switch(true);
     off.on_click(ui, pane, Action::Recording(RecordingAction::Beside(None)));
     let align = Button::said(look, recordings::ALIGN).ui(ui, look);
-    let stays = PopupCloseBehavior::CloseOnClickOutside;
-    let menu = Popup::menu(&align).close_behavior(stays);
-    menu.show(|ui| align_ui(ui, pane, line, beside));
+    kit::drawer(&align).show(|ui| align_ui(ui, pane, line, beside));
 }
 
 fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {

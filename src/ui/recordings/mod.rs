@@ -8,7 +8,6 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, RecordingItem};
 use crate::app::state::State;
-use crate::hand::PerDof;
 use crate::ui::hand::tile;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{
@@ -18,7 +17,7 @@ use crate::ui::recordings::table::{MarkedStretch, RecordingTable};
 use crate::ui::text::recordings;
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Frame, Panel, ProgressBar, Ui, vec2};
+use egui::{Frame, Panel, ProgressBar, Ui};
 use std::path::Path;
 use std::time::Duration;
 
@@ -122,11 +121,7 @@ impl RecordingsView {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.2);
-        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
-        tile::pose_ui(ui, look, picture, &PerDof::splat(Some(0.5)));
-        let title = Label::said(look, recordings::NONE_TITLE);
-        title.font(theme::title()).ui(ui);
+        tile::empty_ui(ui, look, 0.5, recordings::NONE_TITLE);
         if pane.state.recordings.folder.is_none() {
             Label::muted(look, recordings::NOWHERE).wrap().ui(ui);
             ui.add_space(theme::GAP);

@@ -80,7 +80,8 @@ impl Look {
     }
 
     /// Names after each other.
-    pub(crate) fn list(self, names: &[&str]) -> String {
+    pub(crate) fn list<N: AsRef<str>>(self, names: &[N]) -> String {
+        let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         names.join(match self.language {
             Language::En => ", ",
             Language::Zh => "、",

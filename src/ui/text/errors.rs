@@ -3,7 +3,6 @@
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
-use crate::hand::gap::NotOffered;
 use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
@@ -20,7 +19,7 @@ use crate::transport::endpoint::typed::TypedError;
 use crate::transport::{Remedy, TransportError, WireFailure};
 use crate::trials::plan_settings::PlanReadError;
 use crate::ui::style::{Look, format};
-use crate::ui::text::{Text, inputs, poses};
+use crate::ui::text::{inputs, poses};
 use std::fmt::Display;
 use std::io::ErrorKind;
 
@@ -227,7 +226,7 @@ chinese! {
         FileCause::Range { got, range } => "{got} 超出范围 {}", range.replace(" to ", " 至 ");
         FileCause::Kind { got, wanted } => "{got} 不是{}", value_kind_zh(*wanted);
         FileCause::Choice { got, known } => "“{got}”不可用，只能是 {known}";
-        FileCause::NotOffered(why) => "{}", no_gap(*why).zh.trim_end_matches('。');
+        FileCause::NotOffered(why) => "{}", poses::no_gap(*why).zh.trim_end_matches('。');
         FileCause::Pinches { dof } => "按尺寸抓握需要{}，请从此处删除", crate::ui::text::words::dof(*dof).zh;
         FileCause::NotSamples => "不是采样表";
         FileCause::Picture(_) => "图片格式不对";
@@ -326,14 +325,6 @@ pub(crate) fn file(look: Look, error: &FileError) -> String {
 }
 
 /// Why a kind of grip has no gap.
-pub(crate) const fn no_gap(why: NotOffered) -> Text {
-    match why {
-        NotOffered::BesideMiddle => poses::NO_GAP_THREE,
-        NotOffered::BesideOthers => poses::NO_GAP_ALL,
-        NotOffered::OnPalm => poses::NO_GAP_AROUND,
-    }
-}
-
 const fn value_kind_zh(kind: ValueKind) -> &'static str {
     match kind {
         ValueKind::Whole => "此处允许的整数",

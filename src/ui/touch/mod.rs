@@ -42,8 +42,7 @@ impl TouchView {
     /// The card of the overview: the hand, and below it as much of the fingertips as leaves the hand its room.
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
                 panel::side_ui(ui, pane);
                 heat::no_zero_ui(ui, pane);
@@ -131,10 +130,7 @@ impl TouchView {
             });
         });
         ui.add_space(theme::GAP);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
-            self.lower_ui(ui, pane);
-        });
+        kit::full_card_ui(ui, look, |ui| self.lower_ui(ui, pane));
     }
 
     /// Whether the large fingertips are drawn beside the hand.

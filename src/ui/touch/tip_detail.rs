@@ -106,31 +106,18 @@ impl TipDetail {
         let palette = look.palette;
         let (center, radius) = (rect.center(), rect.width() / 2.0 - theme::STEP);
         let painter = ui.painter();
-        painter.circle(
-            center,
-            radius,
-            palette.sunken,
-            Stroke::new(1.0, palette.edge),
-        );
+        let (edge, grid) = ((1.0, palette.edge), (1.0, palette.grid));
+        painter.circle(center, radius, palette.sunken, edge);
         for turn in 0..4u8 {
             let way = Vec2::angled(f32::from(turn) * std::f32::consts::FRAC_PI_2);
-            painter.line_segment(
-                [center, center + way * radius],
-                Stroke::new(1.0, palette.grid),
-            );
+            painter.line_segment([center, center + way * radius], grid);
         }
         let ring = radius / COMPASS_END_RATIO;
-        painter.circle(
-            center,
-            ring,
-            palette.wash(palette.ok),
-            Stroke::new(theme::FOCUS_LINE, palette.ok),
-        );
-        painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
-        let up = Rect::from_center_size(
-            center - vec2(0.0, radius - theme::GAP),
-            egui::vec2(40.0, 12.0),
-        );
+        let firm = (theme::FOCUS_LINE, palette.ok);
+        painter.circle(center, ring, palette.wash(palette.ok), firm);
+        painter.circle_stroke(center, ring * (1.0 - NEAR), grid);
+        let up = center - vec2(0.0, radius - theme::GAP);
+        let up = Rect::from_center_size(up, vec2(40.0, 12.0));
         let text = look.say(panels::TIP_UP);
         let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
@@ -192,16 +179,13 @@ impl TipDetail {
     fn friction_ui(&mut self, ui: &mut Ui, look: Look) {
         let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
         Label::new(&caption, look.palette.muted).small().ui(ui);
+        let name = look.say(panels::TIP_FRICTION_NAME);
         let track = SlideTrack {
             tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),
-            ..SlideTrack::new(
-                look.say(panels::TIP_FRICTION_NAME),
-                FRICTION_MAX,
-                look.palette.accent,
-            )
+            ..SlideTrack::new(name, FRICTION_MAX, look.palette.accent)
         };
         let place = ui.allocate_space(ui.available_size()).1;
         if let Some(percent) = track.put(ui, look, place, Id::unique("tip friction")) {

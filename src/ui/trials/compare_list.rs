@@ -6,8 +6,8 @@ use crate::ui::kit::{self, Label, Look, dash};
 use crate::ui::text::tune;
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
-use egui::{Align, Color32, Layout, Role, Stroke, Ui, WidgetInfo};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, Role, Stroke, Ui, WidgetInfo};
+use egui_extras::{Column, TableRow};
 use egui_plot::LineStyle;
 
 const ROW: f32 = 24.0;
@@ -42,9 +42,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSe
     let sessions = &sheet.trials.sessions;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let mut table = TableBuilder::new(ui)
-            .id_salt("sessions")
-            .cell_layout(Layout::left_to_right(Align::Center))
+        let mut table = kit::table(ui, "sessions")
             .auto_shrink([false, true])
             .max_scroll_height(3.4 * ROW);
         for width in LEFT {

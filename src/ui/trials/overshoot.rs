@@ -10,8 +10,8 @@ use crate::ui::kit::{self, Button, Label, Look, Pane, Pick, Weight};
 use crate::ui::plots::scales;
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Role, Sense, Ui, WidgetInfo, vec2};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, Role, Sense, Ui, WidgetInfo, vec2};
+use egui_extras::{Column, TableRow};
 use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 
 const ROW: f32 = 20.0;
@@ -231,9 +231,7 @@ const fn sign(stiffness: Stiffness) -> &'static str {
 fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
-    let mut table = TableBuilder::new(ui)
-        .id_salt("kinds of closes")
-        .cell_layout(Layout::left_to_right(Align::Center))
+    let mut table = kit::table(ui, "kinds of closes")
         .min_scrolled_height(0.0)
         .auto_shrink(false)
         .column(Column::remainder().at_least(96.0).clip(true));

@@ -109,7 +109,6 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
                 let untold = finding.untold.iter();
                 let untold = untold.map(|what| search::untold(look, *what));
                 let untold: Vec<String> = untold.collect();
-                let untold: Vec<&str> = untold.iter().map(String::as_str).collect();
                 let words = look.fill(search::UNTOLD, &[&look.list(&untold)]);
                 kit::say_ui(ui, &words, palette.muted);
             }

@@ -31,8 +31,7 @@ impl TuneView {
         let look = pane.look;
         let width = (ui.available_width() * 0.34).clamp(348.0, 424.0);
         kit::bare(Panel::left("plan"), width, theme::GAP_RIGHT).show(ui, |ui| {
-            kit::card_ui(ui, look, |ui| {
-                ui.set_min_height(ui.available_height());
+            kit::full_card_ui(ui, look, |ui| {
                 kit::head_ui(ui, look, look.say(tune::PLAN), |ui| {
                     let fold = Button::said(look, tune::HIDE_PLAN).icon(theme::TO_LEFT);
                     let fold = fold.weight(Weight::Quiet);

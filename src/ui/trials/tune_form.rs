@@ -82,9 +82,8 @@ pub(crate) fn captioned_ui<R>(
     field: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     let row = ui.horizontal_top(|ui| {
-        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
-            Label::new(caption, look.palette.muted).small().ui(ui);
-        });
+        let caption = Label::new(caption, look.palette.muted).small();
+        caption.cell_ui(ui, CAPTION);
         field(ui)
     });
     row.inner

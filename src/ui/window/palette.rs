@@ -110,10 +110,8 @@ impl CommandPalette {
         })?;
         let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
         let entered = entered.filter(|listed| unready.is_none() || !listed.command.needs_arming());
-        let chosen = shown
-            .inner
-            .flatten()
-            .or(entered.map(|listed| listed.command.clone()));
+        let entered = entered.map(|listed| listed.command.clone());
+        let chosen = shown.inner.flatten().or(entered);
         let beside = query.drawn && shown.response.clicked_elsewhere();
         query.drawn = true;
         if chosen.is_some() || beside {
@@ -252,11 +250,11 @@ const fn view_words(view: View) -> Text {
 
 const fn place_words(place: Place) -> Text {
     match place {
-        Place::Live => window::LIVE_WORDS,
-        Place::Tune => window::TUNE_WORDS,
-        Place::Recordings => window::RECORDINGS_WORDS,
+        Place::Live => view_words(View::Live),
+        Place::Tune => view_words(View::Tune),
+        Place::Recordings => view_words(View::Recordings),
         Place::Hand => window::HAND_WORDS,
-        Place::Share => window::INPUTS_WORDS,
+        Place::Share => view_words(View::Inputs),
     }
 }
 
@@ -278,9 +276,8 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     let views = View::ALL.into_iter();
     // The faults have a key, and their place the name of its first view.
     let views = views.filter(|view| *view != View::Faults && view.place().title() != view.title());
-    let views: Vec<Wish> = views
-        .map(|view| Wish::Opens(ViewRequest::View(view)))
-        .collect();
+    let views = views.map(|view| Wish::Opens(ViewRequest::View(view)));
+    let views: Vec<Wish> = views.collect();
     // What is held, what stands for many, and what the keyboard goes to has a key only.
     let is_act = |wish: &Wish| {
         !matches!(
