@@ -133,10 +133,6 @@ impl LinkFields {
             if all.iter().all(|(value, _)| value != text) {
                 all.push((text.clone(), text.clone()));
             }
-            let all = all
-                .iter()
-                .map(|(value, text)| (value.clone(), text.as_str()));
-            let all: Vec<(String, &str)> = all.collect();
             ui.spacing_mut().combo_width = ui.available_width();
             kit::choose_ui(ui, caption, text, &all);
         });

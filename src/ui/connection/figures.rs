@@ -116,6 +116,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         text.map_or(format::UNKNOWN, |text| look.say(text))
             .to_owned()
     };
+    let touch = format::hertz(stats.tactile_hz);
     let id = quirks.hand_id.map(i64::from);
     let mut hand = vec![
         measured(scan::fact(Fact::HandId), format::whole(id, 0)),
@@ -130,10 +131,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         hand,
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
-            measured(
-                panels::group(RateClass::Tactile),
-                format::hertz(stats.tactile_hz),
-            ),
+            measured(panels::group(RateClass::Tactile), touch),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
             measured(panels::RTT_P99, trip(stats.rtt_p99)),
         ],

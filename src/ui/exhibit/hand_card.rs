@@ -84,10 +84,8 @@ fn feels_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect, tips: &PerFinger<Option
     label.center().put(ui, caption);
     let step = vec2(row.width() / 5.0, 0.0);
     let first = row.with_max_x(row.left() + step.x);
-    for (finger, place) in Finger::ALL
-        .into_iter()
-        .zip((0_u8..).map(|at| first.translate(step * f32::from(at))))
-    {
+    let places = (0_u8..).map(|at| first.translate(step * f32::from(at)));
+    for (finger, place) in Finger::ALL.into_iter().zip(places) {
         let (picture, name) = place.split_top_bottom_at_y(place.bottom() - 40.0 * unit);
         let tip = tips[finger].unwrap_or_default();
         fingertip::paint(ui.painter(), look, picture.shrink(6.0 * unit), &tip);

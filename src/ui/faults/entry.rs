@@ -151,19 +151,13 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Fault
             let button = Button::new(words, look.tip(notices::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         });
-        let hand = pane
-            .hand()
-            .connection
-            .endpoint
-            .as_ref()
-            .map(ToString::to_string);
+        let hand = pane.hand().connection.endpoint.as_ref();
+        let hand = hand.map(ToString::to_string);
+        let last = entry.last.min(entry.since.plus(SHOWN));
         let stretch = ReplayedStretch {
             title: &title(pane, entry.dof, entry.what),
             hand: &hand.unwrap_or_default(),
-            stretch: Some((
-                entry.since,
-                entry.last.min(entry.since.plus(SHOWN)).plus(AFTER),
-            )),
+            stretch: Some((entry.since, last.plus(AFTER))),
         };
         replay = stretch.ui(ui, pane);
         recording

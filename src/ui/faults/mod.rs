@@ -141,12 +141,8 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// That nothing is wrong, or that nobody knows.
 fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane
-        .hand()
-        .readings
-        .sample
-        .faults
-        .map(|faults| faults.asked);
+    let faults = pane.hand().readings.sample.faults;
+    let asked = faults.map(|faults| faults.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
         Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
@@ -201,30 +197,22 @@ fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.separator();
     kit::head_ui(ui, look, look.say(notices::MEANINGS), |_| ());
     kit::say_ui(ui, look.say(notices::MEANINGS_FAULT), look.palette.muted);
-    for bit in 0..5 {
-        meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));
+    for fault in (0..5).map(Fault::from_bit) {
+        meaning_ui(ui, pane, words::fault(fault, look.language));
     }
     kit::say_ui(ui, look.say(notices::MEANINGS_STATUS), look.palette.muted);
-    for code in [0, 1, 2, 3, 5, 6, 7] {
-        meaning_ui(
-            ui,
-            pane,
-            words::status(Status::from_raw(code), look.language),
-        );
+    for status in [0, 1, 2, 3, 5, 6, 7].map(Status::from_raw) {
+        meaning_ui(ui, pane, words::status(status, look.language));
     }
 }
 
 fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     let palette = pane.look.palette;
-    let (title, body) = match pane.look.language {
-        Language::En => (
-            format!("{}: ", words.title),
-            format!("{} {}", words.cause, words.advice),
-        ),
-        Language::Zh => (
-            format!("{}：", words.title),
-            format!("{}{}", words.cause, words.advice),
-        ),
+    let (cause, advice) = (words.cause, words.advice);
+    let title = pane.look.pair(words.title, "");
+    let body = match pane.look.language {
+        Language::En => format!("{cause} {advice}"),
+        Language::Zh => format!("{cause}{advice}"),
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;

@@ -102,11 +102,8 @@ impl FaultRecordingsView {
 
     /// The open one, if it is still kept.
     pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<FaultRecording>> {
-        pane.hand()
-            .measured
-            .recorder
-            .get(self.open?)
-            .map(Arc::clone)
+        let recorder = &pane.hand().measured.recorder;
+        recorder.get(self.open?).map(Arc::clone)
     }
 
     /// Draws the list.

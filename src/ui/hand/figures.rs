@@ -132,10 +132,8 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
 
 fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     let look = pane.look;
-    let (name, color) = (
-        look.say(words::finger(finger)),
-        look.palette.dof[finger.bend()],
-    );
+    let name = look.say(words::finger(finger));
+    let color = look.palette.dof[finger.bend()];
     let &Figure {
         lines: [first, second, third],
         on_left,
@@ -151,10 +149,8 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     };
     aligned(Label::new(name, color).small(), ui, first);
     let mut joints = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
-    if joints
-        .clone()
-        .any(|dof| pane.hand().controls.joints[dof].locked)
-    {
+    let is_locked = |dof| pane.hand().controls.joints[dof].locked;
+    if joints.clone().any(is_locked) {
         figure.lock_ui(ui, pane, name);
     }
     let (force, over, freshness) = force(pane, finger);
@@ -189,11 +185,8 @@ fn grip(pane: &Pane<'_>) -> Grip {
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
     let hand = pane.hand();
     let gap_mm = grip::held_gap(hand, pane.state.now)?;
-    let blocks = pane
-        .state
-        .settings
-        .size_blocks(hand.connection.endpoint.as_ref());
-    let size = blocks.size(gap_mm);
+    let endpoint = hand.connection.endpoint.as_ref();
+    let size = pane.state.settings.size_blocks(endpoint).size(gap_mm);
     let text = if size.is_measured {
         poses::HELD_MEASURED
     } else {
@@ -239,11 +232,8 @@ fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
     let known = force.and_then(|force| force.documented());
     let over = known.zip(hand.controls.stops_at(dof, hand.held_otherwise(dof)));
     let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
-    (
-        format::with_unit(raw, 0, Quantity::Force.row().unit),
-        over,
-        freshness,
-    )
+    let force = format::with_unit(raw, 0, Quantity::Force.row().unit);
+    (force, over, freshness)
 }
 
 /// What hurts a drive now, in a word: its fault, or how warm it is. Nothing of old values.

@@ -70,10 +70,9 @@ impl HandPanel {
         if response.is_pointer_button_down_on() {
             return None;
         }
-        response.on_hover_text(used.joint.map_or_else(
-            || look.tip(panels::HAND_PICTURE).to_owned(),
-            |dof| said(pane, dof),
-        ));
+        let told = used.joint.map(|dof| said(pane, dof));
+        let tip = || look.tip(panels::HAND_PICTURE).to_owned();
+        response.on_hover_text(told.unwrap_or_else(tip));
         used.joint.map(Dof::finger).filter(|_| clicked)
     }
 }

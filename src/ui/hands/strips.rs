@@ -182,11 +182,8 @@ impl HandStrip {
             let letter = Label::new(letter, palette.muted).small().right();
             letter.paint(ui, corner);
         }
-        kit::lamp(
-            ui,
-            pos2(lower.left() + theme::LAMP, lower.center().y),
-            words.color,
-        );
+        let lamp = pos2(lower.left() + theme::LAMP, lower.center().y);
+        kit::lamp(ui, lamp, words.color);
         let told = lower.with_min_x(lower.left() + theme::PAD);
         Label::new(state, palette.text).small().paint(ui, told);
         if response.clicked() && !is_shown {

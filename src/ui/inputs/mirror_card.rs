@@ -61,11 +61,8 @@ fn others(state: &State) -> Vec<(SlotId, String)> {
 /// Which hand leads, and which share of its bends is followed.
 fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     let (look, state) = (pane.look, pane.state);
-    let named = others(state);
-    let named = named.iter();
-    let all: Vec<(Option<SlotId>, &str)> = named
-        .map(|(slot, name)| (Some(*slot), name.as_str()))
-        .collect();
+    let all = others(state).into_iter();
+    let all: Vec<_> = all.map(|(slot, name)| (Some(slot), name)).collect();
     let mut leader = mirror.map(|mirror| mirror.leader);
     let mut scale = mirror.map_or(MirrorScale::WHOLE, |mirror| mirror.scale);
     let mut is_new = false;

@@ -172,10 +172,8 @@ impl PadRows {
 /// Names a control with what it does, and explains that.
 fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
     let action = shown.map.action(control);
-    let words = look.pair(
-        look.say(inputs::control(control)),
-        &shown.does(look, action),
-    );
+    let name = look.say(inputs::control(control));
+    let words = look.pair(name, &shown.does(look, action));
     let is_chosen = shown.chosen == Some(control);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &words));
     let tips = [look.tip(inputs::action(action)), look.say(inputs::CHANGE)];
@@ -332,12 +330,9 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
             clicked = Some(control);
         }
         if shown.chosen == Some(control) || response.has_focus() || response.hovered() {
-            let strength = if response.hovered() {
-                1.0
-            } else {
-                theme::STRONG
-            };
-            let stroke = Stroke::new(strength, look.palette.accent);
+            let is_passing = response.hovered();
+            let width = if is_passing { 1.0 } else { theme::STRONG };
+            let stroke = Stroke::new(width, look.palette.accent);
             let round = CornerRadius::same(theme::ROUND);
             let outer = place.expand(4.0);
             ui.painter()
@@ -376,10 +371,8 @@ impl Drawing<'_> {
     }
 
     fn control(&self, control: PadControl) {
-        let (ink, rect) = (
-            Ink::of(self.look, control, self.shown),
-            self.rect(place(control)),
-        );
+        let ink = Ink::of(self.look, control, self.shown);
+        let rect = self.rect(place(control));
         match control {
             PadControl::LeftTrigger | PadControl::RightTrigger => self.trigger(control, rect, ink),
             PadControl::LeftStick | PadControl::RightStick => self.stick(control, rect, ink),
@@ -406,14 +399,8 @@ impl Drawing<'_> {
     }
 
     fn plate(&self, rect: Rect, round: f32, ink: Ink) {
-        let painter = self.ui.painter();
-        painter.rect(
-            rect,
-            round * self.scale,
-            ink.fill,
-            ink.edge,
-            StrokeKind::Inside,
-        );
+        let (painter, round) = (self.ui.painter(), round * self.scale);
+        painter.rect(rect, round, ink.fill, ink.edge, StrokeKind::Inside);
     }
 
     fn sign(&self, control: PadControl, rect: Rect, color: Color32) {

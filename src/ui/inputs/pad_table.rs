@@ -44,11 +44,9 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
     if !all.contains(before) {
         all.push(before.clone());
     }
-    let words: Vec<String> = all.iter().map(|action| shown.does(look, action)).collect();
-    let choices: Vec<(PadAction, &str)> = all
-        .into_iter()
-        .zip(words.iter().map(String::as_str))
-        .collect();
+    let all = all.into_iter();
+    let choices = all.map(|action| (action.clone(), shown.does(look, &action)));
+    let choices: Vec<(PadAction, String)> = choices.collect();
     let mut action = before.clone();
     let name = look.say(inputs::control(control));
     let chosen = ui.add_enabled_ui(!before.is_single(), |ui| {

@@ -107,7 +107,8 @@ impl JointsView {
 /// How old the angles are, where they are not live.
 pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane.hand().readings.sample.angle.map(|angle| angle.asked);
+    let angle = pane.hand().readings.sample.angle;
+    let asked = angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),

@@ -318,12 +318,8 @@ impl CardView {
     /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.
     fn choices_ui(&self, ui: &mut Ui, card: &Card, is_new: bool) -> Option<usize> {
         let look = card.look;
-        let (escaped, entered) = ui.input(|input| {
-            (
-                input.key_pressed(Key::Escape),
-                input.key_pressed(Key::Enter),
-            )
-        });
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        let (escaped, entered) = (pressed(Key::Escape), pressed(Key::Enter));
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
         let untyped = untyped.map(|word| look.told(cards::TYPE, word));

@@ -392,32 +392,26 @@ impl<'a> Button<'a> {
             None => WidgetInfo::labeled(Role::Button, enabled, name),
         });
         let (fill, edge) = self.colors(look, &response);
-        let round = if self.weight == Weight::Stop {
-            theme::ROUND
-        } else {
-            theme::ROUND_SMALL
+        let round = match self.weight {
+            Weight::Stop => theme::ROUND,
+            _ => theme::ROUND_SMALL,
         };
-        ui.painter().rect(
-            rect,
-            CornerRadius::same(round),
-            fill,
-            Stroke::new(1.0, edge),
-            StrokeKind::Inside,
-        );
+        let edge = Stroke::new(1.0, edge);
+        ui.painter()
+            .rect(rect, round, fill, edge, StrokeKind::Inside);
         focus_ring(ui, look, &response, rect);
         let tip = match self.disabled {
             Some(reason) => format!("{}\n{reason}", self.tip).trim().to_owned(),
             None => self.tip.to_owned(),
         };
-        let told = self
-            .disabled
-            .is_some_and(|reason| told_ui(ui, &response, reason));
+        let disabled = self.disabled;
+        let told = disabled.is_some_and(|reason| told_ui(ui, &response, reason));
         let response = if tip.is_empty() || told {
             response
         } else {
             response.on_hover_text(tip)
         };
-        match self.disabled {
+        match disabled {
             Some(_) => response,
             None => response.on_hover_cursor(egui::CursorIcon::PointingHand),
         }
@@ -721,19 +715,19 @@ pub(crate) fn tick_ui(ui: &mut Ui, look: Look, text: Text, on: &mut bool) -> boo
 }
 
 /// One of several, from a list that opens; true if another one was chosen.
-pub(crate) fn choose_ui<T: Clone + PartialEq>(
+pub(crate) fn choose_ui<T: Clone + PartialEq, S: AsRef<str>>(
     ui: &mut Ui,
     name: &str,
     chosen: &mut T,
-    all: &[(T, &str)],
+    all: &[(T, S)],
 ) -> bool {
     let text = all.iter().find(|(value, _)| value == chosen);
     let before = chosen.clone();
     let shown = egui::ComboBox::from_id_salt(name)
-        .selected_text(text.map_or("-", |(_, text)| text))
+        .selected_text(text.map_or("-", |(_, text)| text.as_ref()))
         .show_ui(ui, |ui| {
             for (value, text) in all {
-                ui.selectable_value(chosen, value.clone(), *text);
+                ui.selectable_value(chosen, value.clone(), text.as_ref());
             }
         });
     rename(&shown.response, name);
@@ -781,11 +775,8 @@ pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
 /// A round lamp.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
-    painter.circle_filled(
-        center,
-        theme::LAMP + theme::HALO,
-        color.gamma_multiply(0.22),
-    );
+    let halo = color.gamma_multiply(0.22);
+    painter.circle_filled(center, theme::LAMP + theme::HALO, halo);
     painter.circle_filled(center, theme::LAMP, color);
 }
 

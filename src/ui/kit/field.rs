@@ -41,7 +41,20 @@ struct Field<'a> {
     counts_when_left: bool,
 }
 
-impl Field<'_> {
+impl<'a> Field<'a> {
+    /// For text, at most so many characters.
+    const fn new(name: &'a str, max: usize) -> Self {
+        Self {
+            name,
+            hint: "",
+            tip: "",
+            disabled: None,
+            max,
+            is_number: false,
+            counts_when_left: true,
+        }
+    }
+
     /// Draws it with what is in force. What was typed, once it counts; what cannot be read stays, and is told why.
     fn ui<T>(
         self,
@@ -50,11 +63,9 @@ impl Field<'_> {
         value: &str,
         read: impl FnOnce(&str) -> Read<T>,
     ) -> Option<T> {
+        let line = theme::CONTROL.min(ui.spacing().interact_size.y);
         let (width, height) = if self.is_number {
-            (
-                theme::FIELD,
-                theme::CONTROL.min(ui.spacing().interact_size.y),
-            )
+            (theme::FIELD, line)
         } else {
             (ui.available_width(), theme::CONTROL)
         };
@@ -168,15 +179,7 @@ pub(crate) struct TextField<'a>(Field<'a>);
 impl<'a> TextField<'a> {
     /// A field of at most so many characters, with what a screen reader says.
     pub(crate) const fn new(name: &'a str, max: usize) -> Self {
-        Self(Field {
-            name,
-            hint: "",
-            tip: "",
-            disabled: None,
-            max,
-            is_number: false,
-            counts_when_left: true,
-        })
+        Self(Field::new(name, max))
     }
 
     /// Shows this while nothing stands in it.
@@ -207,36 +210,35 @@ impl<'a> TextField<'a> {
 /// A field for a number, which counts when the field is left.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
-    name: &'a str,
-    tip: &'a str,
-    disabled: Option<&'a str>,
+    field: Field<'a>,
     range: RangeInclusive<f64>,
     decimals: usize,
-    counts_when_left: bool,
 }
 
 impl<'a> NumberField<'a> {
     /// A field for whole numbers of a range: what a screen reader says, and what it does, in a sentence.
     pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
-        Self {
-            name,
+        let field = Field {
             tip,
-            disabled: None,
+            is_number: true,
+            ..Field::new(name, TYPED_MAX)
+        };
+        Self {
+            field,
             range,
             decimals: 0,
-            counts_when_left: true,
         }
     }
 
     /// Nothing can be typed now, for this reason.
     pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
-        self.disabled = reason;
+        self.field.disabled = reason;
         self
     }
 
     /// What was typed counts with Enter alone, not when the field is left: it is sent to a hand.
     pub(crate) const fn needs_enter(mut self) -> Self {
-        self.counts_when_left = false;
+        self.field.counts_when_left = false;
         self
     }
 
@@ -273,20 +275,12 @@ impl<'a> NumberField<'a> {
             let number = strict(text, decimals).filter(|value| self.range.contains(value));
             number.ok_or_else(|| format!("{only} {from}..{to}"))
         };
-        let tip = match self.disabled {
+        let tip = match self.field.disabled {
             Some(reason) => reason.to_owned(),
-            None => format!("{} {from}..{to}", self.tip),
+            None => format!("{} {from}..{to}", self.field.tip),
         };
-        let field = Field {
-            name: self.name,
-            hint: "",
-            tip: &tip,
-            disabled: self.disabled,
-            max: TYPED_MAX,
-            is_number: true,
-            counts_when_left: self.counts_when_left,
-        };
-        field.ui(ui, pane, &shown, read)
+        let tip = tip.as_str();
+        Field { tip, ..self.field }.ui(ui, pane, &shown, read)
     }
 }
 

@@ -40,14 +40,10 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     }
     let hand = state.hand();
     let why = hand.params.write_refusal(&hand.connection.status);
-    let choice = |text, manner, action| Choice::new(text, manner, Action::Param(action));
-    let agree = choice(agree, manner, ParamAction::Agree);
-    card.choice(choice(
-        device::DECLINE,
-        ButtonRole::Safe,
-        ParamAction::Decline,
-    ))
-    .choice(agree.disabled(why.map(device::refusal)))
+    let decline = Action::Param(ParamAction::Decline);
+    let agree = Choice::new(agree, manner, Action::Param(ParamAction::Agree));
+    card.choice(Choice::new(device::DECLINE, ButtonRole::Safe, decline))
+        .choice(agree.disabled(why.map(device::refusal)))
 }
 
 /// What a SAVE changes for the next power-up, row by row.

@@ -55,10 +55,8 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
 fn from_to(look: Look, change: &PlaceChange) -> String {
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
-    look.pair(
-        look.say(device::name(change.id)),
-        &format!("{from} -> {to}"),
-    )
+    let name = look.say(device::name(change.id));
+    look.pair(name, &format!("{from} -> {to}"))
 }
 
 /// Where the hand is now, and where it will be if that is elsewhere.
@@ -122,6 +120,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
 fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Moment) -> Card {
     let look = Look::of(state);
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
+    let part = seconds / KEEP_WITHIN.as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
     let lost = (!state.hand().connection.status.state.is_live()).then_some(main::REFUSED_OFFLINE);
     let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);
@@ -133,10 +132,7 @@ fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Mome
             WhichPlace::Old => cards::KEEP_WAITS,
         })
         .note((cards::NOW_AT, change.places.endpoint(place)))
-        .progress(
-            seconds / KEEP_WITHIN.as_secs_f32(),
-            (cards::GOES_BACK_IN, left),
-        )
+        .progress(part, (cards::GOES_BACK_IN, left))
         .choice(back)
         .choice(keep.disabled(lost))
 }

@@ -332,12 +332,7 @@ fn number_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, value: Option<Value>
 
 fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
     let all = SerialSpeed::ALL.map(|speed| Value::Number(i32::from(speed.code())));
-    let texts = all.map(|value| value_text(ParamId::ReduRatio, Some(value)));
-    let all: Vec<_> = all
-        .into_iter()
-        .map(Some)
-        .zip(texts.iter().map(String::as_str))
-        .collect();
+    let all = all.map(|value| (Some(value), value_text(ParamId::ReduRatio, Some(value))));
     let mut chosen = value;
     ui.spacing_mut().combo_width = 0.0;
     kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?

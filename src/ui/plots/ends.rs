@@ -58,11 +58,9 @@ impl PlotEnds<'_> {
         let frame = *chart.transform.frame();
         let right = frame.right() + width(ui);
         let place = |end: &CurveEnd| {
-            let y = end
-                .value
-                .map(|value| chart.transform.position_from_point_y(value));
-            y.unwrap_or(frame.bottom())
-                .clamp(frame.top(), frame.bottom())
+            let y = |value| chart.transform.position_from_point_y(value);
+            let y = end.value.map_or(frame.bottom(), y);
+            y.clamp(frame.top(), frame.bottom())
         };
         let mut ends: Vec<(f32, &CurveEnd)> = ends.iter().map(|end| (place(end), end)).collect();
         ends.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -104,10 +102,8 @@ impl PlotEnds<'_> {
         };
         response.widget_info(|| WidgetInfo::selected(role, true, true, &named));
         let digits = panel.row.decimals;
-        let text = end.value.map_or_else(
-            || format::UNKNOWN.to_owned(),
-            |value| format!("{value:.digits$}"),
-        );
+        let text = end.value.map(|value| format!("{value:.digits$}"));
+        let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
         let (value, rest) = place.split_left_right_at_x(place.left() + VALUE);
         let label = Label::new(&text, end.color).number().right();
         label.paint(ui, value);

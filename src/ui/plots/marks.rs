@@ -117,7 +117,8 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     // A line is easily missed by some pixels.
     let per_point = shown.transform.dvalue_dpos()[0];
     let by_s = f64::from(theme::STEP) * per_point;
-    let marks = pane.hand().measured.history.marks(at_s - by_s, at_s + by_s);
+    let history = &pane.hand().measured.history;
+    let marks = history.marks(at_s - by_s, at_s + by_s);
     let lines = marks.map(|mark| {
         let at = clock(mark.at.secs(), per_point);
         format!("{at}  {}", told(pane.look, &mark.kind).0)

@@ -105,10 +105,8 @@ impl PlotView {
         let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
         let shown: Vec<&Panel> = shown.collect();
-        let at = shown
-            .iter()
-            .position(|panel| Some(panel.kind) == self.chosen);
-        let at = at.unwrap_or_default();
+        let is_chosen = |panel: &&Panel| Some(panel.kind) == self.chosen;
+        let at = shown.iter().position(is_chosen).unwrap_or_default();
         let Some(chosen) = shown.get(at).copied() else {
             return;
         };
@@ -282,13 +280,14 @@ impl PlotView {
     ) -> ChartResponse {
         let look = pane.look;
         let hand = pane.hand();
+        let own = |history, line: &PanelLine| {
+            let points = Points::Measured(history, line.series);
+            ChartCurve::new(points, self.stroke(look, line))
+        };
         let curve = |line: &PanelLine| ChartCurve {
             steps: line.wished,
             told: (!line.wished).then_some(panel.row.decimals),
-            ..ChartCurve::new(
-                Points::Measured(&hand.measured.history, line.series),
-                self.stroke(look, line),
-            )
+            ..own(&hand.measured.history, line)
         };
         let lines = panel.lines(&self.hidden);
         // The second recording stands behind the first.
@@ -298,10 +297,7 @@ impl PlotView {
                 zero: [beside.offset_s(), 0.0],
                 style: dash::nth(1),
                 beside: true,
-                ..ChartCurve::new(
-                    Points::Measured(&beside.history, line.series),
-                    self.stroke(look, line),
-                )
+                ..own(&beside.history, line)
             })
         });
         let mut levels = Vec::new();

@@ -49,10 +49,8 @@ pub(crate) fn step((low, high): (f64, f64), base: f64) -> f64 {
 pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32) -> (f64, f64) {
     let (low, high) = extent.unwrap_or(least);
     let (low, high) = (low.min(least.0), high.max(least.1));
-    let step = step(
-        (low, high),
-        (high - low) / f64::from(height.max(1.0)) * BASE_PX,
-    );
+    let base = (high - low) / f64::from(height.max(1.0)) * BASE_PX;
+    let step = step((low, high), base);
     // Ends at half a step, so that little of the plot stays empty.
     let half = step / 2.0;
     // A value a hair below zero must not take a quarter of the plot.

@@ -69,11 +69,7 @@ fn align_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, beside: &BesideRe
     let (mut at_own, mut at_other) = (beside.own, beside.other);
     let choose = |ui: &mut Ui, text, chosen: &mut Moment, all: &[(Moment, String)]| {
         ui.label(look.say(text));
-        let all: Vec<(Moment, &str)> = all
-            .iter()
-            .map(|(at, words)| (*at, words.as_str()))
-            .collect();
-        kit::choose_ui(ui, look.say(text), chosen, &all)
+        kit::choose_ui(ui, look.say(text), chosen, all)
     };
     let moved = choose(ui, recordings::ALIGN_OWN, &mut at_own, &own);
     let moved = choose(ui, recordings::ALIGN_OTHER, &mut at_other, &other) || moved;

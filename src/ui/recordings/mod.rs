@@ -234,17 +234,9 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let path = state.recordings.to_delete.as_ref()?;
     let words = look.fill(recordings::DELETE_WHAT, &[&title_of(look, state, path)]);
-    let choice = |text, manner, action| Choice::new(text, manner, Action::Recording(action));
-    let back = choice(
-        recordings::DELETE_NOT,
-        ButtonRole::Safe,
-        RecordingAction::KeepIt,
-    );
-    let delete = choice(
-        recordings::DELETE_SURE,
-        ButtonRole::Danger,
-        RecordingAction::Delete,
-    );
+    let [keep, delete] = [RecordingAction::KeepIt, RecordingAction::Delete].map(Action::Recording);
+    let back = Choice::new(recordings::DELETE_NOT, ButtonRole::Safe, keep);
+    let delete = Choice::new(recordings::DELETE_SURE, ButtonRole::Danger, delete);
     let card = Card::new(look, recordings::DELETE_TITLE).warning(words);
     Some(card.choice(back).choice(delete))
 }

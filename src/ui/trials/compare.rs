@@ -272,17 +272,10 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
-    let choice = |text, manner, action| Choice::new(text, manner, Action::Trial(action));
-    let back = choice(
-        tune::FORGET_NOT,
-        ButtonRole::Safe,
-        TrialAction::CancelForget,
-    );
-    let forget = choice(
-        tune::FORGET_SURE,
-        ButtonRole::Danger,
-        TrialAction::ConfirmForget,
-    );
+    let keep = Action::Trial(TrialAction::CancelForget);
+    let back = Choice::new(tune::FORGET_NOT, ButtonRole::Safe, keep);
+    let forget = Action::Trial(TrialAction::ConfirmForget);
+    let forget = Choice::new(tune::FORGET_SURE, ButtonRole::Danger, forget);
     let card = Card::new(look, tune::FORGET_TITLE).words(compare_list::name(look, session.id));
     Some(card.warning(loses).choice(back).choice(forget))
 }

@@ -294,10 +294,9 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
     let response = button.selected(is_open).large().ui(ui, look);
     let rect = response.rect;
     if is_open {
-        let under = Rect::from_min_max(
-            rect.left_bottom() + vec2(theme::PAD, 0.0),
-            rect.right_bottom() + vec2(-theme::PAD, 2.0),
-        );
+        let xs = rect.x_range().shrink(theme::PAD);
+        let ys = rect.bottom()..=rect.bottom() + 2.0;
+        let under = Rect::from_x_y_ranges(xs, ys);
         ui.painter().rect_filled(under, 1.0, look.palette.accent);
     }
     if response.clicked() {

@@ -300,9 +300,8 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
     let mut wishes = Vec::new();
     let mut opens_a_field = false;
     input.events.retain(|event| {
-        let meant = ROWS
-            .iter()
-            .find(|row| row.is_meant(event) || row.is_stop(event));
+        let is_meant = |row: &&KeyRow| row.is_meant(event) || row.is_stop(event);
+        let meant = ROWS.iter().find(is_meant);
         let Some(row) = meant.filter(|row| !typing || row.key == Key::Escape) else {
             let key = entry_key(event).filter(|_| !typing && meant.is_none());
             wishes.extend(key.map(Wish::Entry));

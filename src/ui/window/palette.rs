@@ -84,17 +84,13 @@ impl CommandPalette {
     pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<Command> {
         let query = self.query.as_mut()?;
         let (look, unready) = (pane.look, pane.unready());
-        let steps = ui.input_mut(|input| {
+        let [down, up, enters] = ui.input_mut(|input| {
             let mut taken = |key| input.count_and_consume_key(Modifiers::NONE, key);
-            (
-                taken(Key::ArrowDown),
-                taken(Key::ArrowUp),
-                taken(Key::Enter),
-            )
+            [Key::ArrowDown, Key::ArrowUp, Key::Enter].map(&mut taken)
         });
         let found = found(ui, pane, &query.text);
         let last = found.len().saturating_sub(1);
-        query.chosen = (query.chosen + steps.0).saturating_sub(steps.1).min(last);
+        query.chosen = (query.chosen + down).saturating_sub(up).min(last);
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let window = Window::new(look.say(window::COMMANDS))
             .id(Id::unique("command palette"))
@@ -108,7 +104,7 @@ impl CommandPalette {
             ui.set_width((place.width() - 4.0 * theme::PAD).min(WIDTH));
             query.ui(ui, look, unready, &found)
         })?;
-        let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
+        let entered = (enters > 0).then(|| found.get(query.chosen)).flatten();
         let entered = entered.filter(|listed| unready.is_none() || !listed.command.needs_arming());
         let entered = entered.map(|listed| listed.command.clone());
         let chosen = shown.inner.flatten().or(entered);

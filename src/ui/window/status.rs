@@ -468,11 +468,8 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     title.title().ui(ui);
     let width = kit::text_width(ui, &warning.body, theme::body());
     let words = Label::new(&warning.body, look.palette.text);
-    let words = if width > ui.available_width() {
-        words.small()
-    } else {
-        words
-    };
+    let is_long = width > ui.available_width();
+    let words = if is_long { words.small() } else { words };
     words.ui(ui).on_hover_text(&warning.body);
 }
 

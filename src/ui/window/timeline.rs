@@ -52,9 +52,10 @@ fn recording(pane: &mut Pane<'_>, action: RecordingAction) {
 
 fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
-    let (run, run_icon) = match line.runs {
-        true => (recordings::PAUSE, theme::PAUSE),
-        false => (recordings::RUN, theme::PLAY),
+    let (run, run_icon) = if line.runs {
+        (recordings::PAUSE, theme::PAUSE)
+    } else {
+        (recordings::RUN, theme::PLAY)
     };
     for (text, icon, action) in [
         (
@@ -227,9 +228,11 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let length = line.last.since(line.first);
     if let Some(pointer) = dragged_to(ui, &response) {
         let here = moment(line, length, share(place, pointer.x));
-        let (shift, pressed_at) =
-            ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
-        match pressed_at.filter(|_| shift) {
+        let begun = ui.input(|input| {
+            let origin = input.pointer.press_origin();
+            origin.filter(|_| input.modifiers.shift)
+        });
+        match begun {
             Some(origin) => {
                 let from = moment(line, length, share(place, origin.x));
                 recording(pane, RecordingAction::Loop(Some((from, here))));
@@ -244,10 +247,8 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         let near = entries(look, line).filter(|entry| away(entry) < theme::STEP);
         let near = near.min_by(|one, other| away(one).total_cmp(&away(other)));
         let clock = clock(here.since(line.first));
-        let words = near.map_or_else(
-            || look.tip(recordings::LINE).to_owned(),
-            |entry| entry.say(look),
-        );
+        let words = near.map(|entry| entry.say(look));
+        let words = words.unwrap_or_else(|| look.tip(recordings::LINE).to_owned());
         response.on_hover_text(format!("{clock}\n{words}"));
     }
 }
@@ -273,18 +274,12 @@ fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {
     let (painter, palette) = (ui.painter_at(place.expand(theme::STEP)), look.palette);
     painter.rect_filled(place, theme::ROUND_SMALL, palette.sunken);
     if let Some((from, to)) = line.looped {
-        let stretch = Rect::from_x_y_ranges(
-            x_of(place, line, from)..=x_of(place, line, to),
-            place.y_range(),
-        );
+        let xs = x_of(place, line, from)..=x_of(place, line, to);
+        let stretch = Rect::from_x_y_ranges(xs, place.y_range());
         painter.rect_filled(stretch, 0.0, palette.accent.gamma_multiply(0.2));
     }
-    strip::strip(
-        &painter,
-        look,
-        place.shrink2(vec2(0.0, theme::STEP)),
-        &line.strip,
-    );
+    let inner = place.shrink2(vec2(0.0, theme::STEP));
+    strip::strip(&painter, look, inner, &line.strip);
     for (column, (_, color)) in columns(look, place, line) {
         #[expect(clippy::cast_precision_loss, reason = "a column of a screen")]
         let x = column as f32;
