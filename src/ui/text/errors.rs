@@ -423,6 +423,7 @@ pub(crate) fn reason(look: Look, reason: Refusal) -> String {
 mod tests {
     use super::*;
     use crate::app::settings::Theme;
+    use crate::hand::gap::NotOffered;
     use crate::hand::kinematics::Side;
     use crate::link::Owner;
     use crate::params::rows::ParamId;
