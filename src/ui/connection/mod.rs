@@ -117,13 +117,8 @@ impl ConnectionForm {
             let change = Button::said(look, scan_text::CHANGE).large();
             let change = change.switch(self.is_unfolded && fields.is_some());
             let none = look.say(scan_text::CHANGE_NONE);
-            if change
-                .disabled_if(fields.is_none(), none)
-                .ui(ui, look)
-                .clicked()
-            {
-                self.is_unfolded ^= true;
-            }
+            let change = change.disabled_if(fields.is_none(), none);
+            change.flips(ui, look, &mut self.is_unfolded);
         });
         if let Some(mut fields) = fields.filter(|_| self.is_unfolded) {
             ui.add_space(theme::STEP);

@@ -250,7 +250,6 @@ pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.hand().readings.faults.unseen().next().is_none();
     let button = Button::said(look, notices::SEEN_ALL);
-    button
-        .disabled_if(none, look.say(notices::SEEN_NONE))
-        .on_click(ui, pane, Action::SeenFaults);
+    let button = button.disabled_if(none, look.say(notices::SEEN_NONE));
+    button.on_click(ui, pane, Action::SeenFaults);
 }

@@ -131,11 +131,9 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(notices::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
-    button
-        .disabled(reason)
-        .on_click(ui, pane, Action::ClearErrors);
+    let button = Button::said(look, panels::CLEAR).disabled(reason);
+    button.on_click(ui, pane, Action::ClearErrors);
 }
 
 /// That nothing is wrong, or that nobody knows.

@@ -61,11 +61,10 @@ fn chart<'a>(
     };
     let fault = recording.fault().map_or(recording.to, |fault| fault.at);
     let moments = recording.faults.iter();
+    let moments = moments.map(|fault| (fault.at.secs(), look.palette.bad));
     Chart {
         curves: lines.into_iter().map(curve).collect(),
-        moments: moments
-            .map(|fault| (fault.at.secs(), look.palette.bad))
-            .collect(),
+        moments: moments.collect(),
         least: panel.row.least_scale,
         times: Times::From(fault.secs(), look.say(notices::RECORDING_FAULT)),
         ..Chart::new(look, panel.title, height)
@@ -82,10 +81,8 @@ fn title(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     if more == 0 {
         return title;
     }
-    format!(
-        "{title} + {more} {}",
-        pane.look.say(notices::RECORDING_MORE)
-    )
+    let other = pane.look.say(notices::RECORDING_MORE);
+    format!("{title} + {more} {other}")
 }
 
 impl FaultRecordingsView {

@@ -205,10 +205,8 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     }
     let line = place.with_min_y(place.bottom() - theme::PAD);
     let label = Label::new(&words, grip_color(pane, state)).small();
-    label
-        .named(look.say(panels::GRIP))
-        .put(ui, line)
-        .on_hover_text(look.tip(panels::GRIP));
+    let label = label.named(look.say(panels::GRIP)).put(ui, line);
+    label.on_hover_text(look.tip(panels::GRIP));
 }
 
 /// Loud where the user should look.

@@ -194,9 +194,8 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 /// Says under the picture what a grey finger stands for.
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect) {
     let place = picture.with_min_y(picture.bottom() - theme::PAD);
-    kit::Label::note(look, panels::UNKNOWN)
-        .center()
-        .put(ui, place);
+    let note = kit::Label::note(look, panels::UNKNOWN);
+    note.center().put(ui, place);
 }
 
 /// Which hand is drawn, as a button that draws the other one.

@@ -34,10 +34,9 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 Label::new(&words, look.palette.muted).small().ui(ui);
             }
             if owner.is_some() {
-                let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
-                button
-                    .large()
-                    .on_click(ui, pane, Action::Input(InputAction::TakeBack));
+                let button = Button::said(look, inputs::TAKE_BACK).large();
+                let button = button.weight(Weight::Strong);
+                button.on_click(ui, pane, Action::Input(InputAction::TakeBack));
             }
         });
         ui.horizontal_wrapped(|ui| {

@@ -59,15 +59,13 @@ impl JointsView {
                 aim::link(ui);
             }
             let style = RowStyle { line, each, linked };
-            ScrollArea::vertical()
-                .max_height(room)
-                .auto_shrink(false)
-                .show(ui, |ui| {
-                    ui.spacing_mut().item_spacing.y = 0.0;
-                    for dof in Dof::ALL {
-                        ui.push_id(dof, |ui| row_ui(ui, pane, dof, style));
-                    }
-                });
+            let area = ScrollArea::vertical().max_height(room);
+            area.auto_shrink(false).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                for dof in Dof::ALL {
+                    ui.push_id(dof, |ui| row_ui(ui, pane, dof, style));
+                }
+            });
             all_joints_ui(ui, pane);
             presets_ui(ui, pane);
         });

@@ -174,10 +174,9 @@ pub(crate) fn click_if(enabled: bool) -> Sense {
 
 /// Width of a text on one line.
 pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
-    ui.painter()
-        .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
-        .size()
-        .x
+    let (text, color) = (text.to_owned(), Color32::PLACEHOLDER);
+    let galley = ui.painter().layout_no_wrap(text, font, color);
+    galley.size().x
 }
 
 /// How a button looks.

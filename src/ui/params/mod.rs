@@ -93,9 +93,8 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (copy, unknown, ParamAction::CopyLive),
     ];
     for (button, disabled, wish) in tools {
-        button
-            .disabled(disabled)
-            .on_click(ui, pane, Action::Param(wish));
+        let button = button.disabled(disabled);
+        button.on_click(ui, pane, Action::Param(wish));
     }
 }
 

@@ -396,10 +396,10 @@ impl<'a> Chart<'a> {
             else {
                 continue;
             };
-            let value = history
-                .reading(series, at_s)
-                .map(|reading| f64::from(reading.value));
-            let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
+            let value = history.reading(series, at_s).map(|reading| {
+                let value = f64::from(reading.value) - curve.zero[1];
+                format!("{value:.digits$}")
+            });
             let text = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
             let format = TextFormat::simple(theme::number(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
@@ -413,11 +413,7 @@ impl<'a> Chart<'a> {
         let response = ui.add(egui::Label::new(galley));
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
-        let name = format!(
-            "{} {}",
-            look.say(self.title),
-            look.say(panels::UNDER_POINTER)
-        );
+        let name = look.told(self.title, look.say(panels::UNDER_POINTER));
         kit::rename(&response, &name);
     }
 
@@ -478,11 +474,8 @@ impl<'a> Chart<'a> {
         if let Some([a, b]) = self.cursors {
             let accent = self.look.palette.accent;
             let between = egui_plot::Span::new("", a.min(b)..=a.max(b));
-            plot.span(
-                between
-                    .fill(accent.gamma_multiply(0.08))
-                    .border_color(accent),
-            );
+            let between = between.fill(accent.gamma_multiply(0.08));
+            plot.span(between.border_color(accent));
         }
         for (at_s, color) in &self.moments {
             plot.vline(VLine::new("", *at_s).color(*color));

@@ -65,15 +65,11 @@ pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chos
     let (upper, lower) = words
         .shrink2(vec2(theme::GAP, 0.0))
         .split_top_bottom_at_fraction(0.5);
+    let limits = format!("{} · {} g", pose.speed.get(), pose.force.get());
     let about = if let Some(gap) = pose.gap {
-        format!(
-            "{} mm · {} · {} g",
-            gap.mm(),
-            pose.speed.get(),
-            pose.force.get()
-        )
+        format!("{} mm · {limits}", gap.mm())
     } else if pose.tags.is_empty() {
-        format!("{} · {} g", pose.speed.get(), pose.force.get())
+        limits
     } else {
         pose.tags.join(" · ")
     };
@@ -292,11 +288,8 @@ pub(crate) fn gesture_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) -> 
     let look = pane.look;
     let known = pane.state.settings.gesture_name(gesture);
     let number = gesture.get().to_string();
-    let label = format!(
-        "{} {number} {}",
-        look.say(panels::GESTURE),
-        known.unwrap_or_default()
-    );
+    let name = known.unwrap_or_default();
+    let label = format!("{} {number} {name}", look.say(panels::GESTURE));
     let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
     let text = known.map_or_else(|| number.clone(), |name| format!("{name}  {number}"));
     let weight = match known {

@@ -164,9 +164,8 @@ impl TouchView {
             tared.named(look.say(panels::TARED_NAME)).ui(ui);
         });
         if self.numbers {
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| table::all_ui(ui, pane));
+            let area = ScrollArea::vertical().auto_shrink(false);
+            area.show(ui, |ui| table::all_ui(ui, pane));
         } else {
             self.detail.ui(ui, pane);
         }

@@ -32,9 +32,7 @@ pub(crate) fn name(look: Look, id: SessionId) -> String {
 pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: SessionId) -> LineStyle {
     let count = shown.len();
     let at = shown.into_iter().position(|own| own == id);
-    at.map_or(LineStyle::Solid, |at| {
-        dash::nth(count.saturating_sub(at + 1))
-    })
+    dash::nth(at.map_or(0, |at| count.saturating_sub(at + 1)))
 }
 
 /// Draws the list, the newest first.

@@ -21,16 +21,14 @@ use std::ops::RangeInclusive;
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.hand();
     let runs = hand.runs_series() || hand.series_asked.is_some();
-    ScrollArea::vertical()
-        .id_salt("search")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
-            if let Some(search) = &pane.state.trials.search {
-                ui.add_space(theme::GAP);
-                search_ui(ui, pane, search);
-            }
-        });
+    let area = ScrollArea::vertical().id_salt("search");
+    area.auto_shrink(false).show(ui, |ui| {
+        ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
+        if let Some(search) = &pane.state.trials.search {
+            ui.add_space(theme::GAP);
+            search_ui(ui, pane, search);
+        }
+    });
 }
 
 fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {

@@ -73,10 +73,8 @@ fn rows(group: Text) -> Vec<(String, Text)> {
     wishes.dedup();
     // One stands for all.
     wishes.retain(|wish| !matches!(wish, Wish::Hand(1..)));
-    let mut rows: Vec<_> = wishes
-        .into_iter()
-        .map(|wish| (wish.keys(), wish.words()))
-        .collect();
+    let rows = wishes.into_iter().map(|wish| (wish.keys(), wish.words()));
+    let mut rows: Vec<(String, Text)> = rows.collect();
     if group == window::KEY_MOTION {
         rows.push(("Shift+F".to_owned(), window::KEY_ENTRY));
     }
@@ -91,9 +89,8 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
     let shut = kit::head_ui(ui, look, look.say(window::KEYS), |ui| {
         let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
-        shut.named(look.say(window::KEYS_CLOSE))
-            .ui(ui, look)
-            .clicked()
+        let shut = shut.named(look.say(window::KEYS_CLOSE));
+        shut.ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(COLUMNS) {
