@@ -3,7 +3,7 @@
 use crate::ui::text::{Text, checkup, inputs, main, recordings, window};
 
 /// One of the five places between which the header switches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The hand, its joints and its plots.
     Live,

@@ -55,8 +55,7 @@ fn pictures(report: &mut Report) -> Result<(), Failure> {
         driver.run_for(Duration::from_millis(20));
         let ([wall, drawing], picture) = wall_and_cpu_ms(|| driver.picture(View::Live));
         drawn.push(wall);
-        let ([wall, encoding], bytes) =
-            wall_and_cpu_ms(|| png::encode(&picture.rgba, picture.size));
+        let ([wall, encoding], bytes) = wall_and_cpu_ms(|| png::encode(&picture.rgb, picture.size));
         encoded.push(wall);
         cpu.push(drawing + encoding);
         std::hint::black_box(bytes?);

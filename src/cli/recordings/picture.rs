@@ -43,5 +43,5 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
     let picture = driver.picture(View::Live);
     // From here on a signal finds a whole file or none.
     let _wished = EndWished::listen()?;
-    Ok(png::save(out, &picture.rgba, picture.size)?)
+    Ok(png::save(out, &picture.rgb, picture.size)?)
 }

@@ -109,7 +109,7 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
                 let picture = driver.picture(view);
                 let labels = args.out.join(format!("{name}{of_language}.json"));
                 let image = args.out.join(format!("{name}{of_language}{of_theme}.png"));
-                png::save(&image, &picture.rgba, picture.size)?;
+                png::save(&image, &picture.rgb, picture.size)?;
                 out.line(&image.display().to_string())?;
                 // What stands where does not depend on colours.
                 if number == 0 {

@@ -17,6 +17,7 @@ use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
 use crate::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
+use mundy::{Interest, Preferences, Subscription};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -24,6 +25,9 @@ use std::time::Duration;
 
 /// Ages and countdowns move on this often when nothing comes in.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
+
+/// Places, menus and cards fade for so long, in seconds.
+const FADE_S: f32 = 0.12;
 
 /// A window that does not fill its screen, and should, is told to again after this.
 const FILL_EACH: Duration = Duration::from_millis(500);
@@ -79,6 +83,20 @@ impl Beginning {
     }
 }
 
+/// Lets nothing move by itself where the system asks for reduced motion, and else fade.
+fn fade_as_wished(ctx: &egui::Context) -> Subscription {
+    let ctx = ctx.clone();
+    Preferences::subscribe(Interest::ReducedMotion, move |wished| {
+        let fade_s = if wished.reduced_motion.is_reduce() {
+            0.0
+        } else {
+            FADE_S
+        };
+        ctx.all_styles_mut(|style| style.animation_time = fade_s);
+        ctx.request_repaint();
+    })
+}
+
 /// The program behind the window.
 pub(crate) struct Program {
     desktop_app: DesktopApp,
@@ -94,6 +112,8 @@ pub(crate) struct Program {
     fills: Option<Filling>,
     closing: bool,
     ending: Arc<Ending>,
+    /// What the system says of motion is heard for as long as this is kept.
+    _motion: Subscription,
 }
 
 impl Drop for Program {
@@ -163,6 +183,7 @@ impl Program {
             fills: None,
             closing: false,
             ending,
+            _motion: fade_as_wished(ctx),
         }
     }
 

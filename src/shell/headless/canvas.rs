@@ -41,8 +41,8 @@ pub struct FrameOut {
 /// A finished picture with what stands in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// RGBA8, opaque, row by row from the top left.
-    pub rgba: Vec<u8>,
+    /// RGB8, row by row from the top left: pictures are opaque.
+    pub rgb: Vec<u8>,
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// The list of [`labels_json`].
@@ -121,7 +121,7 @@ impl Canvas {
             .draw(&primitives, frame.pixels_per_point, opaque);
         self.raster.free_textures();
         Picture {
-            rgba: self.raster.pixels().to_vec(),
+            rgb: self.raster.rgb(),
             size: self.raster.size(),
             labels: frame
                 .tree
@@ -174,8 +174,8 @@ mod tests {
     /// The pixels that differ from the first one, as column and row.
     fn lit(picture: &Picture) -> Vec<(usize, usize)> {
         let width = usize::try_from(picture.size.0).unwrap();
-        let background = picture.rgba[..4].to_vec();
-        let pixels = picture.rgba.chunks_exact(4).enumerate();
+        let background = picture.rgb[..3].to_vec();
+        let pixels = picture.rgb.chunks_exact(3).enumerate();
         pixels
             .filter(|(_, pixel)| *pixel != background)
             .map(|(at, _)| (at % width, at / width))
@@ -204,7 +204,6 @@ mod tests {
                 );
             }
             assert_eq!(one.labels[0]["name"], "Ring 42");
-            assert!(one.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255));
         }
     }
 
@@ -218,9 +217,9 @@ mod tests {
         assert_eq!(picture.size, (60, 45));
         assert!(
             picture
-                .rgba
-                .chunks_exact(4)
-                .all(|pixel| pixel == [255, 0, 0, 255])
+                .rgb
+                .chunks_exact(3)
+                .all(|pixel| pixel == [255, 0, 0])
         );
     }
 

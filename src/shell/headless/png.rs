@@ -16,7 +16,7 @@ pub enum ImageError {
         width: u32,
         /// Height in pixels.
         height: u32,
-        /// Bytes of such a picture in RGBA8.
+        /// Bytes of such a picture in RGB8.
         wanted: u64,
         /// Bytes given.
         got: u64,
@@ -43,12 +43,12 @@ pub enum ImageError {
     },
 }
 
-/// RGBA8 pixels, row by row from the top left, as the bytes of a PNG file. Alpha is left out: pictures are opaque.
+/// RGB8 pixels, row by row from the top left, as the bytes of a PNG file.
 ///
 /// # Errors
 /// [`ImageError::Size`] and [`ImageError::Encode`].
 pub fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, ImageError> {
-    let wanted = u64::from(width) * u64::from(height) * 4;
+    let wanted = u64::from(width) * u64::from(height) * 3;
     let got = u64::try_from(pixels.len()).unwrap_or(u64::MAX);
     if got != wanted {
         return Err(ImageError::Size {
@@ -58,10 +58,6 @@ pub fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Ima
             got,
         });
     }
-    let rgb: Vec<u8> = pixels
-        .chunks_exact(4)
-        .flat_map(|pixel| pixel.iter().take(3).copied())
-        .collect();
     let refused = |error: ::png::EncodingError| ImageError::Encode {
         width,
         height,
@@ -73,7 +69,7 @@ pub fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Ima
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_compression(::png::Compression::Fast);
     let mut writer = encoder.write_header().map_err(refused)?;
-    writer.write_image_data(&rgb).map_err(refused)?;
+    writer.write_image_data(pixels).map_err(refused)?;
     writer.finish().map_err(refused)?;
     Ok(bytes)
 }
@@ -109,7 +105,7 @@ fn part_of(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
 
-    const PIXELS: [u8; 16] = [1, 2, 3, 255, 4, 5, 6, 255, 7, 8, 9, 255, 10, 11, 12, 255];
+    const PIXELS: [u8; 12] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
 
     #[test]
     fn saved_picture_reads_back_and_bytes_repeat() {
@@ -123,7 +119,7 @@ mod tests {
         let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut rgb).unwrap();
         assert_eq!((info.width, info.height), (2, 2));
-        assert_eq!(rgb, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+        assert_eq!(rgb, PIXELS);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
@@ -152,8 +148,8 @@ mod tests {
             ImageError::Size {
                 width: 2,
                 height: 3,
-                wanted: 24,
-                got: 16
+                wanted: 18,
+                got: 12
             }
         );
         assert!(matches!(

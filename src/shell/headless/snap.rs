@@ -14,5 +14,5 @@ pub fn snap(size: (u32, u32), at_s: f64, draw: &mut dyn FnMut(&mut egui::Ui)) ->
     ui::install(canvas.context(), Theme::Dark, Language::En);
     canvas.hold_still();
     let picture = canvas.picture(at_s, draw);
-    png::encode(&picture.rgba, picture.size).ok()
+    png::encode(&picture.rgb, picture.size).ok()
 }

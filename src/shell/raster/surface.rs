@@ -147,6 +147,12 @@ impl Raster {
         self.pixels.as_flattened()
     }
 
+    /// The picture without its alpha: RGB8, row by row from the top left.
+    pub fn rgb(&self) -> Vec<u8> {
+        let pixels = self.pixels.iter();
+        pixels.flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)

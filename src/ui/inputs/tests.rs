@@ -277,7 +277,7 @@ fn the_picture_is_drawn_where_somebody_wants_to_see_it() {
             canvas.hold_still();
             let picture = canvas.picture(0.0, &mut draw);
             let path = Path::new(&folder).join(format!("pad-{what}-{language:?}.png"));
-            png::save(&path, &picture.rgba, picture.size).unwrap();
+            png::save(&path, &picture.rgb, picture.size).unwrap();
         }
     }
 }

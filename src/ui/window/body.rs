@@ -168,6 +168,7 @@ impl Body {
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
+        fade_in(ui, self.view.place());
         if self.view != View::Recordings {
             self.recordings.leave();
         }
@@ -257,6 +258,17 @@ impl Body {
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             self.own.plots.ui(ui, pane)
         });
+    }
+}
+
+/// Lets a place come forth that was just opened, as fast as the style says; at once where nothing is to move by itself.
+fn fade_in(ui: &mut Ui, open: Place) {
+    for place in Place::ALL {
+        let id = ui.id().with(("fade", place));
+        let share = ui.ctx().animate_bool(id, place == open);
+        if place == open {
+            ui.set_opacity(share);
+        }
     }
 }
 

@@ -273,7 +273,7 @@ impl Small {
             for channel in 0..3 {
                 let square = (0..SHRINK * SHRINK).map(|at| {
                     let (row, column) = (y * SHRINK + at / SHRINK, x * SHRINK + at % SHRINK);
-                    usize::from(picture.rgba[(row * wide + column) * 4 + channel])
+                    usize::from(picture.rgb[(row * wide + column) * 3 + channel])
                 });
                 let mean = square.sum::<usize>() / (SHRINK * SHRINK);
                 rgb.push(u8::try_from(mean).unwrap() & COLOUR_BITS);
@@ -488,10 +488,8 @@ fn the_readme_has_few_small_pictures() {
         for stage in STAGES.iter().chain([&held]) {
             let wants = |name: &str| SCREENSHOTS.contains(&name);
             draw(stage, README_SCALE, wants, |name, picture| {
-                let rgb = picture.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
-                let rgb: Vec<u8> = rgb.copied().collect();
                 let size = (picture.size.0 as usize, picture.size.1 as usize);
-                write_png(&folder.join(format!("{name}.png")), &rgb, size);
+                write_png(&folder.join(format!("{name}.png")), &picture.rgb, size);
             });
         }
     }

@@ -203,9 +203,8 @@ impl Display {
     fn keep_picture(&self) {
         let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/window_session.png");
         let pixels = self.pixels();
-        let opaque = pixels.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]);
-        let rgba: Vec<u8> = opaque.collect();
-        let kept = handscope::shell::headless::png::save(file.as_ref(), &rgba, SIZE);
+        let rgb = pixels.as_flattened();
+        let kept = handscope::shell::headless::png::save(file.as_ref(), rgb, SIZE);
         println!("what the display showed: {file} ({kept:?})");
     }
 

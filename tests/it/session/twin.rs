@@ -127,7 +127,7 @@ impl Twin {
 }
 
 fn difference(picture: &Picture, pixels: &[[u8; 3]]) -> f64 {
-    let drawn = picture.rgba.chunks_exact(4);
+    let drawn = picture.rgb.chunks_exact(3);
     assert_eq!(drawn.len(), pixels.len());
     let far = |one: &u8, other: &u8| one.abs_diff(*other) > CHANNEL;
     let differing = drawn.zip(pixels).filter(|(drawn, shown)| {

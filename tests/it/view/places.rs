@@ -150,7 +150,7 @@ fn draw(make: fn() -> State, what: &str) {
                 let picture = canvas.picture(0.0, |ui| drop(window.ui(ui, &state)));
                 let name = format!("{what}-{}-{}-{language:?}.png", view.name(), size.0);
                 let path = Path::new(&folder).join(name.replace(' ', "-"));
-                png::save(&path, &picture.rgba, picture.size).unwrap();
+                png::save(&path, &picture.rgb, picture.size).unwrap();
             }
         }
     }
@@ -326,7 +326,7 @@ fn all_hands_side_by_side_are_drawn_for_who_wants_to_see_them() {
     canvas.hold_still();
     let picture = canvas.picture(0.0, |ui| drop(window.ui(ui, &state)));
     let path = Path::new(&folder).join("side-by-side.png");
-    png::save(&path, &picture.rgba, picture.size).unwrap();
+    png::save(&path, &picture.rgb, picture.size).unwrap();
 }
 
 #[test]

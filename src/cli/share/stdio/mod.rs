@@ -10,7 +10,7 @@ use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::cli::share::stdio::ask::{Ask, Asked, MoveAsk};
 use crate::cli::share::stdio::pipe::{NobodyReads, Told};
-use crate::cli::share::stdio::refused::Refused;
+use crate::cli::share::stdio::refused::{RefusalKind, Refused};
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
@@ -39,6 +39,7 @@ const ARMS_WITHIN: Duration = Duration::from_secs(5);
 /// So long a lost link is waited for at the end, as the hand may go on to where the program sent it: for one dial that fails, and
 /// one that does not.
 const BACK_WITHIN: Duration = Duration::from_secs(6);
+const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
 
@@ -66,10 +67,26 @@ struct Task {
     /// Whom its end is told to; `null` for nobody.
     id: Value,
     done: BoxFuture<'static, Done>,
+    kind: TaskKind,
+}
+
+impl Task {
+    fn of(id: Value, done: impl Future<Output = Done> + Send + 'static) -> Self {
+        Self {
+            id,
+            done: done.boxed(),
+            kind: TaskKind::Other,
+        }
+    }
+}
+
+/// What it means that a task is dropped.
+enum TaskKind {
     /// It takes the right to move the hand, which nobody has yet if it is dropped.
-    arms: bool,
-    /// Where targets go while it follows.
-    offers: Option<mpsc::Sender<Offer>>,
+    Arms,
+    /// It follows what comes here, until it is dropped: that ends nothing else.
+    Follows(mpsc::Sender<Offer>),
+    Other,
 }
 
 /// The right to move the hand, from `arm` to its end.
@@ -250,7 +267,10 @@ impl Script<'_> {
     /// The right to move the hand is over, which was not asked for.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
         self.right = None;
-        self.owes_stop = matches!(why.kind, "link_lost" | "resume");
+        self.owes_stop = matches!(
+            why.kind,
+            RefusalKind::Ended(Disarmed::LinkLost | Disarmed::Resume)
+        );
         self.told
             .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
@@ -274,7 +294,7 @@ impl Script<'_> {
     fn obey(&mut self, asked: Asked) -> Result<(), NobodyReads> {
         let Asked { id, what } = asked;
         let done = match what {
-            Err(why) => Err(Refused::new("wrong", why)),
+            Err(why) => Err(Refused::new(RefusalKind::Wrong, why)),
             Ok(Ask::Rate(rates)) => {
                 self.hand.link.read_at(rates);
                 Ok(())
@@ -291,7 +311,7 @@ impl Script<'_> {
             Ok(Ask::Stop) => return self.stop(id),
             Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
             Ok(Ask::Release) if self.owes_stop && !self.is_live => {
-                Err(Refused::new("link_lost", STOP_LOST))
+                Err(Refused::new(LINK_LOST, STOP_LOST))
             }
             Ok(Ask::Release) => {
                 self.end_task()?;
@@ -311,9 +331,11 @@ impl Script<'_> {
                 let link = self.hand.link.clone();
                 let clearing = async move {
                     let done = link.write(HandCommand::ClearErrors).await;
-                    Done::Cleared(done.map_err(|error| Refused::new("refused", error.to_string())))
+                    Done::Cleared(
+                        done.map_err(|error| Refused::new(RefusalKind::Refused, error.to_string())),
+                    )
                 };
-                return self.begin(id, clearing.boxed());
+                return self.begin(Task::of(id, clearing));
             }
         };
         self.reply(&id, done.map(|()| json!({})))
@@ -321,9 +343,12 @@ impl Script<'_> {
 
     /// The right to move the hand, or why there is none.
     fn right(&mut self) -> Result<Right, Refused> {
-        let right = self
-            .right
-            .ok_or_else(|| Refused::new("not_armed", "nothing was moved: arm the hand first"))?;
+        let right = self.right.ok_or_else(|| {
+            Refused::new(
+                RefusalKind::NotArmed,
+                "nothing was moved: arm the hand first",
+            )
+        })?;
         self.hand.link.check(right.lease)?;
         Ok(right)
     }
@@ -333,29 +358,27 @@ impl Script<'_> {
         let Some(task) = self.task.take() else {
             return Ok(());
         };
-        if task.offers.is_some() {
+        if matches!(task.kind, TaskKind::Follows(_)) {
             return Ok(());
         }
         let holder = self.hand.link.status().holder;
         let is_own = holder.is_some_and(|holder| holder.owner == Owner::Task);
-        if task.arms && is_own && self.holds().is_none() {
+        if matches!(task.kind, TaskKind::Arms) && is_own && self.holds().is_none() {
             self.hand.link.disarm();
         }
         self.reply(
             &task.id,
-            Err(Refused::new("replaced", "something else was asked for")),
+            Err(Refused::new(
+                RefusalKind::Replaced,
+                "something else was asked for",
+            )),
         )
     }
 
     /// Begins a task in place of what goes on.
-    fn begin(&mut self, id: Value, done: BoxFuture<'static, Done>) -> Result<(), NobodyReads> {
+    fn begin(&mut self, task: Task) -> Result<(), NobodyReads> {
         self.end_task()?;
-        self.task = Some(Task {
-            id,
-            done,
-            arms: false,
-            offers: None,
-        });
+        self.task = Some(task);
         Ok(())
     }
 
@@ -367,7 +390,7 @@ impl Script<'_> {
         let link = self.hand.link.clone();
         let stopping =
             async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
-        self.begin(id, stopping.boxed())
+        self.begin(Task::of(id, stopping))
     }
 
     /// Takes the right to move the hand, unless another has it.
@@ -375,11 +398,11 @@ impl Script<'_> {
         let held = self.holds();
         let link = self.hand.link.clone();
         let arming = async move { Done::Armed(granted(&link, held, limits).await) };
-        self.begin(id, arming.boxed())?;
-        if let Some(task) = &mut self.task {
-            task.arms = true;
-        }
-        Ok(())
+        self.begin(Task {
+            id,
+            done: arming.boxed(),
+            kind: TaskKind::Arms,
+        })
     }
 
     fn move_hand(&mut self, id: Value, right: Right, ask: MoveAsk) -> Result<(), NobodyReads> {
@@ -403,7 +426,7 @@ impl Script<'_> {
             };
             Done::Moved(Ok(move_to(&link, start).await))
         };
-        self.begin(id, moving.boxed())
+        self.begin(Task::of(id, moving))
     }
 
     /// Lets the hand follow a target, as a stream of them is followed.
@@ -424,7 +447,7 @@ impl Script<'_> {
             // A script may rightly stand still; it is heard, or silent.
             mark: None,
         };
-        if self.task.as_ref().is_none_or(|task| task.offers.is_none()) {
+        if self.followed_by().is_none() {
             let (offers, followed) = mpsc::channel(OFFERS_MAX);
             let link = self.hand.link.clone();
             let start = FollowStart {
@@ -440,16 +463,25 @@ impl Script<'_> {
                     Err(no) => Done::Followed(Err(no)),
                 }
             };
-            self.begin(Value::Null, following.boxed())?;
-            if let Some(task) = &mut self.task {
-                task.offers = Some(offers);
-            }
+            self.begin(Task {
+                id: Value::Null,
+                done: following.boxed(),
+                kind: TaskKind::Follows(offers),
+            })?;
         }
-        if let Some(offers) = self.task.as_ref().and_then(|task| task.offers.as_ref()) {
+        if let Some(offers) = self.followed_by() {
             // One that is not followed in time is not missed: the next is newer.
             let _full = offers.try_send(offer);
         }
         self.reply(&id, Ok(json!({})))
+    }
+
+    /// Where targets go, while they are followed.
+    fn followed_by(&self) -> Option<&mpsc::Sender<Offer>> {
+        match &self.task.as_ref()?.kind {
+            TaskKind::Follows(offers) => Some(offers),
+            TaskKind::Arms | TaskKind::Other => None,
+        }
     }
 
     /// Begins or ends a recording. Its end is told once the file is whole.
@@ -482,7 +514,10 @@ impl Script<'_> {
             }
             (None, None) => Err("nothing is recorded".into()),
         };
-        self.reply(&id, done.map_err(|why| Refused::new("refused", why)))
+        self.reply(
+            &id,
+            done.map_err(|why| Refused::new(RefusalKind::Refused, why)),
+        )
     }
 
     /// A recording is whole.
@@ -518,7 +553,8 @@ impl Script<'_> {
             Done::Followed(followed) => self.followed(followed),
             Done::Stopped(stopped) => {
                 self.owes_stop = stopped.is_err();
-                let done = stopped.map_err(|not| Refused::new("not_confirmed", not.to_string()));
+                let done =
+                    stopped.map_err(|not| Refused::new(RefusalKind::NotConfirmed, not.to_string()));
                 self.reply(&id, done.map(|()| json!({})))
             }
             Done::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
@@ -542,7 +578,7 @@ impl Script<'_> {
                 // The right holds, and the arming is over all the same.
                 let why = link.status().disarmed.map(|why| why.to_string());
                 return Err(Refused::new(
-                    "disarmed",
+                    RefusalKind::Disarmed,
                     why.unwrap_or_else(|| "the hand was disarmed".into()),
                 ));
             }
@@ -561,9 +597,10 @@ impl Script<'_> {
                 }
                 return Ok(());
             }
-            Ok(FollowEnd::Hot(heat)) => {
-                Refused::new("hot", format!("{heat}: the hand was stopped"))
-            }
+            Ok(FollowEnd::Hot(heat)) => Refused::new(
+                RefusalKind::Ended(Disarmed::Hot),
+                format!("{heat}: the hand was stopped"),
+            ),
             Ok(FollowEnd::Lease(end)) => end.into(),
         };
         self.lose(&lost)
@@ -586,7 +623,7 @@ async fn granted(
                     Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
                     _ => "another may move the hand now".into(),
                 };
-                return Err(Refused::new("taken", who));
+                return Err(Refused::new(RefusalKind::Taken, who));
             }
             (None, None) if !state.is_live() && Instant::now() < until => {
                 sleep(LOOK_EACH).await;
@@ -600,7 +637,7 @@ async fn granted(
         match armed(link, right).await {
             Ok(_epoch) => return Ok(right),
             // Nothing moved yet: it begins anew with a link that is back.
-            Err(no) if no.kind == "link_lost" && held.is_none() && Instant::now() < until => {}
+            Err(no) if no.kind == LINK_LOST && held.is_none() && Instant::now() < until => {}
             Err(no) => return Err(no),
         }
     }
@@ -632,7 +669,7 @@ async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
     link.check(right.lease)?;
     link.disarm();
     Err(Refused::new(
-        "refused",
+        RefusalKind::Refused,
         format!("the hand cannot be armed: {why}"),
     ))
 }

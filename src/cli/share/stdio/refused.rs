@@ -2,16 +2,34 @@
 
 use crate::link::{LeaseRefusal, Owner};
 use crate::record::Disarmed;
+use serde::Serialize;
+
+/// Of what kind a refusal is, as the lines name it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum RefusalKind {
+    /// The line is none that can be obeyed.
+    Wrong,
+    Refused,
+    NotArmed,
+    Taken,
+    Replaced,
+    NotConfirmed,
+    Disarmed,
+    /// The right to move the hand ended for this.
+    #[serde(untagged)]
+    Ended(Disarmed),
+}
 
 /// Why something was not done, and by what kind of refusal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refused {
-    pub(crate) kind: &'static str,
+    pub(crate) kind: RefusalKind,
     pub(crate) why: String,
 }
 
 impl Refused {
-    pub(crate) fn new(kind: &'static str, why: impl Into<String>) -> Self {
+    pub(crate) fn new(kind: RefusalKind, why: impl Into<String>) -> Self {
         let why = why.into();
         Self { kind, why }
     }
@@ -20,29 +38,15 @@ impl Refused {
 impl From<LeaseRefusal> for Refused {
     fn from(end: LeaseRefusal) -> Self {
         let (kind, why) = match end {
-            LeaseRefusal::Taken(Owner::Gateway(at)) => ("taken", format!("{at} may now")),
-            LeaseRefusal::Taken(_) => ("taken", "another may now".into()),
-            LeaseRefusal::Ended(why) => (disarmed_kind(why), why.to_string()),
+            LeaseRefusal::Taken(Owner::Gateway(at)) => {
+                (RefusalKind::Taken, format!("{at} may now"))
+            }
+            LeaseRefusal::Taken(_) => (RefusalKind::Taken, "another may now".into()),
+            LeaseRefusal::Ended(why) => (RefusalKind::Ended(why), why.to_string()),
         };
         Self::new(
             kind,
             format!("this program may no longer move the hand: {why}"),
         )
-    }
-}
-
-const fn disarmed_kind(why: Disarmed) -> &'static str {
-    match why {
-        Disarmed::Stop => "stop",
-        Disarmed::Person => "person",
-        Disarmed::Fault => "fault",
-        Disarmed::LinkLost => "link_lost",
-        Disarmed::Stale => "stale",
-        Disarmed::FrozenFeedback => "frozen_feedback",
-        Disarmed::Resume => "resume",
-        Disarmed::OtherController => "other_controller",
-        Disarmed::Released => "released",
-        Disarmed::Silent => "silent",
-        Disarmed::Hot => "hot",
     }
 }
