@@ -224,17 +224,8 @@ impl<'a> Chart<'a> {
         let per_s = f64::from(columns) / (to_s - from_s);
         let (dense, sparse): (Vec<_>, Vec<_>) =
             pieces.partition(|(curve, piece)| curve.is_dense(piece, per_s));
-        let marks = ui.input(|input| input.modifiers.shift);
         let is_fixed = view.scales.chosen(self.title).is_some();
-        let boxes = if marks {
-            PointerButton::Primary
-        } else {
-            PointerButton::Secondary
-        };
-        let plot = self.plot(is_fixed).width(width);
-        let plot = plot
-            .allow_drag([!marks, false])
-            .boxed_zoom_pointer_button(boxes);
+        let plot = with_drags(ui, self.plot(is_fixed).width(width));
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             self.items(plot);
@@ -505,6 +496,18 @@ impl<'a> Chart<'a> {
         near.min_by(|(_, a), (_, b)| a.total_cmp(b))
             .map(|(index, _)| index)
     }
+}
+
+/// A drag moves the plot in time; with shift, or by the right button, it marks what to zoom into.
+fn with_drags<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
+    let marks = ui.input(|input| input.modifiers.shift);
+    let boxes = if marks {
+        PointerButton::Primary
+    } else {
+        PointerButton::Secondary
+    };
+    plot.allow_drag([!marks, false])
+        .boxed_zoom_pointer_button(boxes)
 }
 
 /// From a place to a piece of a line.
