@@ -13,7 +13,7 @@ use crate::ui::kit::{
 };
 use crate::ui::text::{checkup, tune, words};
 use crate::ui::theme;
-use egui::{Panel, ProgressBar, Role, Ui, WidgetInfo};
+use egui::{Panel, Ui};
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -30,11 +30,10 @@ impl CheckupView {
         let look = pane.look;
         let width = (ui.available_width() * 0.22).clamp(232.0, 300.0);
         kit::bare(Panel::left("checkup"), width, theme::GAP_RIGHT).show(ui, |ui| {
-            kit::card_ui(ui, look, |ui| {
-                ui.set_min_height(ui.available_height());
+            kit::full_card_ui(ui, look, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
                 kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
-                match &pane.state.hand().checkup.run {
+                match &pane.hand().checkup.run {
                     Some(run) => {
                         // What was said of this one does not hold for the next.
                         self.is_empty = false;
@@ -58,19 +57,17 @@ impl CheckupView {
             (&mut self.plan.press, checkup::PRESS),
         ];
         for (is_on, text) in ticks {
-            let tick = ui.checkbox(is_on, look.say(text));
-            tick.on_hover_text(look.tip(text));
+            kit::tick_ui(ui, look, text, is_on);
         }
         let unsaid = (!self.is_empty).then_some(checkup::SAY_EMPTY);
-        let refusal = pane.state.hand().series_refusal(None);
-        let (start, arm) = (
-            CheckupAction::Start(self.plan),
-            CheckupAction::ArmAndStart(self.plan),
-        );
+        let refusal = pane.hand().series_refusal(None);
+        let plan = self.plan;
+        let all = [CheckupAction::Start(plan), CheckupAction::ArmAndStart(plan)];
+        let [start, arm] = all.map(Action::Checkup);
         let wish = StartWish {
             refused: start_refused(pane, unsaid, refusal),
-            start: (checkup::START, Action::Checkup(start)),
-            arm_and_start: (checkup::ARM_AND_START, Action::Checkup(arm)),
+            start: (checkup::START, start),
+            arm_and_start: (checkup::ARM_AND_START, arm),
         };
         self.start.ui(ui, pane, wish);
     }
@@ -81,19 +78,15 @@ fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     let (look, palette) = (pane.look, pane.look.palette);
     let view = run.view;
     let name = look.say(checkup::PROGRESS);
-    let parts: [&dyn std::fmt::Display; 3] = [&(view.done + 1), &view.total, &doing(look, run)];
-    let words = look.fill(checkup::STEP, &parts);
-    let label = Label::new(&words, palette.text).font(theme::title()).wrap();
+    let (step, total) = (view.done + 1, view.total);
+    let words = look.fill(checkup::STEP, &[&step, &total, &doing(look, run)]);
+    let label = Label::new(&words, palette.text).title().wrap();
     label.named(name).ui(ui);
     if let Some(finger) = view.press {
         let words = look.fill(checkup::PRESS_NOW, &[&look.say(words::finger(finger))]);
         kit::say_ui(ui, &words, palette.accent);
     }
-    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
-    let share = count(view.done) / count(view.total.max(1));
-    let bar = ProgressBar::new(share).desired_height(6.0);
-    let bar = ui.add(bar.fill(palette.accent));
-    bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
+    kit::progress_ui(ui, look, name, kit::share(view.done, total));
     let left = format::duration(run.left(pane.state.now));
     kit::say_ui(ui, &look.fill(tune::LEFT, &[&left]), palette.muted);
     kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);

@@ -24,8 +24,7 @@ impl ReportView {
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, state) = (pane.look, pane.state);
         let own = &state.hand().checkup;
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             if let Some(recorded) = pane.recorded() {
                 kit::say_ui(ui, recorded, look.palette.muted);
                 return;
@@ -77,11 +76,9 @@ impl ReportView {
         let words = format!("{earlier}. {}", checkup::usage(look, report));
         kit::say_ui(ui, &words, palette.muted);
         let only = Button::said(look, checkup::ONLY).choice(self.only);
-        if only.ui(ui, look).clicked() {
-            self.only = !self.only;
-        }
+        only.flips(ui, look, &mut self.only);
         ui.add_space(theme::STEP);
-        table::ui(ui, pane, (report, self.only));
+        table::ui(ui, pane, report, self.only);
     }
 }
 

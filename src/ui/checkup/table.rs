@@ -7,8 +7,8 @@ use crate::checkup::subject::Light;
 use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, checkup};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use egui_extras::{Column, TableRow};
 
 const ROW: f32 = 22.0;
 /// Widths of the columns: part, what, numbers, and the line of a trend.
@@ -31,7 +31,7 @@ pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
 }
 
 /// Draws the figures, or those that are not fine.
-pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, bool)) {
+pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
     let is_told = |own: &&Check| !only || own.light != Light::Fine || own.drift().is_some();
     let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
@@ -50,9 +50,7 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, 
         checkup::COLUMN_ADVICE,
     ];
     ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-        let table = TableBuilder::new(ui)
-            .id_salt("checkup")
-            .cell_layout(Layout::left_to_right(Align::Center))
+        let table = kit::table(ui, "checkup")
             .auto_shrink(false)
             .min_scrolled_height(0.0)
             .column(Column::exact(PART))
@@ -62,7 +60,7 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, (report, only): (&CheckupReport, 
             .column(Column::remainder().at_least(ADVICE).clip(true))
             .header(ROW, |mut row| {
                 for head in heads {
-                    row.col(|ui| drop(Label::note(look, head).ui(ui)));
+                    Label::note(look, head).column_ui(&mut row);
                 }
             });
         table.body(|body| {
@@ -80,9 +78,11 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     let of = look.say(checkup::part(check.measured.of));
     let what = look.say(checkup::subject(check.measured.what));
     let unit = check.measured.what.row();
-    row.col(|ui| drop(Label::new(of, palette.muted).ui(ui)));
-    row.col(|ui| drop(Label::new(what, palette.text).ui(ui)));
+    Label::new(of, palette.muted).column_ui(row);
+    Label::new(what, palette.text).column_ui(row);
     let name = |column: Text| format!("{of} {what} {}", look.say(column).to_lowercase());
+    let channels = &check.measured.channels;
+    let channels = (!channels.is_empty()).then(|| look.fill(checkup::CHANNELS, &[channels]));
     row.col(|ui| {
         let color = color(pane, check.light);
         kit::lamp_ui(ui, Some(color));
@@ -91,9 +91,8 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
         let label = Label::new(&value, palette.text).number();
         let shown = label.named(&name(checkup::COLUMN_MEASURED)).ui(ui);
         let light = look.say(checkup::light(check.light));
-        let channels = (!check.measured.channels.is_empty())
-            .then(|| look.fill(checkup::CHANNELS, &[&check.measured.channels]));
-        let words: Vec<String> = [light.to_owned()].into_iter().chain(channels).collect();
+        let words = [light.to_owned()].into_iter();
+        let words: Vec<String> = words.chain(channels.clone()).collect();
         shown.on_hover_text(words.join(", "));
     });
     let before = [
@@ -102,24 +101,18 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
         (checkup::COLUMN_LAST, unit.known(&check.last)),
     ];
     for (column, value) in before {
-        row.col(|ui| {
-            let label = Label::new(&value, palette.muted).number();
-            label.named(&name(column)).ui(ui);
-        });
+        let label = Label::new(&value, palette.muted).number();
+        label.named(&name(column)).column_ui(row);
     }
     row.col(|ui| drop(trend_ui(ui, pane, check)));
     row.col(|ui| {
-        let channels = (!check.measured.channels.is_empty())
-            .then(|| look.fill(checkup::CHANNELS, &[&check.measured.channels]));
         let told = checkup::to_do(look, check);
         let all: Vec<String> = channels.into_iter().chain([told]).collect();
         let all = all.join(": ");
-        let label = Label::new(&all, palette.text);
         if !all.is_empty() {
-            label
-                .named(&name(checkup::COLUMN_ADVICE))
-                .ui(ui)
-                .on_hover_text(&all);
+            let name = name(checkup::COLUMN_ADVICE);
+            let label = Label::new(&all, palette.text).named(&name);
+            label.ui(ui).on_hover_text(&all);
         }
     });
 }

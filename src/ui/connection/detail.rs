@@ -9,8 +9,7 @@ use crate::sim::Scenario;
 use crate::transport::Endpoint;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::text::{panels, scan};
-use crate::ui::theme;
-use egui::{CollapsingHeader, Ui, vec2};
+use egui::{CollapsingHeader, Ui};
 use std::collections::BTreeMap;
 
 /// Kinds of links as endpoints spell them, with their settings as the hand is delivered (manual 1.3.2, 2.2, 2.3, 2.6.1), and
@@ -126,7 +125,7 @@ impl LinkFields {
         let mut entered = false;
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
-                let field = kit::edit_ui(ui, (caption, ""), text);
+                let field = kit::edit_ui(ui, caption, "", text);
                 let enter = ui.input(|input| input.key_pressed(egui::Key::Enter));
                 entered = enter && field.lost_focus();
                 return;
@@ -134,10 +133,6 @@ impl LinkFields {
             if all.iter().all(|(value, _)| value != text) {
                 all.push((text.clone(), text.clone()));
             }
-            let all = all
-                .iter()
-                .map(|(value, text)| (value.clone(), text.as_str()));
-            let all: Vec<(String, &str)> = all.collect();
             ui.spacing_mut().combo_width = ui.available_width();
             kit::choose_ui(ui, caption, text, &all);
         });
@@ -203,13 +198,11 @@ pub(super) fn row_ui<R>(
     caption: &str,
     add: impl FnOnce(&mut Ui) -> R,
 ) -> R {
-    ui.horizontal(|ui| {
-        kit::cell_ui(ui, vec2(104.0, theme::CONTROL), |ui| {
-            Label::new(caption, look.palette.muted).ui(ui);
-        });
+    let row = ui.horizontal(|ui| {
+        Label::new(caption, look.palette.muted).cell_ui(ui, 104.0);
         add(ui)
-    })
-    .inner
+    });
+    row.inner
 }
 
 #[cfg(test)]

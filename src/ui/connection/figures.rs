@@ -45,7 +45,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Where the link stands, since when, and what was read of it lately.
 fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let connection = &pane.state.hand().connection;
+    let connection = &pane.hand().connection;
     let (link, stats) = (&connection.status, &connection.stats);
     let (word, color) = link_words(pane);
     let since = format::age(pane.state.now.since(link.since));
@@ -96,8 +96,8 @@ type Figures = Vec<(Text, String, Color32)>;
 
 fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     let palette = pane.look.palette;
-    let stats = &pane.state.hand().connection.stats;
-    let live = pane.state.hand().connection.status.state.is_live();
+    let stats = &pane.hand().connection.stats;
+    let live = pane.hand().connection.status.state.is_live();
     let measured = |text, value: String| {
         if live {
             (text, value, palette.text)
@@ -111,17 +111,18 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         0 => count(text, 0),
         value => (text, value.to_string(), palette.warn),
     };
-    let (look, quirks) = (pane.look, &pane.state.hand().connection.status.quirks);
+    let (look, quirks) = (pane.look, &pane.hand().connection.status.quirks);
     let said = |text: Option<Text>| {
         text.map_or(format::UNKNOWN, |text| look.say(text))
             .to_owned()
     };
+    let touch = format::hertz(stats.tactile_hz);
     let id = quirks.hand_id.map(i64::from);
     let mut hand = vec![
         measured(scan::fact(Fact::HandId), format::whole(id, 0)),
         measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
     ];
-    let endpoint = pane.state.hand().connection.endpoint.as_ref();
+    let endpoint = pane.hand().connection.endpoint.as_ref();
     if matches!(endpoint, Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_))) {
         let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
         hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
@@ -130,10 +131,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         hand,
         vec![
             measured(panels::STATE_RATE, format::hertz(stats.state_hz)),
-            measured(
-                panels::group(RateClass::Tactile),
-                format::hertz(stats.tactile_hz),
-            ),
+            measured(panels::group(RateClass::Tactile), touch),
             measured(panels::RTT_P50, trip(stats.rtt_p50)),
             measured(panels::RTT_P99, trip(stats.rtt_p99)),
         ],
@@ -157,8 +155,8 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
 /// Draws what the line is used for: each group of reads, what it gets and what the wire could give.
 fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let line = &pane.state.hand().connection.stats.line;
-    let live = pane.state.hand().connection.status.state.is_live();
+    let line = &pane.hand().connection.stats.line;
+    let live = pane.hand().connection.status.state.is_live();
     let row = |ui: &mut Ui, caption: Text, values: [String; 3]| {
         let caption = look.say(caption);
         figure_ui(ui, pane, caption, |ui| {
@@ -211,11 +209,10 @@ fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     let chosen = ui.horizontal(|ui| {
         let label = Label::new(caption, look.palette.muted).ui(ui);
         label.on_hover_text(look.say(panels::FIRST_TIP));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        kit::right_ui(ui, |ui| {
             ui.spacing_mut().combo_width = 120.0;
             kit::choose_ui(ui, caption, &mut first, &all)
         })
-        .inner
     });
     chosen.inner.then_some(first)
 }

@@ -5,14 +5,14 @@ use crate::hand::PerDof;
 use crate::hand::kinematics::Side;
 use crate::link::scan::FoundHand;
 use crate::transport::Endpoint;
-use crate::ui::hand::panel::pose_ui;
+use crate::ui::hand::tile::pose_ui;
 use crate::ui::kit::{Button, Label, Look, Pane, Weight};
 use crate::ui::text::{Text, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
 
 /// The least width of a tile, and its height.
-const TILE: (f32, f32) = (288.0, 88.0);
+const TILE: Vec2 = vec2(288.0, 88.0);
 /// Width of the drawn hand.
 const HAND: f32 = 56.0;
 
@@ -113,7 +113,7 @@ pub(super) fn hand_tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, tiles: &[HandTile]
 }
 
 fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &HandTile) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let is_now = hand.connection.is_live()
         && tile.endpoint.is_some()
         && hand.connection.endpoint == tile.endpoint;
@@ -151,10 +151,10 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &Han
     small(state, color).ui(&mut words);
 }
 
-/// Places of one size side by side, in rows that fill the width; `size` is the least width and the height.
+/// Places of one size side by side, in rows that fill the width; `least` is the least width and the height.
 pub(super) fn tiles_ui<T>(
     ui: &mut Ui,
-    (least, height): (f32, f32),
+    least: Vec2,
     items: &[T],
     mut add: impl FnMut(&mut Ui, (Id, Rect), &T),
 ) {
@@ -162,13 +162,11 @@ pub(super) fn tiles_ui<T>(
         return;
     }
     let width = ui.available_width();
-    let fits = |columns: &f32| least * columns + theme::GAP * (columns - 1.0) <= width;
+    let fits = |columns: &f32| least.x * columns + theme::GAP * (columns - 1.0) <= width;
     let columns = [4.0, 3.0, 2.0].into_iter().find(fits);
     let columns = columns.unwrap_or(1.0);
-    let size = vec2(
-        ((width - theme::GAP * (columns - 1.0)) / columns).floor(),
-        height,
-    );
+    let width = ((width - theme::GAP * (columns - 1.0)) / columns).floor();
+    let size = vec2(width, least.y);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::splat(theme::GAP);
         for item in items {

@@ -9,7 +9,7 @@ use egui::Color32;
 
 /// The word and the colour for where the link of the shown hand stands.
 pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
-    link_words_of(pane.look, pane.state.hand())
+    link_words_of(pane.look, pane.hand())
 }
 
 /// The same of any hand.

@@ -20,8 +20,11 @@ use crate::ui::connection::shared::SharedPanel;
 use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, TextField, Weight};
 use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
-use egui::{Key, ScrollArea, Ui};
+use egui::{Key, ScrollArea, Ui, Vec2, vec2};
 use std::net::Ipv4Addr;
+
+/// The least width of the tile of a kind of link, and its height.
+const WAY: Vec2 = vec2(296.0, 128.0);
 
 /// What a text that was typed means.
 type Meaning = Result<Endpoint, TypedError>;
@@ -47,7 +50,7 @@ impl ConnectionForm {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let ports = &pane.state.ports;
         let hands = &pane.state.hands;
-        let endpoint = pane.state.hand().connection.endpoint.as_ref();
+        let endpoint = pane.hand().connection.endpoint.as_ref();
         let is_open = |it: &Endpoint| {
             let mut all = hands.iter();
             all.any(|hand| hand.connection.endpoint.as_ref() == Some(it))
@@ -63,7 +66,7 @@ impl ConnectionForm {
             self.filled_from = Some(endpoint.clone());
             self.typed = shortest(endpoint, ports);
         }
-        let may_look = pane.recorded().is_none() && !pane.state.hand().runs_series();
+        let may_look = pane.recorded().is_none() && !pane.hand().runs_series();
         if may_look && !std::mem::replace(&mut self.has_looked, true) && ports.is_empty() {
             pane.actions.push(Action::FindPorts);
         }
@@ -96,7 +99,7 @@ impl ConnectionForm {
         let title = look.say(main::TAB_CONNECTION);
         kit::head_ui(ui, look, title, |ui| slots_ui(ui, pane));
         let name = look.say(scan_text::ADDRESS);
-        let field = kit::edit_ui(ui, (name, name), &mut self.typed);
+        let field = kit::edit_ui(ui, name, name, &mut self.typed);
         if std::mem::take(&mut self.wants_focus) {
             field.request_focus();
         }
@@ -106,7 +109,7 @@ impl ConnectionForm {
         let meaning = recognise(&self.typed, ports);
         let is_typed = field.has_focus() || self.typed.trim().is_empty();
         let wrong = self.wrong(look, &meaning).filter(|_| !is_typed);
-        self.meaning_ui(ui, look, (&meaning, wrong.as_deref()));
+        self.meaning_ui(ui, look, &meaning, wrong.as_deref());
         let fields = spell(&self.typed, ports).ok();
         let fields = fields.and_then(|spelled| LinkFields::of(&spelled));
         ui.horizontal_wrapped(|ui| {
@@ -114,13 +117,8 @@ impl ConnectionForm {
             let change = Button::said(look, scan_text::CHANGE).large();
             let change = change.switch(self.is_unfolded && fields.is_some());
             let none = look.say(scan_text::CHANGE_NONE);
-            if change
-                .disabled_if(fields.is_none(), none)
-                .ui(ui, look)
-                .clicked()
-            {
-                self.is_unfolded ^= true;
-            }
+            let change = change.disabled_if(fields.is_none(), none);
+            change.flips(ui, look, &mut self.is_unfolded);
         });
         if let Some(mut fields) = fields.filter(|_| self.is_unfolded) {
             ui.add_space(theme::STEP);
@@ -144,7 +142,7 @@ impl ConnectionForm {
     }
 
     /// What the text was recognised as, or once it is not typed any more what is wrong with it; for a port, the other kind.
-    fn meaning_ui(&mut self, ui: &mut Ui, look: Look, (meaning, wrong): (&Meaning, Option<&str>)) {
+    fn meaning_ui(&mut self, ui: &mut Ui, look: Look, meaning: &Meaning, wrong: Option<&str>) {
         let palette = look.palette;
         let (words, color) = match (meaning, wrong) {
             (Ok(endpoint), _) => (&*scan_text::recognised(look, endpoint), palette.text),
@@ -198,7 +196,7 @@ impl ConnectionForm {
             let connect = endpoint.filter(|_| pressed).cloned();
             pane.actions.extend(connect.map(Action::Connect));
         }
-        if pane.state.hand().connection.endpoint.is_some() {
+        if pane.hand().connection.endpoint.is_some() {
             let disconnect = Button::said(look, panels::DISCONNECT).large();
             disconnect.on_click(ui, pane, Action::Disconnect);
         }
@@ -233,7 +231,7 @@ impl ConnectionForm {
         let spelled = spell(&self.typed, ports).unwrap_or_default();
         kit::card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.say(scan_text::WAYS), |_| ());
-            tiles_ui(ui, (296.0, 128.0), &KINDS, |ui, (id, place), (first, _)| {
+            tiles_ui(ui, WAY, &KINDS, |ui, (id, place), (first, _)| {
                 let kind = first.split(':').next().unwrap_or_default();
                 let text = panels::kind(kind);
                 let name = look.pair(look.say(panels::CONNECTION_KIND), look.say(text));
@@ -248,7 +246,7 @@ impl ConnectionForm {
                     (self.is_unfolded, self.wants_focus) = (true, true);
                 }
                 let mut inner = hand_tiles::inside(ui, place);
-                Label::said(look, text).font(theme::title()).ui(&mut inner);
+                Label::said(look, text).title().ui(&mut inner);
                 kit::say_ui(&mut inner, look.tip(text), look.palette.muted);
             });
         });
@@ -257,7 +255,7 @@ impl ConnectionForm {
 
 /// True if the shown hand is connected to just this endpoint.
 fn is_connected_to(pane: &Pane<'_>, endpoint: &Endpoint) -> bool {
-    pane.state.hand().connection.endpoint.as_ref() == Some(endpoint)
+    pane.hand().connection.endpoint.as_ref() == Some(endpoint)
 }
 
 /// Another hand in the window, and away with this one of several.
@@ -267,7 +265,7 @@ fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let add = Button::said(look, window::ADD_HAND).disabled(full);
     add.on_click(ui, pane, Action::Hands(HandsAction::Add));
     if hands.is_several() {
-        let remove = HandsAction::Remove(pane.state.hand().label.slot);
+        let remove = HandsAction::Remove(pane.hand().label.slot);
         let button = Button::said(look, window::REMOVE_HAND);
         button.on_click(ui, pane, Action::Hands(remove));
     }

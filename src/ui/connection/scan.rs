@@ -95,11 +95,10 @@ fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Label::new(&text, color).wrap().ui(ui);
         return;
     }
-    Label::new(&scan::progress(look, state), look.palette.text)
-        .named(look.say(scan::PROGRESS))
-        .ui(ui);
-    let count = |count: usize| f32::from(u16::try_from(count).unwrap_or(u16::MAX));
-    let part = count(state.progress.tried) / count(state.progress.total).max(1.0);
+    let words = scan::progress(look, state);
+    let label = Label::new(&words, look.palette.text);
+    label.named(look.say(scan::PROGRESS)).ui(ui);
+    let part = kit::share(state.progress.tried, state.progress.total);
     ui.add(ProgressBar::new(part).desired_height(theme::STEP));
 }
 

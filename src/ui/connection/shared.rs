@@ -56,7 +56,7 @@ impl SharedPanel {
             ui.add_enabled_ui(!is_on, |ui| {
                 ui.set_max_width(240.0);
                 let name = look.say(inputs::DDS_AT);
-                kit::edit_ui(ui, (name, name), &mut self.interface);
+                kit::edit_ui(ui, name, name, &mut self.interface);
             });
             let interface = self.interface.trim().to_owned();
             let missing = interface.is_empty() && !is_on;

@@ -1,15 +1,15 @@
 //! The drawn hand, large, and what its five fingertips feel.
 
-use crate::app::exhibit::ExhibitState;
 use crate::hand::{Finger, PerFinger};
 use crate::ui::exhibit::large::PageLook;
-use crate::ui::exhibit::places::{PagePlaces, above};
+use crate::ui::exhibit::places::above;
 use crate::ui::hand::fingertip::{self, Tip};
 use crate::ui::hand::panel::{StillHand, picture};
-use crate::ui::kit::{Label, Pane};
-use crate::ui::text::{exhibit, main, words};
+use crate::ui::kit::{self, Label, Pane};
+use crate::ui::text::{Text, exhibit, main, words};
+use crate::ui::theme::Palette;
 use crate::ui::touch::heat;
-use egui::{Align2, Rect, Ui, vec2};
+use egui::{Align2, Color32, Rect, Ui, vec2};
 
 /// The hand as it was drawn last.
 #[derive(Debug, Default)]
@@ -17,15 +17,8 @@ pub(crate) struct HandCard(StillHand);
 
 impl HandCard {
     /// Draws the card.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &Pane<'_>,
-        exhibit: &ExhibitState,
-        places: &PagePlaces,
-    ) {
-        let (unit, rect) = (places.unit, places.hand);
-        let page = PageLook::of(pane, places);
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, page: PageLook<'_>) {
+        let (unit, rect) = (page.unit, page.places.hand);
         let tips = heat::tips(pane);
         page.card(ui, rect);
         let inner = rect.shrink(20.0 * unit);
@@ -33,38 +26,57 @@ impl HandCard {
         let (hand, feels) = above(inner, inner.height() - below, 14.0 * unit);
         // A little to the right: the badge stands before the little finger.
         let hand = hand.with_min_x(hand.left() + 64.0 * unit);
-        let shown = picture(pane.state.hand(), &tips, pane.state.now);
+        let shown = picture(pane.hand(), &tips, pane.state.now);
         self.0.ui(ui, hand, page.look, &shown);
         feels_ui(ui, page, feels, &tips);
-        badges_ui(
-            ui,
-            page,
-            inner.with_max_y(inner.top() + 48.0 * unit),
-            (
-                pane.state.hand().connection.is_simulated(),
-                exhibit.view.is_slow,
-            ),
-        );
+        let row = inner.with_max_y(inner.top() + 48.0 * unit);
+        if pane.hand().connection.is_simulated() {
+            Badge::SIMULATED.ui(ui, page, row);
+        }
+        if page.exhibit.view.is_slow {
+            Badge::SLOW.ui(ui, page, row);
+        }
     }
 }
 
-/// What is to be known of this hand: that it is none of metal, that it goes slowly.
-fn badges_ui(ui: &mut Ui, page: PageLook, row: Rect, (is_simulated, is_slow): (bool, bool)) {
-    let palette = page.look.palette;
-    if is_simulated {
-        let colors = (palette.simulated, palette.on_accent);
-        let said = page.look.say(main::SIMULATED);
-        page.badge(ui, (row, Align2::LEFT_CENTER), said, colors);
-    }
-    if is_slow {
-        let colors = (palette.warn, palette.on_accent);
-        let said = page.look.say(exhibit::SLOW);
-        page.badge(ui, (row, Align2::RIGHT_CENTER), said, colors);
+/// What is to be known of this hand, in words on a coloured ground.
+struct Badge {
+    text: Text,
+    fill: fn(&Palette) -> Color32,
+    /// Where in its row it stands.
+    side: Align2,
+}
+
+impl Badge {
+    /// It is none of metal.
+    const SIMULATED: Self = Self {
+        text: main::SIMULATED,
+        fill: |palette| palette.simulated,
+        side: Align2::LEFT_CENTER,
+    };
+    /// It goes slowly.
+    const SLOW: Self = Self {
+        text: exhibit::SLOW,
+        fill: |palette| palette.warn,
+        side: Align2::RIGHT_CENTER,
+    };
+
+    /// Draws it as high as a row and no wider than it.
+    fn ui(&self, ui: &mut Ui, page: PageLook<'_>, row: Rect) {
+        let (text, palette) = (page.look.say(self.text), page.look.palette);
+        let font = page.font(28.0);
+        let wide = kit::text_width(ui, text, font.clone()) + 36.0 * page.unit;
+        let size = vec2(wide.min(row.width()), row.height());
+        let place = self.side.align_size_within_rect(size, row);
+        let fill = (self.fill)(palette);
+        ui.painter().rect_filled(place, place.height() / 2.0, fill);
+        let label = Label::new(text, palette.on_accent).font(font);
+        label.center().put(ui, place);
     }
 }
 
 /// The five fingertips beside each other, under what they are.
-fn feels_ui(ui: &mut Ui, page: PageLook, rect: Rect, tips: &PerFinger<Option<Tip>>) {
+fn feels_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect, tips: &PerFinger<Option<Tip>>) {
     let (look, unit) = (page.look, page.unit);
     let (caption, row) = rect.split_top_bottom_at_y(rect.top() + 40.0 * unit);
     let said = look.say(exhibit::FEELS);
@@ -72,10 +84,8 @@ fn feels_ui(ui: &mut Ui, page: PageLook, rect: Rect, tips: &PerFinger<Option<Tip
     label.center().put(ui, caption);
     let step = vec2(row.width() / 5.0, 0.0);
     let first = row.with_max_x(row.left() + step.x);
-    for (finger, place) in Finger::ALL
-        .into_iter()
-        .zip((0_u8..).map(|at| first.translate(step * f32::from(at))))
-    {
+    let places = (0_u8..).map(|at| first.translate(step * f32::from(at)));
+    for (finger, place) in Finger::ALL.into_iter().zip(places) {
         let (picture, name) = place.split_top_bottom_at_y(place.bottom() - 40.0 * unit);
         let tip = tips[finger].unwrap_or_default();
         fingertip::paint(ui.painter(), look, picture.shrink(6.0 * unit), &tip);

@@ -51,7 +51,7 @@ impl Keypad {
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        page: PageLook,
+        page: PageLook<'_>,
         rect: Rect,
         locked: Option<&str>,
     ) -> Option<String> {
@@ -87,7 +87,7 @@ impl Keypad {
         enter.ui(ui, page, place(2, 3)).then(|| self.enter())?
     }
 
-    fn digit_ui(&mut self, ui: &Ui, page: PageLook, place: Rect, digit: char) {
+    fn digit_ui(&mut self, ui: &Ui, page: PageLook<'_>, place: Rect, digit: char) {
         let mut bytes = [0; 4];
         let words: &str = digit.encode_utf8(&mut bytes);
         let button = LargeButton {
@@ -100,7 +100,7 @@ impl Keypad {
     }
 
     /// A dot for each digit, and the places that a PIN has at least.
-    fn dots_ui(&self, ui: &mut Ui, page: PageLook, rect: Rect) {
+    fn dots_ui(&self, ui: &mut Ui, page: PageLook<'_>, rect: Rect) {
         let (palette, unit) = (page.look.palette, page.unit);
         let response = ui.allocate_rect(rect, Sense::hover());
         let count = u8::try_from(self.typed.len()).unwrap_or(u8::MAX);

@@ -1,11 +1,11 @@
 //! Texts and buttons that are read from two metres away: as large as the screen allows.
 
+use crate::app::exhibit::ExhibitState;
 use crate::ui::exhibit::places::PagePlaces;
-use crate::ui::kit::{self, Label, Look, Pane, Weight};
+use crate::ui::kit::{self, Label, Look, Weight};
 use crate::ui::theme::{self, Icon};
 use egui::{
-    Align2, Color32, FontId, Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo,
-    vec2,
+    Align2, Color32, FontId, Id, Rect, Role, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, vec2,
 };
 
 /// No text is smaller, points.
@@ -18,13 +18,15 @@ const NOTE: f32 = 28.0;
 /// Height of a line, in sizes of its font.
 const LINE: f32 = 1.22;
 
-/// Colours, language and the scale of the page.
+/// What everything on the page is drawn from: colours, language, scale, places, and what goes on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PageLook {
+pub(crate) struct PageLook<'a> {
     /// Colours and language.
     pub(crate) look: Look,
     /// Points of a unit.
     pub(crate) unit: f32,
+    pub(crate) places: PagePlaces,
+    pub(crate) exhibit: &'a ExhibitState,
 }
 
 /// Words in a colour; their size is in units of the page.
@@ -41,15 +43,7 @@ impl<'a> LargeText<'a> {
     }
 }
 
-impl PageLook {
-    /// On a screen on which everything stands there.
-    pub(crate) fn of(pane: &Pane<'_>, places: &PagePlaces) -> Self {
-        Self {
-            look: pane.look,
-            unit: places.unit,
-        }
-    }
-
+impl PageLook<'_> {
     /// A font of this size in units.
     pub(crate) fn font(self, size: f32) -> FontId {
         FontId::proportional((size * self.unit).max(FONT_LEAST))
@@ -94,22 +88,6 @@ impl PageLook {
         ui.painter()
             .rect(rect, round, palette.card, edge, StrokeKind::Inside);
     }
-
-    /// Words on a coloured ground, as high as `rect` and no wider than it; `to_right` of it.
-    pub(crate) fn badge(
-        self,
-        ui: &mut Ui,
-        (rect, side): (Rect, Align2),
-        text: &str,
-        (fill, color): (Color32, Color32),
-    ) {
-        let font = self.font(28.0);
-        let wide = kit::text_width(ui, text, font.clone()) + 36.0 * self.unit;
-        let size = vec2(wide.min(rect.width()), rect.height());
-        let place = side.align_size_within_rect(size, rect);
-        ui.painter().rect_filled(place, place.height() / 2.0, fill);
-        Label::new(text, color).font(font).center().put(ui, place);
-    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -142,14 +120,10 @@ impl<'a> LargeButton<'a> {
     }
 
     /// Draws it; true in the frame in which it is pressed.
-    pub(crate) fn ui(self, ui: &Ui, page: PageLook, rect: Rect) -> bool {
+    pub(crate) fn ui(self, ui: &Ui, page: PageLook<'_>, rect: Rect) -> bool {
         let enabled = self.disabled.is_none() && ui.is_enabled();
-        let sense = if enabled {
-            Sense::click()
-        } else {
-            Sense::hover()
-        };
-        let response = ui.interact(rect, Id::unique(("large", self.words)), sense);
+        let id = Id::unique(("large", self.words));
+        let response = ui.interact(rect, id, kit::click_if(enabled));
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, self.words));
         if let Some(reason) = self.disabled {
             ui.ctx()

@@ -18,13 +18,12 @@ use crate::ui::exhibit::hand_card::HandCard;
 use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
 use crate::ui::exhibit::places::PagePlaces;
 use crate::ui::exhibit::staff::StaffView;
-use crate::ui::exhibit::stage::PageWords;
 use crate::ui::kit::{Look, Pane, Typing, Weight};
 use crate::ui::text::{exhibit, main};
 use crate::ui::theme;
 use egui::{
-    ColorImage, Context, CursorIcon, Event, Key, PointerButton, Rect, TextureHandle,
-    TextureOptions, TouchPhase, Ui, vec2,
+    ColorImage, Context, CursorIcon, Event, Key, PointerButton, TextureHandle, TextureOptions,
+    TouchPhase, Ui, vec2,
 };
 use std::time::Duration;
 
@@ -71,6 +70,12 @@ impl ExhibitPage {
             opens: &mut None,
         };
         let places = PagePlaces::of(ui.max_rect());
+        let page = PageLook {
+            look: pane.look,
+            unit: places.unit,
+            places,
+            exhibit,
+        };
         ui.painter()
             .rect_filled(places.whole, 0.0, pane.look.palette.window);
         let is_free = exhibit.staff == StaffPanel::Closed;
@@ -80,11 +85,11 @@ impl ExhibitPage {
                 ui.visuals_mut().disabled_alpha = 1.0;
                 ui.disable();
             }
-            self.page_ui(ui, &mut pane, exhibit, &places)
+            self.page_ui(ui, &mut pane, page)
         });
-        self.staff.ui(ui, &mut pane, exhibit, (&places, &keys));
-        language_ui(ui, &mut pane, &places);
-        stop_ui(ui, &mut pane, &places);
+        self.staff.ui(ui, &mut pane, page, &keys);
+        language_ui(ui, &mut pane, page);
+        stop_ui(ui, &mut pane, page);
         let is_pressed = std::mem::replace(&mut self.is_held, false);
         self.is_held = (is_pressed || taken.inner) && !touches.ends_up;
         if touches.went_down && is_free && !taken.inner {
@@ -99,32 +104,25 @@ impl ExhibitPage {
     }
 
     /// What visitors see. True if a tile was pressed, or the way of staff.
-    fn page_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        exhibit: &ExhibitState,
-        places: &PagePlaces,
-    ) -> bool {
-        let page = PageLook::of(pane, places);
-        self.title_ui(ui, page, places.title, exhibit);
+    fn page_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) -> bool {
+        self.title_ui(ui, page);
         let lock = LargeButton {
             icon: Some(theme::LOCKED),
             size: 34.0,
             weight: Weight::Quiet,
             ..LargeButton::new(page.look.say(exhibit::STAFF_BUTTON))
         };
-        let asks = lock.ui(ui, page, places.lock);
+        let asks = lock.ui(ui, page, page.places.lock);
         if asks {
             pane.actions.push(Action::Exhibit(ExhibitAction::AskPin));
         }
-        self.hand.ui(ui, pane, exhibit, places);
-        let rect = places.words;
-        stage::words_ui(ui, pane, exhibit, PageWords { page, rect });
-        tiles::tiles_ui(ui, pane, exhibit, places) || asks
+        self.hand.ui(ui, pane, page);
+        stage::words_ui(ui, pane, page);
+        tiles::tiles_ui(ui, pane, page) || asks
     }
 
-    fn title_ui(&self, ui: &mut Ui, page: PageLook, place: Rect, exhibit: &ExhibitState) {
+    fn title_ui(&self, ui: &mut Ui, page: PageLook<'_>) {
+        let place = page.places.title;
         let mut rest = place;
         if let Some(logo) = &self.logo {
             let size = logo.size_vec2();
@@ -135,16 +133,13 @@ impl ExhibitPage {
             egui::Image::new(logo).paint_at(ui, picture);
             rest = right.with_min_x(right.left() + 24.0 * page.unit);
         }
-        let own = tiles::words_of(&exhibit.plan.title, page.look.language);
+        let own = tiles::words_of(&page.exhibit.plan.title, page.look.language);
         let title = match own {
             "" => page.look.say(exhibit::TITLE),
             own => own,
         };
-        page.line(
-            ui,
-            rest,
-            LargeText::new(title, 46.0, page.look.palette.text),
-        );
+        let title = LargeText::new(title, 46.0, page.look.palette.text);
+        page.line(ui, rest, title);
     }
 
     /// Once: what belongs to the window goes, and the logo is loaded.
@@ -184,27 +179,25 @@ const fn wish(wish: ExhibitWish) -> Action {
 }
 
 /// STOP, over all else.
-fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, places: &PagePlaces) {
-    let page = PageLook::of(pane, places);
+fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
     let stop = LargeButton {
         note: page.look.say(exhibit::STOP_NOTE),
         size: 60.0,
         weight: Weight::Stop,
         ..LargeButton::new(page.look.say(main::STOP))
     };
-    if stop.ui(ui, page, places.stop) {
+    if stop.ui(ui, page, page.places.stop) {
         pane.actions.push(Action::Stop);
     }
 }
 
 /// The other language, in its own words.
-fn language_ui(ui: &Ui, pane: &mut Pane<'_>, places: &PagePlaces) {
-    let page = PageLook::of(pane, places);
+fn language_ui(ui: &Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
     let words = match page.look.language {
         Language::En => "中文",
         Language::Zh => "English",
     };
-    if LargeButton::new(words).ui(ui, page, places.language) {
+    if LargeButton::new(words).ui(ui, page, page.places.language) {
         let other = page.look.language.other();
         pane.actions.push(Action::Language(other));
     }

@@ -6,10 +6,10 @@ use crate::exhibit::pin::PinAnswer;
 use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::keypad::Keypad;
 use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
-use crate::ui::exhibit::places::{PagePlaces, above};
+use crate::ui::exhibit::places::above;
 use crate::ui::kit::{Label, Pane, Weight};
 use crate::ui::text::{Text, exhibit, notices};
-use egui::{Key, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Key, Rect, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
 use std::mem::Discriminant;
 
 /// How much of the page is seen through the veil.
@@ -41,9 +41,10 @@ impl StaffView {
         &mut self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        exhibit: &ExhibitState,
-        (places, keys): (&PagePlaces, &[Key]),
+        page: PageLook<'_>,
+        keys: &[Key],
     ) {
+        let (exhibit, places) = (page.exhibit, page.places);
         let kind = std::mem::discriminant(&exhibit.staff);
         let is_new = self.shown.replace(kind) != Some(kind);
         if is_new {
@@ -55,11 +56,9 @@ impl StaffView {
         }
         let veil = pane.look.palette.window.gamma_multiply(VEIL);
         ui.painter().rect_filled(places.whole, 0.0, veil);
-        let page = PageLook::of(pane, places);
         match pad_words(pane, exhibit) {
             Some(words) => {
-                let room = card_rect(places, vec2(620.0, 860.0));
-                let typed = self.pad_ui(ui, page, (room, &words), pane);
+                let typed = self.pad_ui(ui, pane, page, &words);
                 let by_key = keys.iter().filter_map(|key| self.keypad.key(*key)).last();
                 let typed = typed.or(by_key);
                 let enter = |typed| Action::Exhibit(ExhibitAction::Pin(typed));
@@ -70,8 +69,7 @@ impl StaffView {
                     ui.visuals_mut().disabled_alpha = 1.0;
                     ui.disable();
                 }
-                let rect = card_rect(places, vec2(1100.0, 760.0));
-                open_ui(ui, page, pane, (exhibit, rect));
+                open_ui(ui, pane, page);
             })),
         }
     }
@@ -92,18 +90,14 @@ impl StaffView {
     fn pad_ui(
         &mut self,
         ui: &mut Ui,
-        page: PageLook,
-        (rect, words): (Rect, &PadWords),
         pane: &mut Pane<'_>,
+        page: PageLook<'_>,
+        words: &PadWords,
     ) -> Option<String> {
         let (look, unit) = (page.look, page.unit);
-        let inner = card_ui(ui, page, rect, words.title);
+        let inner = card_ui(ui, page, vec2(620.0, 860.0), words.title);
         let (title, rest) = above(inner, 56.0 * unit, 4.0 * unit);
-        page.line(
-            ui,
-            title,
-            LargeText::new(look.say(words.title), 38.0, look.palette.text),
-        );
+        title_ui(ui, page, title, words.title);
         let (note, rest) = above(rest, 44.0 * unit, 0.0);
         let color = if words.is_bad {
             look.palette.bad
@@ -124,19 +118,21 @@ impl StaffView {
     }
 }
 
-/// A card of this size in units in the middle, as far as there is room.
-fn card_rect(places: &PagePlaces, size: egui::Vec2) -> Rect {
-    let room = places.staff();
-    Rect::from_center_size(room.center(), (size * places.unit).min(room.size()))
-}
-
-/// The ground of a card; the place in it.
-fn card_ui(ui: &mut Ui, page: PageLook, rect: Rect, title: Text) -> Rect {
+/// The ground of a card of this size in units in the middle, as far as there is room; the place in it.
+fn card_ui(ui: &mut Ui, page: PageLook<'_>, size: Vec2, title: Text) -> Rect {
+    let room = page.places.staff();
+    let rect = Rect::from_center_size(room.center(), (size * page.unit).min(room.size()));
     let response = ui.allocate_rect(rect, Sense::hover());
     let name = page.look.say(title);
     response.widget_info(|| WidgetInfo::labeled(Role::Dialog, true, name));
     page.card(ui, rect);
     rect.shrink(28.0 * page.unit)
+}
+
+fn title_ui(ui: &mut Ui, page: PageLook<'_>, place: Rect, title: Text) {
+    let look = page.look;
+    let title = LargeText::new(look.say(title), 38.0, look.palette.text);
+    page.line(ui, place, title);
 }
 
 /// What the pad says; nothing once the PIN was right.
@@ -180,30 +176,16 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
 }
 
 /// What staff do once the PIN was right.
-fn open_ui(
-    ui: &mut Ui,
-    page: PageLook,
-    pane: &mut Pane<'_>,
-    (exhibit, rect): (&ExhibitState, Rect),
-) {
+fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
     let (look, unit) = (page.look, page.unit);
     let gap = 18.0 * unit;
-    let inner = card_ui(ui, page, rect, exhibit::STAFF);
+    let inner = card_ui(ui, page, vec2(1100.0, 760.0), exhibit::STAFF);
     let (title, rest) = above(inner, 56.0 * unit, gap);
-    page.line(
-        ui,
-        title,
-        LargeText::new(look.say(exhibit::STAFF), 38.0, look.palette.text),
-    );
+    title_ui(ui, page, title, exhibit::STAFF);
     let (left, right) = rest.split_left_right_at_fraction(0.54);
-    figures_ui(
-        ui,
-        page,
-        right.with_min_x(right.left() + 2.0 * gap),
-        exhibit,
-    );
-    let is_halted = matches!(exhibit.view.stage, ExhibitStage::Halted(_));
-    let no_hand = !pane.state.hand().connection.status.state.is_live();
+    figures_ui(ui, page, right.with_min_x(right.left() + 2.0 * gap));
+    let is_halted = matches!(page.exhibit.view.stage, ExhibitStage::Halted(_));
+    let no_hand = !pane.hand().connection.status.state.is_live();
     let arm = LargeButton {
         note: look.say(exhibit::ARM_NOTE),
         size: 48.0,
@@ -244,8 +226,8 @@ fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
 }
 
 /// What was counted today.
-fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
-    let (look, report) = (page.look, exhibit.report.today());
+fn figures_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect) {
+    let (look, report) = (page.look, page.exhibit.report.today());
     let rows: [(Text, u32); 5] = [
         (exhibit::VISITS, report.visits),
         (exhibit::PIECES, report.pieces.values().sum()),
@@ -255,30 +237,22 @@ fn figures_ui(ui: &mut Ui, page: PageLook, rect: Rect, exhibit: &ExhibitState) {
     ];
     let high = rect.height() / 7.0;
     let (head, mut rest) = above(rect, high, 0.0);
-    page.line(
-        ui,
-        head,
-        LargeText::new(look.say(exhibit::TODAY), 30.0, look.palette.muted),
-    );
+    let today = LargeText::new(look.say(exhibit::TODAY), 30.0, look.palette.muted);
+    page.line(ui, head, today);
     for (text, count) in rows {
         let (row, below) = above(rest, high, 0.0);
         rest = below;
-        figure_ui(ui, page, row, (text, count));
+        let line = egui::Stroke::new(1.0, look.palette.edge);
+        ui.painter().hline(row.x_range(), row.top(), line);
+        let (name, figure) = row.split_left_right_at_fraction(0.72);
+        let said = LargeText::new(look.say(text), 30.0, look.palette.text);
+        page.line(ui, name, said);
+        let count = count.to_string();
+        let label = Label::new(&count, look.palette.text).font(page.font(34.0));
+        label.right().named(look.say(text)).put(ui, figure);
     }
-    if let Some(trouble) = exhibit.report.troubles().last() {
+    if let Some(trouble) = page.exhibit.report.troubles().last() {
         let words = notices::notice(look, trouble);
         page.lines(ui, rest, LargeText::new(&words, 20.0, look.palette.bad));
     }
-}
-
-fn figure_ui(ui: &mut Ui, page: PageLook, row: Rect, (text, count): (Text, u32)) {
-    let look = page.look;
-    let palette = look.palette;
-    let line = egui::Stroke::new(1.0, palette.edge);
-    ui.painter().hline(row.x_range(), row.top(), line);
-    let (name, figure) = row.split_left_right_at_fraction(0.72);
-    page.line(ui, name, LargeText::new(look.say(text), 30.0, palette.text));
-    let count = count.to_string();
-    let label = Label::new(&count, palette.text).font(page.font(34.0));
-    label.right().named(look.say(text)).put(ui, figure);
 }

@@ -45,10 +45,10 @@ pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) ->
 }
 
 /// The words on their card.
-pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, exhibit: &ExhibitState, place: PageWords) {
-    let PageWords { page, rect } = place;
-    let (look, unit) = (page.look, page.unit);
-    let words = trouble(look, pane.state).unwrap_or_else(|| stage_words(look, pane.state, exhibit));
+pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: PageLook<'_>) {
+    let (look, unit, rect) = (page.look, page.unit, page.places.words);
+    let words = trouble(look, pane.state);
+    let words = words.unwrap_or_else(|| stage_words(look, pane.state, page.exhibit));
     page.card(ui, rect);
     let bar = rect.with_max_x(rect.left() + 12.0 * unit).shrink(1.0);
     let round = CornerRadius {
@@ -62,28 +62,16 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, exhibit: &ExhibitState, pla
     let color = look.palette.text;
     page.line(ui, title, LargeText::new(&words.title, 54.0, color));
     let note = note.with_min_y(note.top() + 6.0 * unit);
-    page.lines(
-        ui,
-        note,
-        LargeText::new(words.note, 31.0, look.palette.muted),
-    );
+    let said = LargeText::new(words.note, 31.0, look.palette.muted);
+    page.lines(ui, note, said);
     if let Some(left) = words.left {
         let bar = note.with_min_y(note.bottom() - 12.0 * unit);
         left_ui(ui, page, bar, left);
     }
 }
 
-/// Where the words stand.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PageWords {
-    /// The scale of the page.
-    pub(crate) page: PageLook,
-    /// The place.
-    pub(crate) rect: Rect,
-}
-
 /// The time to play that is left.
-fn left_ui(ui: &mut Ui, page: PageLook, rect: Rect, left: f32) {
+fn left_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect, left: f32) {
     let builder = UiBuilder::new().max_rect(rect);
     ui.scope_builder(builder, |ui| {
         let bar = ProgressBar::new(left).fill(page.look.palette.accent);

@@ -1,17 +1,17 @@
 //! The tiles: what visitors may press. A press counts when the finger comes down.
 
 use crate::app::action::Action;
-use crate::app::exhibit::{ExhibitAction, ExhibitState};
+use crate::app::exhibit::ExhibitAction;
 use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, ExhibitPiece};
 use crate::exhibit::run::{ExhibitWish, HELD_FOR};
 use crate::hand::Angle;
 use crate::ui::exhibit::large::{LargeText, PageLook};
-use crate::ui::exhibit::places::{NAME, PagePlaces};
+use crate::ui::exhibit::places::NAME;
 use crate::ui::exhibit::stage;
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{self, Pane};
-use egui::{Id, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
+use egui::{Id, Rect, Role, Stroke, StrokeKind, Ui, WidgetInfo};
 
 /// How much of the picture is hidden on a tile that does nothing.
 const VEIL: f32 = 0.62;
@@ -38,22 +38,16 @@ struct PieceTile<'a> {
 }
 
 /// All tiles. True if one was pressed.
-pub(crate) fn tiles_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    exhibit: &ExhibitState,
-    places: &PagePlaces,
-) -> bool {
-    let page = PageLook::of(pane, places);
+pub(crate) fn tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) -> bool {
+    let exhibit = page.exhibit;
     let refusal = stage::tile_refusal(pane.look, pane.state, exhibit);
     let restarts = stage::restarts(pane.state, exhibit);
     let tiles = &exhibit.plan.tiles;
     let mut pressed = None;
-    for ((index, piece), rect) in tiles.iter().enumerate().zip(places.tile_rects(tiles.len())) {
-        let held = exhibit
-            .view
-            .held
-            .filter(|(held, _)| *held == index && restarts);
+    let rects = page.places.tile_rects(tiles.len());
+    for ((index, piece), rect) in tiles.iter().enumerate().zip(rects) {
+        let held = exhibit.view.held;
+        let held = held.filter(|(held, _)| *held == index && restarts);
         let part = |since| pane.state.now.since(since).as_secs_f32() / HELD_FOR.as_secs_f32();
         let tile = PieceTile {
             index,
@@ -77,17 +71,13 @@ fn press(tile: usize) -> Action {
 
 impl PieceTile<'_> {
     /// Draws it; true in the frame in which it is pressed.
-    fn ui(&self, ui: &mut Ui, page: PageLook) -> bool {
+    fn ui(&self, ui: &mut Ui, page: PageLook<'_>) -> bool {
         let Self { rect, .. } = *self;
         let (palette, unit) = (page.look.palette, page.unit);
         let name = words_of(&self.piece.name, page.look.language);
         let enabled = self.refusal.is_none() && ui.is_enabled();
-        let sense = if enabled {
-            Sense::click()
-        } else {
-            Sense::hover()
-        };
-        let response = ui.interact(rect, Id::unique(("exhibit tile", self.index)), sense);
+        let id = Id::unique(("exhibit tile", self.index));
+        let response = ui.interact(rect, id, kit::click_if(enabled));
         response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, self.plays, name));
         if let Some(reason) = self.refusal {
             ui.ctx()
@@ -119,11 +109,11 @@ impl PieceTile<'_> {
         self.refusal.is_none() && kit::pressed(ui, &response)
     }
 
-    fn picture_ui(&self, ui: &Ui, page: PageLook, place: Rect) {
+    fn picture_ui(&self, ui: &Ui, page: PageLook<'_>, place: Rect) {
         // What a pose leaves alone is drawn open.
         let share = |to: Option<Angle>| f32::from(to.unwrap_or(Angle::MAX).get()) / 1000.0;
         let shares = self.piece.shown().map(|to| Some(share(to)));
-        panel::sign_ui(ui, page.look, place, &shares);
+        tile::sign_ui(ui, page.look, place, &shares);
         if self.refusal.is_some() {
             let veil = page.look.palette.card.gamma_multiply(VEIL);
             ui.painter().rect_filled(place, 0.0, veil);
@@ -131,7 +121,7 @@ impl PieceTile<'_> {
     }
 
     /// How long it is held already: it fills from below.
-    fn held_ui(&self, ui: &Ui, page: PageLook, part: f32) {
+    fn held_ui(&self, ui: &Ui, page: PageLook<'_>, part: f32) {
         let (accent, round) = (page.look.palette.accent, 16.0 * page.unit);
         let full = self.rect;
         let risen = full.with_min_y(full.bottom() - full.height() * part);

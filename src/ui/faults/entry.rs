@@ -31,7 +31,7 @@ pub(crate) fn steady(
     pane: &Pane<'_>,
     wanted: impl Fn(&FaultEntry) -> bool,
 ) -> Vec<FaultEntry> {
-    let faults = pane.state.hand().readings.faults.iter();
+    let faults = pane.hand().readings.faults.iter();
     let mut entries: Vec<FaultEntry> = faults.copied().filter(|entry| wanted(entry)).collect();
     let place = ui.scope_id().with("order");
     let seen = Rect::from_x_y_ranges(ui.max_rect().x_range(), ui.clip_rect().y_range());
@@ -80,11 +80,11 @@ pub(crate) fn entry_ui(
 
 /// What stands below a title with a lamp.
 pub(crate) fn inset_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
-    let margin = Margin {
-        left: 20,
+    let left = 20;
+    let frame = Frame::new().inner_margin(Margin {
+        left,
         ..Margin::ZERO
-    };
-    let frame = Frame::new().inner_margin(margin);
+    });
     frame.show(ui, |ui| ui.vertical(add).inner).inner
 }
 
@@ -138,7 +138,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<FaultRecordingId> {
     let look = pane.look;
     let text = times(pane, entry);
-    let recorder = &pane.state.hand().measured.recorder;
+    let recorder = &pane.hand().measured.recorder;
     let recording = recorder.of(entry.dof, entry.what, entry.since);
     let mut replay = None;
     let pressed = ui.horizontal_wrapped(|ui| {
@@ -151,20 +151,13 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Fault
             let button = Button::new(words, look.tip(notices::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
         });
-        let hand = pane
-            .state
-            .hand()
-            .connection
-            .endpoint
-            .as_ref()
-            .map(ToString::to_string);
+        let hand = pane.hand().connection.endpoint.as_ref();
+        let hand = hand.map(ToString::to_string);
+        let last = entry.last.min(entry.since.plus(SHOWN));
         let stretch = ReplayedStretch {
             title: &title(pane, entry.dof, entry.what),
             hand: &hand.unwrap_or_default(),
-            stretch: Some((
-                entry.since,
-                entry.last.min(entry.since.plus(SHOWN)).plus(AFTER),
-            )),
+            stretch: Some((entry.since, last.plus(AFTER))),
         };
         replay = stretch.ui(ui, pane);
         recording
@@ -182,7 +175,7 @@ pub(crate) fn title(pane: &Pane<'_>, dof: Dof, what: FaultKind) -> String {
 /// Whether it lasts, and the colour of that.
 fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
     let palette = pane.look.palette;
-    let sample = &pane.state.hand().readings.sample;
+    let sample = &pane.hand().readings.sample;
     let asked = match entry.what {
         FaultKind::Fault(_) => sample.faults.map(|group| group.asked),
         FaultKind::Status(_) => sample.status.map(|group| group.asked),
@@ -206,7 +199,7 @@ pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
 
 /// A ring for faults of this joint that nobody has seen yet.
 pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
-    let mut unseen = pane.state.hand().readings.faults.unseen();
+    let mut unseen = pane.hand().readings.faults.unseen();
     let Some(first) = unseen.find(|entry| entry.dof == dof) else {
         return;
     };
@@ -242,7 +235,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
 /// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.
 pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
     let palette = pane.look.palette;
-    let mut unseen = pane.state.hand().readings.faults.unseen();
+    let mut unseen = pane.hand().readings.faults.unseen();
     let first = unseen.next()?;
     // What lasts comes first.
     Some(if first.is_active() {
@@ -255,9 +248,8 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 /// Marks all as seen.
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let none = pane.state.hand().readings.faults.unseen().next().is_none();
+    let none = pane.hand().readings.faults.unseen().next().is_none();
     let button = Button::said(look, notices::SEEN_ALL);
-    button
-        .disabled_if(none, look.say(notices::SEEN_NONE))
-        .on_click(ui, pane, Action::SeenFaults);
+    let button = button.disabled_if(none, look.say(notices::SEEN_NONE));
+    button.on_click(ui, pane, Action::SeenFaults);
 }

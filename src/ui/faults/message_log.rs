@@ -1,8 +1,8 @@
 //! Messages as rows, and the log of all of them: filtered by words, of which the level is one, and copied as text.
 
-use crate::app::notices::{Level, Notice};
+use crate::app::notices::Notice;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
-use crate::ui::text::{Text, notices};
+use crate::ui::text::notices;
 use egui::{Align, Layout, ScrollArea, Ui};
 use std::fmt::Write as _;
 
@@ -15,14 +15,6 @@ pub(crate) struct MessageLog {
     words: String,
     /// The newest message when lines were copied last, and how many.
     copied: Option<(Option<u64>, usize)>,
-}
-
-const fn level_word(level: Level) -> Text {
-    match level {
-        Level::Info => notices::WORD_INFO,
-        Level::Warn => notices::WORD_WARN,
-        Level::Alarm => notices::WORD_ALARM,
-    }
 }
 
 impl MessageLog {
@@ -74,14 +66,14 @@ impl MessageLog {
             self.copied = Some((newest, text.lines().count()));
             ui.ctx().copy_text(text);
         }
-        kit::edit_ui(ui, look.both(notices::LOG_FILTER), &mut self.words);
+        kit::edit_said_ui(ui, look, notices::LOG_FILTER, &mut self.words);
     }
 
     /// The messages with these words, each with its level and words in a line, newest first.
     fn passing<'a>(&self, pane: &Pane<'a>) -> impl Iterator<Item = (&'a Notice, String)> + use<'a> {
         let (look, wanted) = (pane.look, self.words.trim().to_lowercase());
         let lines = pane.state.notices.log().map(move |notice| {
-            let level = look.say(level_word(notice.level));
+            let level = look.say(notices::level(notice.level));
             (notice, format!("{level}  {}", words(look, notice)))
         });
         lines.filter(move |(_, line)| line.to_lowercase().contains(&wanted))

@@ -65,9 +65,8 @@ impl FaultsView {
         let look = pane.look;
         kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
             let shut = Button::said(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
-            if shut.weight(Weight::Quiet).ui(ui, look).clicked() {
-                pane.open(ViewRequest::Faults);
-            }
+            let shut = shut.weight(Weight::Quiet);
+            shut.opens(ui, pane, ViewRequest::Faults);
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -99,7 +98,7 @@ impl FaultsView {
     /// The messages, or the recordings.
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recordings = match pane.state.hand().measured.recorder.iter().count() {
+        let recordings = match pane.hand().measured.recorder.iter().count() {
             0 => look.say(notices::RECORDINGS).to_owned(),
             count => format!("{} ({count})", look.say(notices::RECORDINGS)),
         };
@@ -124,7 +123,7 @@ impl FaultsView {
 
 fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let reason = match hand.readings.faults.nothing_to_clear() {
         _ if !hand.connection.status.state.is_live() => Some(main::REFUSED_OFFLINE),
         _ if hand.readings.sample.faults.is_none() => Some(notices::CLEAR_UNREAD),
@@ -132,23 +131,16 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(notices::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let button = Button::said(look, panels::CLEAR);
     let reason = reason.map(|reason| look.say(reason));
-    button
-        .disabled(reason)
-        .on_click(ui, pane, Action::ClearErrors);
+    let button = Button::said(look, panels::CLEAR).disabled(reason);
+    button.on_click(ui, pane, Action::ClearErrors);
 }
 
 /// That nothing is wrong, or that nobody knows.
 fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane
-        .state
-        .hand()
-        .readings
-        .sample
-        .faults
-        .map(|faults| faults.asked);
+    let faults = pane.hand().readings.sample.faults;
+    let asked = faults.map(|faults| faults.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => (panels::FAULTS_NONE, look.palette.ok),
         Freshness::Stale => (panels::FAULTS_NONE_OLD, look.palette.faint),
@@ -180,7 +172,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
-    let sample = &pane.state.hand().readings.sample;
+    let sample = &pane.hand().readings.sample;
     let status = sample.status.map(|group| group.value[dof]);
     // A fault is explained by its entry below; what the status adds to it is said here.
     let faulty = sample
@@ -203,30 +195,22 @@ fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.separator();
     kit::head_ui(ui, look, look.say(notices::MEANINGS), |_| ());
     kit::say_ui(ui, look.say(notices::MEANINGS_FAULT), look.palette.muted);
-    for bit in 0..5 {
-        meaning_ui(ui, pane, words::fault(Fault::from_bit(bit), look.language));
+    for fault in (0..5).map(Fault::from_bit) {
+        meaning_ui(ui, pane, words::fault(fault, look.language));
     }
     kit::say_ui(ui, look.say(notices::MEANINGS_STATUS), look.palette.muted);
-    for code in [0, 1, 2, 3, 5, 6, 7] {
-        meaning_ui(
-            ui,
-            pane,
-            words::status(Status::from_raw(code), look.language),
-        );
+    for status in [0, 1, 2, 3, 5, 6, 7].map(Status::from_raw) {
+        meaning_ui(ui, pane, words::status(status, look.language));
     }
 }
 
 fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     let palette = pane.look.palette;
-    let (title, body) = match pane.look.language {
-        Language::En => (
-            format!("{}: ", words.title),
-            format!("{} {}", words.cause, words.advice),
-        ),
-        Language::Zh => (
-            format!("{}：", words.title),
-            format!("{}{}", words.cause, words.advice),
-        ),
+    let (cause, advice) = (words.cause, words.advice);
+    let title = pane.look.pair(words.title, "");
+    let body = match pane.look.language {
+        Language::En => format!("{cause} {advice}"),
+        Language::Zh => format!("{cause}{advice}"),
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;

@@ -8,9 +8,9 @@ use crate::hand::{Dof, PerDof};
 use crate::ui::faults::entry::{self as fault_entry, scroll_ui};
 use crate::ui::faults::recording_events;
 use crate::ui::faults::recording_events::EventLine;
-use crate::ui::kit::{self, Button, Label, Look, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Pick, Weight, format};
 use crate::ui::plots;
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points, height_over_axis};
 use crate::ui::plots::panels::{self, PANELS, PanelLine};
 use crate::ui::plots::times::Times;
 use crate::ui::recordings::stretch::ReplayedStretch;
@@ -61,11 +61,10 @@ fn chart<'a>(
     };
     let fault = recording.fault().map_or(recording.to, |fault| fault.at);
     let moments = recording.faults.iter();
+    let moments = moments.map(|fault| (fault.at.secs(), look.palette.bad));
     Chart {
         curves: lines.into_iter().map(curve).collect(),
-        moments: moments
-            .map(|fault| (fault.at.secs(), look.palette.bad))
-            .collect(),
+        moments: moments.collect(),
         least: panel.row.least_scale,
         times: Times::From(fault.secs(), look.say(notices::RECORDING_FAULT)),
         ..Chart::new(look, panel.title, height)
@@ -82,10 +81,8 @@ fn title(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     if more == 0 {
         return title;
     }
-    format!(
-        "{title} + {more} {}",
-        pane.look.say(notices::RECORDING_MORE)
-    )
+    let other = pane.look.say(notices::RECORDING_MORE);
+    format!("{title} + {more} {other}")
 }
 
 impl FaultRecordingsView {
@@ -102,18 +99,14 @@ impl FaultRecordingsView {
 
     /// The open one, if it is still kept.
     pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<FaultRecording>> {
-        pane.state
-            .hand()
-            .measured
-            .recorder
-            .get(self.open?)
-            .map(Arc::clone)
+        let recorder = &pane.hand().measured.recorder;
+        recorder.get(self.open?).map(Arc::clone)
     }
 
     /// Draws the list.
     pub(crate) fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let recorder = &pane.state.hand().measured.recorder;
+        let recorder = &pane.hand().measured.recorder;
         let mut pressed = None;
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
@@ -181,14 +174,10 @@ impl FaultRecordingsView {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
-            let axis = if is_lowest {
-                theme::PLOT_TIME_AXIS
-            } else {
-                0.0
-            };
+            let height = height_over_axis(height, is_lowest);
             let plot = Chart {
                 is_lowest,
-                ..chart(look, recording, panel, height + axis)
+                ..chart(look, recording, panel, height)
             };
             plot.ui(ui, &mut self.chart);
         }
@@ -210,7 +199,7 @@ impl FaultRecordingsView {
                 let title = title(pane, recording);
                 let title = format!("{}: {title}", look.say(notices::RECORDING));
                 kit::left_ui(ui, |ui| {
-                    let title = Label::new(&title, look.palette.text).font(theme::title());
+                    let title = Label::new(&title, look.palette.text).title();
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });
             });
@@ -238,8 +227,8 @@ impl FaultRecordingsView {
                 (true, notices::RECORDING_NEAR),
                 (false, notices::RECORDING_WHOLE),
             ];
-            let chosen = (&mut self.near, notices::RECORDING_NEAR.tip());
-            if kit::pick_ui(ui, look, chosen, near) {
+            let pick = Pick::new(look, notices::RECORDING_NEAR.tip());
+            if pick.ui(ui, &mut self.near, near) {
                 self.chart = ChartView::default();
             }
         });

@@ -12,14 +12,14 @@ const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 
 /// Why this joint cannot be sent anywhere now.
 pub(crate) fn refusal(pane: &Pane<'_>, dof: Dof) -> Option<&'static str> {
-    let locked = pane.state.hand().controls.joints[dof].locked;
+    let locked = pane.hand().controls.joints[dof].locked;
     let locked = locked.then(|| pane.look.say(main::LOCKED));
     pane.unready().or(locked)
 }
 
 /// Sends a joint there. Linked fingers go as far as this one does, each from where it stands.
 pub(crate) fn send(pane: &mut Pane<'_>, dof: Dof, angle: Angle, linked: bool) {
-    let joints = pane.state.hand().controls.joints;
+    let joints = pane.hand().controls.joints;
     pane.actions.push(Action::Target(dof, angle));
     let by = joints[dof].target.map(|old| angle.get() - old.get());
     let Some(by) = by.filter(|_| linked && LINKED.contains(&dof)) else {

@@ -89,6 +89,22 @@ impl Figure {
             path: [from + way, knee, end],
         }
     }
+
+    /// A lock beside the finger's name.
+    fn lock_ui(&self, ui: &mut Ui, pane: &Pane<'_>, name: &str) {
+        let [line, ..] = self.lines;
+        let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
+        let x = if self.on_left {
+            line.right() - width
+        } else {
+            line.left() + width
+        };
+        let place = Rect::from_center_size(pos2(x, line.center().y), Vec2::splat(theme::TEXT_LINE));
+        let lock = Label::new(theme::LOCKED, pane.look.palette.muted);
+        let lock = lock.font(theme::icon_high(theme::SIGN_SMALL)).center();
+        let named = pane.look.pair(name, pane.look.say(main::LOCKED));
+        lock.named(&named).put(ui, place);
+    }
 }
 
 /// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves.
@@ -116,10 +132,8 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
 
 fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     let look = pane.look;
-    let (name, color) = (
-        look.say(words::finger(finger)),
-        look.palette.dof[finger.bend()],
-    );
+    let name = look.say(words::finger(finger));
+    let color = look.palette.dof[finger.bend()];
     let &Figure {
         lines: [first, second, third],
         on_left,
@@ -135,11 +149,9 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     };
     aligned(Label::new(name, color).small(), ui, first);
     let mut joints = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
-    if joints
-        .clone()
-        .any(|dof| pane.state.hand().controls.joints[dof].locked)
-    {
-        lock_ui(ui, pane, (first, on_left), name);
+    let is_locked = |dof| pane.hand().controls.joints[dof].locked;
+    if joints.clone().any(is_locked) {
+        figure.lock_ui(ui, pane, name);
     }
     let (force, over, freshness) = force(pane, finger);
     let live = if over {
@@ -166,18 +178,15 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
 }
 
 fn grip(pane: &Pane<'_>) -> Grip {
-    grip::grip_now(pane.state.hand(), pane.state.now)
+    grip::grip_now(pane.hand(), pane.state.now)
 }
 
 /// The size of what thumb and index hold, in words; `None` while they hold nothing alone.
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let gap_mm = grip::held_gap(hand, pane.state.now)?;
-    let blocks = pane
-        .state
-        .settings
-        .size_blocks(hand.connection.endpoint.as_ref());
-    let size = blocks.size(gap_mm);
+    let endpoint = hand.connection.endpoint.as_ref();
+    let size = pane.state.settings.size_blocks(endpoint).size(gap_mm);
     let text = if size.is_measured {
         poses::HELD_MEASURED
     } else {
@@ -196,10 +205,8 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     }
     let line = place.with_min_y(place.bottom() - theme::PAD);
     let label = Label::new(&words, grip_color(pane, state)).small();
-    label
-        .named(look.say(panels::GRIP))
-        .put(ui, line)
-        .on_hover_text(look.tip(panels::GRIP));
+    let label = label.named(look.say(panels::GRIP)).put(ui, line);
+    label.on_hover_text(look.tip(panels::GRIP));
 }
 
 /// Loud where the user should look.
@@ -217,17 +224,14 @@ fn grip_color(pane: &Pane<'_>, state: GripState) -> Color32 {
 
 /// The force of the drive that bends a finger, whether it is at its threshold, and how fresh it is.
 fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
-    let (dof, hand) = (finger.bend(), pane.state.hand());
+    let (dof, hand) = (finger.bend(), pane.hand());
     let (force, freshness) = pane.newest(dof, hand.readings.sample.force);
     let raw = force.map(|force| i64::from(force.raw()));
     let known = force.and_then(|force| force.documented());
     let over = known.zip(hand.controls.stops_at(dof, hand.held_otherwise(dof)));
     let over = over.is_some_and(|(now, stops_at)| now >= stops_at.get());
-    (
-        format::with_unit(raw, 0, Quantity::Force.row().unit),
-        over,
-        freshness,
-    )
+    let force = format::with_unit(raw, 0, Quantity::Force.row().unit);
+    (force, over, freshness)
 }
 
 /// What hurts a drive now, in a word: its fault, or how warm it is. Nothing of old values.
@@ -238,25 +242,10 @@ fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
     if drive.lamp == palette.bad {
         return Some((drive.short, palette.bad));
     }
-    let (heat, freshness) = pane.newest(dof, pane.state.hand().readings.sample.temperature);
+    let (heat, freshness) = pane.newest(dof, pane.hand().readings.sample.temperature);
     let degrees = heat.and_then(|heat| heat.documented());
     let warm = degrees.filter(|degrees| *degrees >= WARM && freshness == Freshness::Live)?;
     Some((format!("{warm} °C"), palette.warn))
-}
-
-/// A lock beside a finger's name.
-fn lock_ui(ui: &mut Ui, pane: &Pane<'_>, (line, on_left): (Rect, bool), name: &str) {
-    let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
-    let x = if on_left {
-        line.right() - width
-    } else {
-        line.left() + width
-    };
-    let place = Rect::from_center_size(pos2(x, line.center().y), Vec2::splat(theme::TEXT_LINE));
-    let lock = Label::new(theme::LOCKED, pane.look.palette.muted);
-    let lock = lock.font(theme::icon_high(theme::SIGN_SMALL)).center();
-    let named = pane.look.pair(name, pane.look.say(main::LOCKED));
-    lock.named(&named).put(ui, place);
 }
 
 /// A thin line from a figure to its finger, with a ring there.

@@ -3,6 +3,7 @@
 use crate::hand::Dof;
 use crate::hand::kinematics::{Segment, SegmentFrames};
 use crate::ui::hand::camera::Camera;
+use crate::ui::hand::render::SeenPlace;
 use crate::ui::hand::scene::HandPicture;
 use egui::Pos2;
 use glam::Vec3;
@@ -31,16 +32,17 @@ pub(crate) struct FingerDrag {
 impl FingerDrag {
     /// Takes hold of what the eye sees at this depth below the pointer. None where no joint moves it.
     pub(crate) fn new(
-        (camera, picture): (&Camera, &HandPicture),
-        (segment, depth): (Segment, f32),
+        camera: &Camera,
+        picture: &HandPicture,
+        place: SeenPlace,
         pointer: Pos2,
     ) -> Option<Self> {
-        let dof = segment.dof()?;
-        let frame = camera.hand * picture.pose().frame(segment);
-        let seen = camera.seen_at(pointer, depth);
+        let dof = place.segment.dof()?;
+        let frame = camera.hand * picture.pose().frame(place.segment);
+        let seen = camera.seen_at(pointer, place.depth);
         Some(Self {
             dof,
-            segment,
+            segment: place.segment,
             at: frame.inverse().transform_point3(seen),
             share: picture.actual[dof]?,
             pointer,
@@ -48,11 +50,7 @@ impl FingerDrag {
     }
 
     /// The share of the way to open (0..=1) at which the place comes nearest to the pointer.
-    pub(crate) fn follow(
-        &mut self,
-        (camera, picture): (&Camera, &HandPicture),
-        pointer: Pos2,
-    ) -> f32 {
+    pub(crate) fn follow(&mut self, camera: &Camera, picture: &HandPicture, pointer: Pos2) -> f32 {
         let mut shares = picture.actual.map(|share| share.unwrap_or(1.0));
         let mut place = |share: f32| {
             shares[self.dof] = share;

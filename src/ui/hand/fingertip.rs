@@ -2,9 +2,7 @@
 
 use crate::ui::kit::Look;
 use crate::ui::theme;
-use egui::{
-    Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2,
-};
+use egui::{Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 
 /// Half the sensing area's width in millimetres, with the skin around it (protocol §5.2).
 const HALF_WIDTH_MM: f32 = 8.0;
@@ -80,10 +78,8 @@ impl Sense {
 impl Tip {
     /// How strong the proximity halo is, 0..=1.
     pub(crate) fn nearness(&self) -> f32 {
-        let level = self
-            .proximity
-            .map_or(0.0, |counts| counts / FULL_PROXIMITY_COUNTS);
-        level.clamp(0.0, 1.0)
+        let counts = self.proximity.unwrap_or(0.0);
+        (counts / FULL_PROXIMITY_COUNTS).clamp(0.0, 1.0)
     }
 
     /// How strong its colours are.
@@ -100,10 +96,8 @@ struct Scale {
 
 impl Scale {
     fn fit(rect: Rect) -> Self {
-        let (width, height) = (
-            HALF_WIDTH_MM + MARGIN_MM,
-            TIP_MM - BASE_MM + 2.0 * MARGIN_MM,
-        );
+        let width = HALF_WIDTH_MM + MARGIN_MM;
+        let height = TIP_MM - BASE_MM + 2.0 * MARGIN_MM;
         let per_mm = (rect.width() / (2.0 * width)).min(rect.height() / height);
         let lift = (TIP_MM + BASE_MM) / 2.0 * per_mm;
         Self {
@@ -113,10 +107,7 @@ impl Scale {
     }
 
     fn at(&self, x: f32, y: f32) -> Pos2 {
-        pos2(
-            self.center.x + x * self.per_mm,
-            self.center.y - y * self.per_mm,
-        )
+        self.center + vec2(x * self.per_mm, -y * self.per_mm)
     }
 
     /// The middle of the pads.
@@ -179,10 +170,8 @@ pub(crate) fn paint(painter: &Painter, look: Look, rect: Rect, tip: &Tip) {
 
 fn outline(scale: &Scale, grow_mm: f32) -> (Rect, CornerRadius) {
     let half = HALF_WIDTH_MM - EDGE_MM + grow_mm;
-    let rect = Rect::from_two_pos(
-        scale.at(-half, TIP_MM - TIP_EDGE_MM + grow_mm),
-        scale.at(half, BASE_MM - grow_mm),
-    );
+    let tip = scale.at(-half, TIP_MM - TIP_EDGE_MM + grow_mm);
+    let rect = Rect::from_two_pos(tip, scale.at(half, BASE_MM - grow_mm));
     let round = |mm: f32| {
         #[expect(
             clippy::cast_possible_truncation,
@@ -229,40 +218,26 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     let (channels, last) = tip.heat.split_at(7);
     for (pad, heat) in PADS.iter().zip(channels) {
         let stroke = Stroke::new(1.0, palette.edge);
-        painter.add(Shape::convex_polygon(
-            scale.shape(pad),
-            color(*heat),
-            stroke,
-        ));
+        let pad = scale.shape(pad);
+        painter.add(Shape::convex_polygon(pad.clone(), color(*heat), stroke));
         if heat.is_none() && tip.heat.iter().any(Option::is_some) {
-            crossed(
-                painter,
-                &scale.shape(pad),
-                palette.warn.gamma_multiply(fade),
-            );
+            crossed(painter, &pad, palette.warn.gamma_multiply(fade));
         }
     }
     // The eighth channel belongs to no pad: a bar beside them.
     let bar = Rect::from_two_pos(scale.at(6.0, 4.6), scale.at(6.8, -4.6));
-    let heat = last.first().copied().flatten();
-    painter.rect(
-        bar,
-        CornerRadius::same(1),
-        color(heat),
-        Stroke::new(1.0, palette.edge),
-        StrokeKind::Inside,
-    );
+    let fill = color(last.first().copied().flatten());
+    let edge = Stroke::new(1.0, palette.edge);
+    painter.rect(bar, 1.0, fill, edge, StrokeKind::Inside);
 }
 
 /// A cross over a pad whose channel says nothing.
 fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
     let box_of = Rect::from_points(pad);
     let (center, arm) = (box_of.center(), box_of.size().min_elem() * 0.22);
+    let stroke = Stroke::new(theme::FOCUS_LINE, color);
     for way in [vec2(arm, arm), vec2(arm, -arm)] {
-        painter.line_segment(
-            [center - way, center + way],
-            Stroke::new(theme::FOCUS_LINE, color),
-        );
+        painter.line_segment([center - way, center + way], stroke);
     }
 }
 
@@ -273,29 +248,20 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
         Sense::Fine => look.palette.text.gamma_multiply(fade),
         Sense::NoNumber | Sense::Beyond => look.palette.warn.gamma_multiply(fade),
     };
+    let (middle, thin) = (scale.middle(), Stroke::new(theme::FOCUS_LINE, arrow));
     if tip.sense == Sense::NoNumber {
         let radius = (HALF_WIDTH_MM - 1.0) * 0.5 * scale.per_mm;
-        painter.circle_stroke(
-            scale.middle(),
-            radius,
-            Stroke::new(theme::FOCUS_LINE, arrow),
-        );
+        painter.circle_stroke(middle, radius, thin);
     }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
         // Area grows with force, so that twice the force looks twice as much.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
         let radius = part * (HALF_WIDTH_MM - 1.0) * scale.per_mm;
-        painter.circle(
-            scale.middle(),
-            radius,
-            arrow.gamma_multiply(0.14),
-            Stroke::new(theme::FOCUS_LINE, arrow),
-        );
+        painter.circle(middle, radius, arrow.gamma_multiply(0.14), thin);
     }
     if let Some((shear, direction)) = tip.shear.filter(|(shear, _)| *shear > 0.0) {
-        let by = scale.end(shear, direction) - scale.middle();
-        let stroke = Stroke::new(2.0, arrow);
-        painter.arrow(scale.middle(), by, stroke);
+        let by = scale.end(shear, direction) - middle;
+        painter.arrow(middle, by, Stroke::new(2.0, arrow));
     }
 }
 

@@ -19,5 +19,5 @@ mod shape;
 mod solid;
 #[cfg(test)]
 mod tests;
-mod tile;
+pub(crate) mod tile;
 mod view;

@@ -13,7 +13,6 @@ use crate::ui::hand::fingertip::{Sense as Meant, Tip};
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::hand::scene::{HandPicture, Hurt, TipLoad};
 use crate::ui::hand::shape::Held;
-use crate::ui::hand::tile;
 use crate::ui::hand::view::{HandStage, HandView};
 use crate::ui::hand::{aim, figures};
 use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
@@ -41,7 +40,7 @@ impl HandPanel {
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         let picture = HandPicture {
             lit: pointed::pointed(ui, PointedPlace::Row),
-            ..picture(pane.state.hand(), tips, pane.state.now)
+            ..picture(pane.hand(), tips, pane.state.now)
         };
         let picture = wished(ui, pane, picture);
         let movable =
@@ -71,17 +70,16 @@ impl HandPanel {
         if response.is_pointer_button_down_on() {
             return None;
         }
-        response.on_hover_text(used.joint.map_or_else(
-            || look.tip(panels::HAND_PICTURE).to_owned(),
-            |dof| said(pane, dof),
-        ));
+        let told = used.joint.map(|dof| said(pane, dof));
+        let tip = || look.tip(panels::HAND_PICTURE).to_owned();
+        response.on_hover_text(told.unwrap_or_else(tip));
         used.joint.map(Dof::finger).filter(|_| clicked)
     }
 }
 
 /// With the gap that the user asks about as the ghost, while nothing is sent.
 fn wished(ui: &Ui, pane: &Pane<'_>, picture: HandPicture) -> HandPicture {
-    let is_armed = pane.state.hand().connection.is_armed();
+    let is_armed = pane.hand().connection.is_armed();
     match aim::wished(ui).filter(|_| !is_armed) {
         Some(gap) => HandPicture {
             target: gap
@@ -97,7 +95,7 @@ fn wished(ui: &Ui, pane: &Pane<'_>, picture: HandPicture) -> HandPicture {
 fn send(ui: &Ui, pane: &mut Pane<'_>, dof: Dof, share: f32) {
     #[expect(clippy::cast_possible_truncation, reason = "a share of at most 1")]
     let angle = Angle::nearest((share * f32::from(Angle::MAX.get())).round() as i16);
-    if pane.state.hand().controls.joints[dof].target != Some(angle) {
+    if pane.hand().controls.joints[dof].target != Some(angle) {
         aim::send(pane, dof, angle, aim::is_linked(ui));
     }
 }
@@ -113,16 +111,6 @@ impl StillHand {
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
         self.0.paint(ui, place, look.palette, picture);
     }
-}
-
-/// Draws a pose that changes: for dry runs and editors. `shares` of the way to open; a finger with an unknown joint is a shell.
-pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
-    tile::pose_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
-}
-
-/// Draws a pose that is to be told from others: from where its fingers are seen best, those that matter in colour.
-pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
-    tile::sign_ui(ui, look.palette, rect, &HandPicture::of(look.side, shares));
 }
 
 /// A hand as it is known now, with what its fingertips feel.
@@ -206,9 +194,8 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
 /// Says under the picture what a grey finger stands for.
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect) {
     let place = picture.with_min_y(picture.bottom() - theme::PAD);
-    kit::Label::note(look, panels::UNKNOWN)
-        .center()
-        .put(ui, place);
+    let note = kit::Label::note(look, panels::UNKNOWN);
+    note.center().put(ui, place);
 }
 
 /// Which hand is drawn, as a button that draws the other one.
@@ -239,7 +226,7 @@ fn said(pane: &Pane<'_>, dof: Dof) -> String {
 /// What a fingertip feels.
 pub(crate) fn felt(pane: &Pane<'_>, finger: Finger) -> String {
     let look = pane.look;
-    let block = pane.state.hand().readings.sample.tactile[finger].map(|block| block.value);
+    let block = pane.hand().readings.sample.tactile[finger].map(|block| block.value);
     format!(
         "{} {} N, {} {} N",
         look.say(panels::TIP_NORMAL),

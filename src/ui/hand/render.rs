@@ -23,6 +23,14 @@ struct Seen {
     edges: u8,
 }
 
+/// A place of the hand that is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SeenPlace {
+    pub(crate) segment: Segment,
+    /// How near to the eye it is.
+    pub(crate) depth: f32,
+}
+
 /// What is drawn, and how it is seen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Model<'a> {
@@ -76,13 +84,10 @@ impl Sketch {
     fn part(&mut self, camera: &Camera, light: &Light, part: &Part<'_>, mesh: &mut Mesh) {
         let frame = camera.hand * part.frame;
         let eye = frame.inverse().transform_point3(Vec3::Z * EYE_MM);
+        let faces = part.solid.faces.iter();
+        let fronts = faces.map(|face| face.normal.dot(eye) > face.offset);
         self.fronts.clear();
-        self.fronts.extend(
-            part.solid
-                .faces
-                .iter()
-                .map(|face| face.normal.dot(eye) > face.offset),
-        );
+        self.fronts.extend(fronts);
         self.vertices.clear();
         self.vertices.resize(part.solid.corners.len(), UNSEEN);
         let shade = light.on(part, &frame);
@@ -93,13 +98,8 @@ impl Sketch {
         } = frame.matrix3;
         let turn = Mat3::from_cols(x_axis.normalize(), y_axis.normalize(), z_axis.normalize());
         let near = frame.matrix3.row(2);
-        for (face, _) in part
-            .solid
-            .faces
-            .iter()
-            .zip(&self.fronts)
-            .filter(|(_, front)| **front)
-        {
+        let faces = part.solid.faces.iter().zip(&self.fronts);
+        for (face, _) in faces.filter(|(_, front)| **front) {
             let mut depth = 0.0;
             let corners = face.corners.map(|number| {
                 let vertex = self.vertices.get_mut(usize::from(number));
@@ -110,11 +110,10 @@ impl Sketch {
                 if *vertex == UNSEEN {
                     let (at, normal) = (frame.transform_point3(corner.at), turn * corner.normal);
                     *vertex = u32::try_from(mesh.vertices.len()).unwrap_or(0);
-                    let color = shade.color(corner.skin, at, normal);
                     mesh.vertices.push(Vertex {
                         pos: camera.project(at),
                         uv: WHITE_UV,
-                        color,
+                        color: shade.color(corner.skin, at, normal),
                     });
                     self.depths.push(at.z);
                 }
@@ -133,24 +132,18 @@ impl Sketch {
     }
 
     fn edges(&self, face: &Face) -> u8 {
-        let goes_on = |beyond: u16| {
-            self.fronts
-                .get(usize::from(beyond))
-                .copied()
-                .unwrap_or(false)
-        };
+        let goes_on = |beyond: u16| self.fronts.get(usize::from(beyond)) == Some(&true);
         let sides = face.beyond.into_iter().enumerate();
         sides
             .map(|(side, beyond)| u8::from(!goes_on(beyond)) << side)
             .sum()
     }
 
-    /// The segment of the hand that is seen at a place of the mesh drawn last, and how near it is there.
-    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<(Segment, f32)> {
+    /// What of the hand is seen at a place of the mesh drawn last.
+    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<SeenPlace> {
         let corner = |at: u32| {
-            mesh.vertices
-                .get(at as usize)
-                .map_or(Pos2::ZERO, |vertex| vertex.pos)
+            let vertex = mesh.vertices.get(at as usize);
+            vertex.map_or(Pos2::ZERO, |vertex| vertex.pos)
         };
         let depth = |at: u32| self.depths.get(at as usize).copied().unwrap_or(0.0);
         let found = |seen: &Seen| {
@@ -163,7 +156,8 @@ impl Sketch {
             let whole: f32 = sides.iter().sum();
             let depths = seen.corners.map(depth).into_iter().zip(sides);
             let depth = depths.map(|(depth, part)| depth * part).sum::<f32>() / whole;
-            (is_in && whole != 0.0).then_some((seen.segment?, depth))
+            let segment = seen.segment?;
+            (is_in && whole != 0.0).then_some(SeenPlace { segment, depth })
         };
         let nearest_first = self.order.iter().rev();
         let seen = nearest_first.filter_map(|number| self.seen.get((number & 0xFFFF) as usize));

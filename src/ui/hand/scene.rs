@@ -207,21 +207,18 @@ impl HandPicture {
         if newtons < ARROW_MIN_N || !newtons.is_finite() {
             return None;
         }
-        let (along, length) = (
-            force / newtons,
-            (newtons * ARROW_MM_PER_N).min(ARROW_MAX_MM),
-        );
+        let along = force / newtons;
+        let length = (newtons * ARROW_MM_PER_N).min(ARROW_MAX_MM);
         let (side, front) = along.any_orthonormal_pair();
         let thick = length.clamp(12.0, 34.0);
         let shape = Mat3::from_cols(front * thick, along * length, side * thick);
-        let (color, glow) = (Some(palette.accent), Some((palette.accent, 0.7)));
         Some(Part {
             solid: shape::arrow(),
             segment: None,
             frame: Affine3::from_mat3_translation(shape, pose.tip(finger)),
             coat: Coat {
-                color,
-                glow,
+                color: Some(palette.accent),
+                glow: Some((palette.accent, 0.7)),
                 ..Coat::default()
             },
         })

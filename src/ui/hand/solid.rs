@@ -103,10 +103,8 @@ impl Soup {
         };
         // Both ends of a band stay, whatever is left out between them.
         let left = |(skin, rings): &(Skin, &[LoftRing])| -> Vec<(Skin, LoftRing)> {
-            let kept = rings
-                .iter()
-                .enumerate()
-                .filter(|(at, _)| at % each == 0 || at + 1 == rings.len());
+            let kept = rings.iter().enumerate();
+            let kept = kept.filter(|(at, _)| at % each == 0 || at + 1 == rings.len());
             kept.map(|(_, ring)| (*skin, *ring)).collect()
         };
         let rings: Vec<(Skin, LoftRing)> = bands.iter().flat_map(left).collect();
@@ -164,19 +162,17 @@ impl Soup {
 
     /// Welds the triangles, smooths their normals and finds neighbours. Triangles without area are dropped.
     pub(crate) fn solid(self) -> Solid {
-        let shards: Vec<_> = self
-            .shards
-            .iter()
+        let shards = self.shards.iter();
+        let shards: Vec<_> = shards
             .filter(|shard| shard.area().length() > 1e-3)
             .collect();
         let mut places: HashMap<PlaceKey, Vec<(Vec3, Vec3)>> = HashMap::new();
         let mut edges = HashMap::new();
         for (shard, number) in shards.iter().zip(0u16..) {
             for (from, to) in shard.sides() {
-                places
-                    .entry(from)
-                    .or_default()
-                    .push((shard.area(), shard.area().normalize_or_zero()));
+                let area = shard.area();
+                let near = places.entry(from).or_default();
+                near.push((area, area.normalize_or_zero()));
                 edges.insert((from, to, shard.skin), number);
             }
         }
@@ -186,10 +182,8 @@ impl Soup {
             let numbers = shard.at.map(|at| {
                 let near = places.get(&key(at)).into_iter().flatten();
                 let smooth = near.filter(|(_, other)| other.dot(own) > EDGE_COS);
-                let normal = smooth
-                    .map(|(area, _)| *area)
-                    .sum::<Vec3>()
-                    .normalize_or_zero();
+                let normal: Vec3 = smooth.map(|(area, _)| *area).sum();
+                let normal = normal.normalize_or_zero();
                 *known
                     .entry((key(at), key(normal), shard.skin))
                     .or_insert_with(|| {

@@ -8,7 +8,7 @@ use crate::sim::object::Object;
 use crate::ui::hand::camera::Turn;
 use crate::ui::hand::figures::{Figure, picture_place};
 use crate::ui::hand::finger_drag::FingerDrag;
-use crate::ui::hand::render::Sketch;
+use crate::ui::hand::render::{SeenPlace, Sketch};
 use crate::ui::hand::scene::{HandPicture, Hurt};
 use crate::ui::hand::shape::{self, Held};
 use crate::ui::hand::view::{DrawSettings, HandStage, HandUse, HandView, TURN, draw};
@@ -149,14 +149,14 @@ fn the_joint_under_the_pointer_is_the_one_drawn_there() {
                 let place = camera.project(camera.hand.transform_point3(seen));
                 let found = sketch.segment_at(&mesh, place);
                 assert_eq!(
-                    found.and_then(|(segment, _)| segment.dof()),
+                    found.and_then(|seen| seen.segment.dof()),
                     Some(finger.bend()),
                     "{shares:?} {finger:?}"
                 );
             }
             assert_eq!(sketch.segment_at(&mesh, setting.rect.right_top()), None);
             let palm = camera.project(camera.hand.transform_point3(Vec3::new(0.0, 14.0, 80.0)));
-            let found = sketch.segment_at(&mesh, palm).map(|(segment, _)| segment);
+            let found = sketch.segment_at(&mesh, palm).map(|seen| seen.segment);
             assert_eq!(found, Some(Segment::Palm));
         }
     }
@@ -415,14 +415,14 @@ fn a_dragged_place_follows_the_pointer_without_jumps_from_wherever_it_is_seen() 
             };
             let (picture, from, depth) = seen(1.0);
             let hold = || {
-                let seen = (Segment::tip(finger), depth);
-                FingerDrag::new((&camera, &picture), seen, from).unwrap()
+                let segment = Segment::tip(finger);
+                FingerDrag::new(&camera, &picture, SeenPlace { segment, depth }, from).unwrap()
             };
             // Along its own way it is where the pointer is.
             let mut drag = hold();
             for step in 1..=20u8 {
                 let share = 1.0 - f32::from(step) / 20.0;
-                let found = drag.follow((&camera, &picture), seen(share).1);
+                let found = drag.follow(&camera, &picture, seen(share).1);
                 assert!(
                     (found - share).abs() < 0.05,
                     "{side:?} {finger:?} {share}: {found}"
@@ -432,7 +432,7 @@ fn a_dragged_place_follows_the_pointer_without_jumps_from_wherever_it_is_seen() 
             let (mut drag, mut last) = (hold(), 1.0);
             for step in 1..=100u8 {
                 let to = from.lerp(seen(0.0).1, f32::from(step) / 100.0);
-                let share = drag.follow((&camera, &picture), to);
+                let share = drag.follow(&camera, &picture, to);
                 assert!(
                     share <= last + 1e-3,
                     "{side:?} {finger:?}: {share} after {last}"
@@ -446,7 +446,7 @@ fn a_dragged_place_follows_the_pointer_without_jumps_from_wherever_it_is_seen() 
             assert!(last < 0.08, "{side:?} {finger:?}: {last}");
             // Beyond its end it stays there.
             let beyond = (seen(0.0).1 - from) * 9.0;
-            let share = drag.follow((&camera, &picture), from + beyond);
+            let share = drag.follow(&camera, &picture, from + beyond);
             assert!((0.0..0.03).contains(&share), "{side:?} {finger:?}: {share}");
         }
     }

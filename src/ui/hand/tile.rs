@@ -8,10 +8,12 @@ use crate::ui::hand::light::Light;
 use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, TURN, draw, fade_out};
+use crate::ui::kit::{Label, Look};
+use crate::ui::text::Text;
 use crate::ui::theme::Palette;
 use egui::cache::{ComputerMut, FrameCache};
 use egui::emath::{Float, OrderedFloat};
-use egui::{Mesh, Pos2, Rect, Ui};
+use egui::{Mesh, Pos2, Rect, Ui, vec2};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -45,30 +47,26 @@ const fn turn(yaw: f32, pitch: f32) -> Turn {
     }
 }
 
-/// Draws a pose that changes: the picture holds still while the hand moves in it.
-pub(crate) fn pose_ui(ui: &Ui, palette: &Palette, rect: Rect, picture: &HandPicture) {
-    tile_ui(ui, palette, rect, (picture, false));
+/// Draws a pose that changes, for dry runs and editors: the picture holds still while the hand moves in it. `shares` of the way
+/// to open; a finger with an unknown joint is a shell.
+pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    Tile::new(ui, look, rect, shares).paint(ui, rect);
 }
 
-/// Draws a pose that is to be told from others at the size of a button.
-pub(crate) fn sign_ui(ui: &Ui, palette: &Palette, rect: Rect, picture: &HandPicture) {
-    tile_ui(ui, palette, rect, (picture, true));
+/// Draws a pose that is to be told from others at the size of a button: from where its fingers are seen best, those that matter
+/// in colour.
+pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
+    let pose = Tile::new(ui, look, rect, shares);
+    let is_sign = true;
+    Tile { is_sign, ..pose }.paint(ui, rect);
 }
 
-fn tile_ui(ui: &Ui, palette: &Palette, rect: Rect, (picture, is_sign): (&HandPicture, bool)) {
-    let tile = Tile {
-        side: picture.side,
-        shares: picture.actual.map(|share| share.map(Float::ord)),
-        size: [rect.width().ord(), rect.height().ord()],
-        theme: palette.theme,
-        feather: (1.0 / ui.pixels_per_point()).ord(),
-        is_sign,
-    };
-    type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
-    let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(tile)));
-    let mut mesh = Mesh::clone(&mesh);
-    mesh.translate(rect.min.to_vec2());
-    ui.painter().with_clip_rect(rect).add(mesh);
+/// Where there is no pose yet: an open hand so far as this, and a title.
+pub(crate) fn empty_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
+    ui.add_space(ui.available_height() * 0.2);
+    let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
+    pose_ui(ui, look, picture, &PerDof::splat(Some(share)));
+    Label::said(look, title).title().ui(ui);
 }
 
 /// What a tile shows, and how.
@@ -80,6 +78,27 @@ struct Tile {
     theme: Theme,
     feather: OrderedFloat<f32>,
     is_sign: bool,
+}
+
+impl Tile {
+    fn new(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) -> Self {
+        Self {
+            side: look.side,
+            shares: shares.map(|share| share.map(Float::ord)),
+            size: [rect.width().ord(), rect.height().ord()],
+            theme: look.palette.theme,
+            feather: (1.0 / ui.pixels_per_point()).ord(),
+            is_sign: false,
+        }
+    }
+
+    fn paint(self, ui: &Ui, rect: Rect) {
+        type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
+        let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(self)));
+        let mut mesh = Mesh::clone(&mesh);
+        mesh.translate(rect.min.to_vec2());
+        ui.painter().with_clip_rect(rect).add(mesh);
+    }
 }
 
 #[derive(Default)]

@@ -109,8 +109,8 @@ impl HandView {
         if response.dragged() {
             used = self.dragged(response, stage);
         } else if let Some(at) = response.hover_pos() {
-            let segment = self.sketch.segment_at(&self.mesh, at);
-            used.joint = segment.and_then(|(segment, _)| segment.dof());
+            let seen = self.sketch.segment_at(&self.mesh, at);
+            used.joint = seen.and_then(|seen| seen.segment.dof());
         }
         if response.double_clicked() {
             self.turn = None;
@@ -140,7 +140,7 @@ impl HandView {
     fn grip(&self, at: Pos2) -> Option<FingerDrag> {
         let (picture, setting) = self.drawn.as_ref()?;
         let seen = self.sketch.segment_at(&self.mesh, at)?;
-        FingerDrag::new((&setting.camera(picture.side), picture), seen, at)
+        FingerDrag::new(&setting.camera(picture.side), picture, seen, at)
     }
 
     fn dragged(&mut self, response: &Response, stage: &HandStage<'_>) -> HandUse {
@@ -158,10 +158,9 @@ impl HandView {
             }
             HandDrag::Moves(grip) if stage.movable[grip.dof] => {
                 let camera = drawn.map(|(picture, setting)| setting.camera(picture.side));
-                let moved = camera.zip(at).map(|(camera, at)| {
-                    let share = grip.follow((&camera, stage.picture), at);
-                    (grip.dof, share)
-                });
+                let moved = camera
+                    .zip(at)
+                    .map(|(camera, at)| (grip.dof, grip.follow(&camera, stage.picture, at)));
                 let joint = Some(grip.dof);
                 return HandUse { joint, moved };
             }

@@ -7,12 +7,10 @@ use crate::hand::{PerDof, PerFinger};
 use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::hands::strips::HandWords;
 use crate::ui::kit::{self, Label, Pane};
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, height_over_axis};
 use crate::ui::plots::panels::PANELS;
-use crate::ui::plots::times::Times;
-use crate::ui::text::panels as text;
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 use std::collections::BTreeMap;
 
 /// A column is no narrower: the plots would have no room beside their numbers.
@@ -67,15 +65,11 @@ impl BesideView {
 impl HandColumn {
     fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, at: usize, hand: &Hand) {
         let look = pane.look;
-        let words = HandWords::of(look, (at, hand), pane.state.now);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        let words = HandWords::of(look, at, hand, pane.state.now);
+        kit::full_card_ui(ui, look, |ui| {
             let title = format!("{}  {}", words.number, words.name);
             let [_, side] = words.side;
-            kit::head_ui(ui, look, &title, |ui| {
-                let side = Label::muted(look, side).small();
-                side.ui(ui);
-            });
+            kit::head_ui(ui, look, &title, |ui| Label::note(look, side).ui(ui));
             ui.horizontal(|ui| {
                 kit::lamp_ui(ui, Some(words.color));
                 Label::new(&words.state, look.palette.text).ui(ui);
@@ -93,10 +87,9 @@ impl HandColumn {
 
     fn plots_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, hand: &Hand, height: f32) {
         let look = pane.look;
-        let now = pane.state.now.secs();
-        let first = hand.measured.history.first_secs().unwrap_or(now);
+        let (now_s, history) = (pane.state.now.secs(), &hand.measured.history);
         let window = pane.state.settings.plot_window.seconds();
-        self.charts.time.advance((first.min(now), now), window);
+        self.charts.advance(history, now_s, window);
         ui.spacing_mut().item_spacing.y = 0.0;
         let panels = PANELS.iter().filter(|panel| PLOTS.contains(&panel.kind));
         for panel in panels {
@@ -104,30 +97,14 @@ impl HandColumn {
             let lines = panel.measured(&PerDof::default());
             let curves = lines.iter().map(|line| ChartCurve {
                 told: Some(panel.row.decimals),
-                ..ChartCurve::new(
-                    Points::Measured(&hand.measured.history, line.series),
-                    Stroke::new(theme::LINE, look.palette.dof[line.dof]),
-                )
+                ..ChartCurve::measured(history, line.series, look.palette.dof[line.dof])
             });
             let chart = Chart {
                 curves: curves.collect(),
                 least: panel.row.least_scale,
-                times: if self.charts.time.is_held() {
-                    Times::Clock
-                } else {
-                    Times::From(self.charts.time.span().1, look.say(text::NOW))
-                },
+                times: self.charts.times(look),
                 is_lowest,
-                ..Chart::new(
-                    look,
-                    panel.title,
-                    height
-                        + if is_lowest {
-                            theme::PLOT_TIME_AXIS
-                        } else {
-                            0.0
-                        },
-                )
+                ..Chart::new(look, panel.title, height_over_axis(height, is_lowest))
             };
             chart.ui(ui, &mut self.charts);
         }

@@ -73,7 +73,7 @@ pub(crate) struct HandWords {
 
 impl HandWords {
     /// Of the hand with this index.
-    pub(crate) fn of(look: Look, (at, hand): (usize, &Hand), now: Moment) -> Self {
+    pub(crate) fn of(look: Look, at: usize, hand: &Hand, now: Moment) -> Self {
         let (state, color) = match hand.connection.status.hold {
             Hold::Alarm { .. } => (main::ALARM_TITLE, look.palette.bad),
             _ => link_words_of(look, hand),
@@ -116,9 +116,13 @@ pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_a
         }
         let rect = Rect::from_min_size(corner, size);
         corner.x += rows.width + theme::GAP;
-        ui.push_id(hand.label.slot, |ui| {
-            strip_ui(ui, pane, (at, hand), (rect, is_free));
-        });
+        let strip = HandStrip {
+            slot: hand.label.slot,
+            words: HandWords::of(look, at, hand, pane.state.now),
+            rect,
+            is_free,
+        };
+        ui.push_id(strip.slot, |ui| strip.ui(ui, pane));
     }
     if !is_free {
         ui.disable();
@@ -132,68 +136,72 @@ pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_a
     button.put(ui, look, rect, id).clicked()
 }
 
-fn strip_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (at, hand): (usize, &Hand),
-    (rect, is_free): (Rect, bool),
-) {
-    let look = pane.look;
-    let palette = look.palette;
-    let words = HandWords::of(look, (at, hand), pane.state.now);
-    let slot = hand.label.slot;
-    let (strip, stop) = rect.split_left_right_at_x(rect.right() - STOP);
-    let strip = strip.with_max_x(strip.right() - theme::STEP);
-    stop_ui(ui, pane, (slot, words.number), stop);
-    if !is_free {
-        ui.disable();
-    }
-    let is_shown = pane.state.hand().label.slot == slot;
-    let name = look.fill(window::HAND_OF, &[&words.number, &words.name]);
-    let [letter, side] = words.side.map(|text| look.say(text));
-    let state = &words.state;
-    let tip = format!("{name}\n{side}, {state}\n{}", look.tip(window::HAND_OF));
-    let button = Button::new(&words.name, &tip).named(&name).switch(is_shown);
-    let response = button.ground(ui, look, strip, ui.scope_id().with("show"));
-    let inner = strip.shrink2(vec2(theme::GAP, theme::STEP));
-    let (number, inner) = inner.split_left_right_at_x(inner.left() + NUMBER);
-    let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
-    let digit = words.number.to_string();
-    let label = Label::new(&digit, palette.muted).font(theme::title());
-    label.paint(ui, number);
-    let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
-    let is_wide = width < upper.width() * 0.5;
-    let (title, corner) = if is_wide {
-        upper.split_left_right_at_x(upper.right() - width)
-    } else {
-        (upper, upper)
-    };
-    Label::new(&words.name, palette.text).paint(ui, title);
-    if is_wide {
-        let letter = Label::new(letter, palette.muted).small().right();
-        letter.paint(ui, corner);
-    }
-    kit::lamp(
-        ui,
-        pos2(lower.left() + theme::LAMP, lower.center().y),
-        words.color,
-    );
-    let told = lower.with_min_x(lower.left() + theme::PAD);
-    Label::new(state, palette.text).small().paint(ui, told);
-    if response.clicked() && !is_shown {
-        pane.actions.push(Action::Hands(HandsAction::Show(slot)));
-    }
+/// The strip of one hand.
+struct HandStrip {
+    slot: SlotId,
+    words: HandWords,
+    rect: Rect,
+    /// More than its STOP can be pressed.
+    is_free: bool,
 }
 
-fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>, (slot, number): (SlotId, usize), rect: Rect) {
-    let look = pane.look;
-    let name = look.fill(window::STOP_ONE, &[&number]);
-    let button = Button::new(look.say(main::STOP), look.tip(window::STOP_ONE));
-    let button = button.named(&name).weight(Weight::Stop);
-    let response = button.ground(ui, look, rect, ui.scope_id().with("stop"));
-    let word = Label::new(look.say(main::STOP), look.palette.on_strong).center();
-    word.font(theme::title()).paint(ui, rect);
-    if kit::pressed(ui, &response) {
-        pane.actions.push(Action::Hands(HandsAction::StopOne(slot)));
+impl HandStrip {
+    fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let (look, palette) = (pane.look, pane.look.palette);
+        let Self {
+            slot, words, rect, ..
+        } = self;
+        let (strip, stop) = rect.split_left_right_at_x(rect.right() - STOP);
+        let strip = strip.with_max_x(strip.right() - theme::STEP);
+        self.stop_ui(ui, pane, stop);
+        if !self.is_free {
+            ui.disable();
+        }
+        let is_shown = pane.hand().label.slot == *slot;
+        let name = look.fill(window::HAND_OF, &[&words.number, &words.name]);
+        let [letter, side] = words.side.map(|text| look.say(text));
+        let state = &words.state;
+        let tip = format!("{name}\n{side}, {state}\n{}", look.tip(window::HAND_OF));
+        let button = Button::new(&words.name, &tip).named(&name).switch(is_shown);
+        let response = button.ground(ui, look, strip, ui.scope_id().with("show"));
+        let inner = strip.shrink2(vec2(theme::GAP, theme::STEP));
+        let (number, inner) = inner.split_left_right_at_x(inner.left() + NUMBER);
+        let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
+        let digit = words.number.to_string();
+        let label = Label::new(&digit, palette.muted).font(theme::title());
+        label.paint(ui, number);
+        let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
+        let is_wide = width < upper.width() * 0.5;
+        let (title, corner) = if is_wide {
+            upper.split_left_right_at_x(upper.right() - width)
+        } else {
+            (upper, upper)
+        };
+        Label::new(&words.name, palette.text).paint(ui, title);
+        if is_wide {
+            let letter = Label::new(letter, palette.muted).small().right();
+            letter.paint(ui, corner);
+        }
+        let lamp = pos2(lower.left() + theme::LAMP, lower.center().y);
+        kit::lamp(ui, lamp, words.color);
+        let told = lower.with_min_x(lower.left() + theme::PAD);
+        Label::new(state, palette.text).small().paint(ui, told);
+        if response.clicked() && !is_shown {
+            pane.actions.push(Action::Hands(HandsAction::Show(*slot)));
+        }
+    }
+
+    fn stop_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, rect: Rect) {
+        let look = pane.look;
+        let name = look.fill(window::STOP_ONE, &[&self.words.number]);
+        let button = Button::new(look.say(main::STOP), look.tip(window::STOP_ONE));
+        let button = button.named(&name).weight(Weight::Stop);
+        let response = button.ground(ui, look, rect, ui.scope_id().with("stop"));
+        let word = Label::new(look.say(main::STOP), look.palette.on_strong);
+        word.title().center().paint(ui, rect);
+        if kit::pressed(ui, &response) {
+            let stop = HandsAction::StopOne(self.slot);
+            pane.actions.push(Action::Hands(stop));
+        }
     }
 }

@@ -8,8 +8,8 @@ use crate::link::Owner;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
 use crate::ui::inputs::pad_card::pad_source_ui;
-use crate::ui::inputs::source::{Switch, about_ui, grant_ui, state_ui, switch_ui};
-use crate::ui::kit::{self, Button, CardGrid, Label, Pane};
+use crate::ui::inputs::source::{Switch, about_ui, grant_client_ui, grant_ui, state_ui, switch_ui};
+use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, Pick};
 use crate::ui::text::{Text, errors, exhibit, inputs};
 use crate::ui::theme;
 use egui::Ui;
@@ -80,7 +80,7 @@ impl SourceCards {
 
     fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let at = pane.state.hand().inputs.stream_at;
+        let at = pane.hand().inputs.stream_at;
         let wanted = place(&self.stream).map(|at| {
             if self.is_tcp {
                 StreamPlace::Tcp(at)
@@ -99,12 +99,11 @@ impl SourceCards {
         ui.horizontal(|ui| {
             ui.add_enabled_ui(at.is_none(), |ui| {
                 let both = [(false, inputs::UDP), (true, inputs::TCP)];
-                kit::pick_ui(ui, look, (&mut self.is_tcp, inputs::STREAM), both);
+                Pick::new(look, inputs::STREAM).ui(ui, &mut self.is_tcp, both);
             });
-            let name = look.say(inputs::STREAM_AT);
-            place_ui(ui, pane, (name, &mut self.stream), at.map(socket));
+            PlaceField::new(look, inputs::STREAM_AT, at.map(socket)).ui(ui, &mut self.stream);
         });
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let view = &hand.inputs.stream_view;
         let owner = view.owner(pane.state.now).filter(|_| at.is_some());
         let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
@@ -126,14 +125,12 @@ impl SourceCards {
             ];
             counts_ui(ui, pane, counts.into_iter().chain(refused));
         }
-        let missing = silence(pane, owner);
-        let source = InputAction::Grant(InputSource::Stream);
-        grant_ui(ui, pane, (look.say(inputs::STREAM), source), missing);
+        grant_ui(ui, pane, InputSource::Stream, silence(pane, owner));
     }
 
     fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let view = pane.state.hand().inputs.dds_view.as_ref();
+        let view = pane.hand().inputs.dds_view.as_ref();
         let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
         let switch = Switch {
             title: inputs::DDS,
@@ -144,7 +141,7 @@ impl SourceCards {
         };
         switch_ui(ui, pane, switch);
         let at = view.map(|view| (view.at.into(), view.at.to_string()));
-        place_ui(ui, pane, (look.say(inputs::DDS_AT), &mut self.dds), at);
+        PlaceField::new(look, inputs::DDS_AT, at).ui(ui, &mut self.dds);
         let owner = view.and_then(|view| view.view.owner(pane.state.now));
         let words = match (view, owner) {
             (None, _) => look.say(inputs::OFF).to_owned(),
@@ -168,13 +165,12 @@ impl SourceCards {
         let other =
             other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
         let missing = other.as_deref().or(silence(pane, owner));
-        let source = InputAction::Grant(InputSource::Dds);
-        grant_ui(ui, pane, (look.say(inputs::DDS), source), missing);
+        grant_ui(ui, pane, InputSource::Dds, missing);
     }
 
     fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let at = pane.state.hand().inputs.gateway_at;
+        let at = pane.hand().inputs.gateway_at;
         let wanted = place(&self.share);
         let switch = Switch {
             title: inputs::GATEWAY,
@@ -184,9 +180,8 @@ impl SourceCards {
             wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
         };
         switch_ui(ui, pane, switch);
-        let name = look.say(inputs::GATEWAY_AT);
-        place_ui(ui, pane, (name, &mut self.share), at.map(socket));
-        let clients = &pane.state.hand().inputs.clients;
+        PlaceField::new(look, inputs::GATEWAY_AT, at.map(socket)).ui(ui, &mut self.share);
+        let clients = &pane.hand().inputs.clients;
         let words = match (at, clients.len()) {
             (None, _) => look.say(inputs::OFF).to_owned(),
             (Some(_), 0) => look.say(inputs::NO_CLIENTS).to_owned(),
@@ -203,7 +198,7 @@ impl SourceCards {
 
     fn viewers_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let served = pane.state.hand().inputs.foxglove_at;
+        let served = pane.hand().inputs.foxglove_at;
         let wanted = place(&self.viewers);
         let switch = Switch {
             title: inputs::VIEWERS,
@@ -213,9 +208,8 @@ impl SourceCards {
             wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
         };
         switch_ui(ui, pane, switch);
-        let name = look.say(inputs::VIEWERS_AT);
         let at = served.map(|(at, _)| socket(at));
-        place_ui(ui, pane, (name, &mut self.viewers), at);
+        PlaceField::new(look, inputs::VIEWERS_AT, at).ui(ui, &mut self.viewers);
         let words = match served {
             None => look.say(inputs::OFF).to_owned(),
             Some((_, count)) => look.fill(inputs::VIEWERS_NOW, &[&count]),
@@ -253,24 +247,31 @@ fn socket(at: SocketAddr) -> (IpAddr, String) {
 }
 
 /// Where something is open, or is to be.
-fn place_ui(
-    ui: &mut Ui,
-    pane: &Pane<'_>,
-    (name, typed): (&str, &mut String),
+struct PlaceField {
+    look: Look,
+    name: Text,
     at: Option<(IpAddr, String)>,
-) {
-    let look = pane.look;
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::CONTROL);
-        match at {
-            Some((ip, at)) if !ip.is_loopback() => {
-                let label = Label::new(&at, look.palette.warn).number().ui(ui);
-                label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+}
+
+impl PlaceField {
+    const fn new(look: Look, name: Text, at: Option<(IpAddr, String)>) -> Self {
+        Self { look, name, at }
+    }
+
+    fn ui(self, ui: &mut Ui, typed: &mut String) {
+        let (look, name) = (self.look, self.look.say(self.name));
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::CONTROL);
+            match self.at {
+                Some((ip, at)) if !ip.is_loopback() => {
+                    let label = Label::new(&at, look.palette.warn).number().ui(ui);
+                    label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+                }
+                Some((_, at)) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
+                None => drop(kit::edit_ui(ui, name, name, typed)),
             }
-            Some((_, at)) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
-            None => drop(kit::edit_ui(ui, (name, name), typed)),
-        }
-    });
+        });
+    }
 }
 
 /// How often something happened, in small words.
@@ -298,12 +299,7 @@ fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
         if holds {
             Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
         } else {
-            grant_ui(
-                ui,
-                pane,
-                (&address, InputAction::GrantClient(client.id)),
-                None,
-            );
+            grant_client_ui(ui, pane, client);
         }
     });
     let words = look.fill(

@@ -10,8 +10,7 @@ use crate::ui::inputs::owner::leader_name;
 use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
 use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
-use crate::ui::theme;
-use egui::{Ui, vec2};
+use egui::Ui;
 
 /// Width of the names.
 const NAME: f32 = 100.0;
@@ -46,8 +45,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     state_ui(ui, pane, None, &words);
     let missing = missing(state, mirror).map(|text| look.say(text));
-    let source = InputAction::Grant(InputSource::Mirror);
-    grant_ui(ui, pane, (look.say(inputs::MIRROR), source), missing);
+    grant_ui(ui, pane, InputSource::Mirror, missing);
 }
 
 /// The other hands of the window, each with its name.
@@ -63,28 +61,26 @@ fn others(state: &State) -> Vec<(SlotId, String)> {
 /// Which hand leads, and which share of its bends is followed.
 fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     let (look, state) = (pane.look, pane.state);
-    let named = others(state);
-    let named = named.iter();
-    let all: Vec<(Option<SlotId>, &str)> = named
-        .map(|(slot, name)| (Some(*slot), name.as_str()))
-        .collect();
+    let all = others(state).into_iter();
+    let all: Vec<_> = all.map(|(slot, name)| (Some(slot), name)).collect();
     let mut leader = mirror.map(|mirror| mirror.leader);
     let mut scale = mirror.map_or(MirrorScale::WHOLE, |mirror| mirror.scale);
-    let mut is_new = row_ui(ui, pane, inputs::LEADER, |ui, _| {
+    let mut is_new = false;
+    ui.horizontal(|ui| {
+        Label::muted(look, inputs::LEADER).cell_ui(ui, NAME);
         ui.spacing_mut().combo_width = ui.available_width();
-        kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all)
+        is_new = kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all);
     });
-    let typed = row_ui(ui, pane, inputs::MIRROR_SCALE, |ui, pane| {
-        let (name, tip) = (
-            look.say(inputs::MIRROR_SCALE),
-            look.tip(inputs::MIRROR_SCALE),
-        );
+    let typed = ui.horizontal(|ui| {
+        let text = inputs::MIRROR_SCALE;
+        Label::muted(look, text).cell_ui(ui, NAME);
         let [least, most] = MirrorScale::PERCENT.map(f64::from);
         let reason = mirror.is_none().then(|| look.say(inputs::CHOOSE_LEADER));
-        let field = NumberField::new(name, tip, least..=most).disabled(reason);
+        let field = NumberField::new(look.say(text), look.tip(text), least..=most);
+        let field = field.disabled(reason);
         field.whole_ui(ui, pane, Some(scale.percent()))
     });
-    let typed = typed.and_then(|percent| u8::try_from(percent).ok());
+    let typed = typed.inner.and_then(|percent| u8::try_from(percent).ok());
     if let Some(typed) = typed.and_then(MirrorScale::of_percent) {
         is_new |= typed != scale;
         scale = typed;
@@ -94,22 +90,6 @@ fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
         let action = Action::Input(InputAction::Mirror(wanted));
         pane.actions.push(action);
     }
-}
-
-/// A name, and a control behind it.
-fn row_ui<T>(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    name: Text,
-    add: impl FnOnce(&mut Ui, &mut Pane<'_>) -> T,
-) -> T {
-    let row = ui.horizontal(|ui| {
-        kit::cell_ui(ui, vec2(NAME, theme::CONTROL), |ui| {
-            Label::muted(pane.look, name).ui(ui);
-        });
-        add(ui, pane)
-    });
-    row.inner
 }
 
 /// Why the other hand may not lead the shown one now.

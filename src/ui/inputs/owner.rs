@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::Owner;
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
-use crate::ui::text::{Text, inputs, words};
+use crate::ui::text::{inputs, words};
 use crate::ui::theme;
 use egui::Ui;
 
@@ -18,7 +18,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.horizontal_wrapped(|ui| {
             ui.set_min_height(theme::CONTROL_LARGE);
             Label::muted(look, inputs::OWNER).ui(ui);
-            let owner = pane.state.hand().connection.outside_owner();
+            let owner = pane.hand().connection.outside_owner();
             let (words, color) = match owner {
                 Some(owner) => (owner_words(pane, owner), look.palette.accent),
                 None => {
@@ -27,17 +27,16 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 }
             };
             Label::new(&words, color).ui(ui);
-            let run = pane.state.hand().inputs.follow.as_ref();
+            let run = pane.hand().inputs.follow.as_ref();
             if let Some(view) = run.and_then(|run| run.view) {
                 let delay = format::millis(view.delay_p99);
                 let words = look.fill(inputs::FOLLOW_NOW, &[&view.lead, &delay]);
                 Label::new(&words, look.palette.muted).small().ui(ui);
             }
             if owner.is_some() {
-                let button = Button::said(look, inputs::TAKE_BACK).weight(Weight::Strong);
-                button
-                    .large()
-                    .on_click(ui, pane, Action::Input(InputAction::TakeBack));
+                let button = Button::said(look, inputs::TAKE_BACK).large();
+                let button = button.weight(Weight::Strong);
+                button.on_click(ui, pane, Action::Input(InputAction::TakeBack));
             }
         });
         ui.horizontal_wrapped(|ui| {
@@ -45,10 +44,10 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             ui.add_space(theme::PAD);
             let settings = &pane.state.settings;
             let (mut held, mut idle) = (settings.hold_to_run, settings.disarm_idle);
-            if switch_ui(ui, pane, inputs::HOLD_TO_RUN, &mut held) {
+            if kit::tick_ui(ui, look, inputs::HOLD_TO_RUN, &mut held) {
                 pane.actions.push(Action::HoldToRun(held));
             }
-            if switch_ui(ui, pane, inputs::DISARM_IDLE, &mut idle) {
+            if kit::tick_ui(ui, look, inputs::DISARM_IDLE, &mut idle) {
                 pane.actions.push(Action::DisarmIdle(idle));
             }
         });
@@ -56,13 +55,6 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
         }
     });
-}
-
-/// A setting that is on or off; true if it was changed.
-fn switch_ui(ui: &mut Ui, pane: &Pane<'_>, text: Text, on: &mut bool) -> bool {
-    let look = pane.look;
-    let switch = ui.checkbox(on, look.say(text));
-    switch.on_hover_text(look.tip(text)).changed()
 }
 
 fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -86,20 +78,10 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-const fn phase(phase: FollowPhase) -> Text {
-    match phase {
-        FollowPhase::Waiting => inputs::PHASE_WAITING,
-        FollowPhase::Following => inputs::PHASE_FOLLOWING,
-        FollowPhase::Frozen => inputs::PHASE_FROZEN,
-        FollowPhase::Silent => inputs::PHASE_SILENT,
-        FollowPhase::Released => inputs::PHASE_RELEASED,
-    }
-}
-
 /// Who moves the hand from outside, with name and rate, for every view.
 pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let mirror = hand.inputs.mirror.as_ref();
     let mirror = mirror.filter(|_| owner == Owner::Mirror);
     let leader = mirror.and_then(|mirror| leader_name(pane.state, mirror.leader));
@@ -130,7 +112,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     };
     match view {
         Some(view) if view.phase != FollowPhase::Following => {
-            format!("{words} · {}", look.say(phase(view.phase)))
+            format!("{words} · {}", look.say(inputs::phase(view.phase)))
         }
         _ => words,
     }

@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::hand::{Angle, PerDof};
 use crate::inputs::pad::PadControl;
 use crate::inputs::pad::source::PadView;
-use crate::ui::hand::panel::pose_ui;
+use crate::ui::hand::tile::pose_ui;
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
 use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
@@ -30,7 +30,7 @@ impl PadCard {
     /// Draws it, once there is a gamepad.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let view = pane.state.hand().inputs.pad_view.as_ref();
+        let view = pane.hand().inputs.pad_view.as_ref();
         let Some(view) = view.filter(|view| view.name.is_some()) else {
             return;
         };
@@ -63,7 +63,7 @@ impl PadCard {
 /// Draws whether gamepads are looked for, which one is there, and whether it may move the hand.
 pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let view = pane.state.hand().inputs.pad_view.as_ref();
+    let view = pane.hand().inputs.pad_view.as_ref();
     let switch = Switch {
         title: inputs::PAD,
         turns_on: inputs::READ_PAD,
@@ -83,8 +83,7 @@ pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     state_ui(ui, pane, Some(InputKind::Pad), &words);
     let missing = name.is_none().then(|| look.say(inputs::NONE));
-    let source = InputAction::Grant(InputSource::Pad);
-    grant_ui(ui, pane, (look.say(inputs::PAD), source), missing);
+    grant_ui(ui, pane, InputSource::Pad, missing);
 }
 
 /// The poses that a button can have.
@@ -107,7 +106,7 @@ fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: &PadView) {
         return;
     }
     let look = pane.look;
-    let angle = pane.state.hand().readings.sample.angle;
+    let angle = pane.hand().readings.sample.angle;
     let shares = PerDof::from_fn(|dof| {
         let raw = view.aims[dof]
             .map(Angle::get)

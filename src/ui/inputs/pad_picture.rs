@@ -112,61 +112,68 @@ impl PadShown<'_> {
 
 /// Draws the gamepad between what its controls do. The control that was clicked, if one was.
 pub(crate) fn pad_picture_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Option<PadControl> {
-    let (left, right) = (rows(look, shown, &AT_LEFT), rows(look, shown, &AT_RIGHT));
-    let widths = [&left, &right].map(|rows| {
-        let words = rows.iter();
-        let words = words.map(|(_, words)| text_width(ui, words, theme::body()));
-        BADGE + words.fold(0.0, f32::max) + AMOUNT + 2.0 * theme::PAD
-    });
-    let [left_width, right_width] = widths;
+    let [left, right] = [&AT_LEFT[..], &AT_RIGHT].map(|side| PadRows::of(ui, look, shown, side));
     let [least, most] = SCALE;
-    let room = ui.available_width() - left_width - right_width - 2.0 * theme::PAD;
+    let room = ui.available_width() - left.width - right.width - 2.0 * theme::PAD;
     let scale = (room / CANVAS.width()).clamp(least, most);
     let row = ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::PAD, 2.0);
-        let by_left = rows_ui(ui, look, (&left, left_width), shown);
+        let by_left = left.ui(ui, look, shown);
         let by_pad = pad_ui(ui, look, scale, shown);
-        let by_right = rows_ui(ui, look, (&right, right_width), shown);
-        by_left.or(by_pad).or(by_right)
+        by_left.or(by_pad).or(right.ui(ui, look, shown))
     });
     row.inner
 }
 
 /// The controls of one side that do something, and what.
-fn rows(look: Look, shown: &PadShown<'_>, side: &[PadControl]) -> Vec<(PadControl, String)> {
-    let used = side.iter().copied();
-    let used = used.filter(|control| shown.is_used(*control) || shown.chosen == Some(*control));
-    used.map(|control| (control, shown.does(look, shown.map.action(control))))
-        .collect()
+struct PadRows {
+    rows: Vec<PadRow>,
+    width: f32,
 }
 
-fn rows_ui(
-    ui: &mut Ui,
-    look: Look,
-    (rows, width): (&[(PadControl, String)], f32),
-    shown: &PadShown<'_>,
-) -> Option<PadControl> {
-    let column = ui.vertical(|ui| {
-        let mut clicked = None;
-        for (control, words) in rows {
-            let (rect, response) = ui.allocate_exact_size(vec2(width, ROW), Sense::click());
-            if named(&response, look, *control, shown).clicked() {
-                clicked = Some(*control);
+/// What one control does.
+struct PadRow {
+    control: PadControl,
+    words: String,
+}
+
+impl PadRows {
+    fn of(ui: &Ui, look: Look, shown: &PadShown<'_>, side: &[PadControl]) -> Self {
+        let used = side.iter().copied();
+        let used = used.filter(|control| shown.is_used(*control) || shown.chosen == Some(*control));
+        let rows = used.map(|control| PadRow {
+            control,
+            words: shown.does(look, shown.map.action(control)),
+        });
+        let rows: Vec<PadRow> = rows.collect();
+        let words = rows.iter();
+        let words = words.map(|row| text_width(ui, &row.words, theme::body()));
+        let width = BADGE + words.fold(0.0, f32::max) + AMOUNT + 2.0 * theme::PAD;
+        Self { rows, width }
+    }
+
+    fn ui(&self, ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Option<PadControl> {
+        let size = vec2(self.width, ROW);
+        let column = ui.vertical(|ui| {
+            let mut clicked = None;
+            for row in &self.rows {
+                let response = ui.allocate_response(size, Sense::click());
+                if named(&response, look, row.control, shown).clicked() {
+                    clicked = Some(row.control);
+                }
+                row.paint(ui, look, shown, &response);
             }
-            row(ui, look, (*control, rect, &response), (words, shown));
-        }
-        clicked
-    });
-    column.inner
+            clicked
+        });
+        column.inner
+    }
 }
 
 /// Names a control with what it does, and explains that.
 fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
     let action = shown.map.action(control);
-    let words = look.pair(
-        look.say(inputs::control(control)),
-        &shown.does(look, action),
-    );
+    let name = look.say(inputs::control(control));
+    let words = look.pair(name, &shown.does(look, action));
     let is_chosen = shown.chosen == Some(control);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &words));
     let tips = [look.tip(inputs::action(action)), look.say(inputs::CHANGE)];
@@ -175,46 +182,42 @@ fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<
     response.on_hover_cursor(egui::CursorIcon::PointingHand)
 }
 
-/// What one control does: its sign as on the gamepad, words, how far it is.
-fn row(
-    ui: &Ui,
-    look: Look,
-    (control, rect, response): (PadControl, Rect, &Response),
-    (words, shown): (&str, &PadShown<'_>),
-) {
-    let palette = look.palette;
-    let ground = match (shown.chosen == Some(control), response.hovered()) {
-        (true, _) => Some((palette.wash(palette.accent), palette.accent)),
-        (false, true) => Some((palette.control, palette.edge)),
-        (false, false) => None,
-    };
-    let round = CornerRadius::same(theme::ROUND_SMALL);
-    if let Some((fill, edge)) = ground {
-        let edge = Stroke::new(1.0, edge);
+impl PadRow {
+    /// Its sign as on the gamepad, words, how far it is.
+    fn paint(&self, ui: &Ui, look: Look, shown: &PadShown<'_>, response: &Response) {
+        let (control, rect, palette) = (self.control, response.rect, look.palette);
+        let ground = match (shown.chosen == Some(control), response.hovered()) {
+            (true, _) => Some((palette.wash(palette.accent), palette.accent)),
+            (false, true) => Some((palette.control, palette.edge)),
+            (false, false) => None,
+        };
+        let round = CornerRadius::same(theme::ROUND_SMALL);
+        if let Some((fill, edge)) = ground {
+            let edge = Stroke::new(1.0, edge);
+            ui.painter()
+                .rect(rect, round, fill, edge, StrokeKind::Inside);
+        }
+        focus_ring(ui, look, response, rect);
+        let rect = rect.shrink2(vec2(theme::STEP, 0.0));
+        let (badge, rest) = rect.split_left_right_at_x(rect.left() + BADGE);
+        let badge = Rect::from_center_size(badge.center(), vec2(BADGE, theme::CONTROL));
+        let ink = Ink::of(look, control, shown);
         ui.painter()
-            .rect(rect, round, fill, edge, StrokeKind::Inside);
-    }
-    focus_ring(ui, look, response, rect);
-    let rect = rect.shrink2(vec2(theme::STEP, 0.0));
-    let (badge, rest) = rect.split_left_right_at_x(rect.left() + BADGE);
-    let badge = Rect::from_center_size(badge.center(), vec2(BADGE, theme::CONTROL));
-    let ink = Ink::of(look, control, shown);
-    ui.painter()
-        .rect(badge, round, ink.fill, ink.edge, StrokeKind::Inside);
-    Label::new(sign(control), ink.text)
-        .center()
-        .paint(ui, badge);
-    let (said, amount) = rest.split_left_right_at_x(rest.right() - AMOUNT);
-    let said = said.shrink2(vec2(theme::GAP, 0.0));
-    let color = match shown.state {
-        Some(_) => palette.text,
-        None => palette.muted,
-    };
-    Label::new(words, color).paint(ui, said);
-    let percent = format!("{:.0} %", 100.0 * shown.amount(control));
-    if control.kind() != ControlKind::Button && shown.state.is_some() {
-        let label = Label::new(&percent, palette.muted).number().right();
-        label.paint(ui, amount);
+            .rect(badge, round, ink.fill, ink.edge, StrokeKind::Inside);
+        let badge_sign = Label::new(sign(control), ink.text).center();
+        badge_sign.paint(ui, badge);
+        let (said, amount) = rest.split_left_right_at_x(rest.right() - AMOUNT);
+        let said = said.shrink2(vec2(theme::GAP, 0.0));
+        let color = match shown.state {
+            Some(_) => palette.text,
+            None => palette.muted,
+        };
+        Label::new(&self.words, color).paint(ui, said);
+        let percent = format!("{:.0} %", 100.0 * shown.amount(control));
+        if control.kind() != ControlKind::Button && shown.state.is_some() {
+            let label = Label::new(&percent, palette.muted).number().right();
+            label.paint(ui, amount);
+        }
     }
 }
 
@@ -327,12 +330,9 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
             clicked = Some(control);
         }
         if shown.chosen == Some(control) || response.has_focus() || response.hovered() {
-            let strength = if response.hovered() {
-                1.0
-            } else {
-                theme::STRONG
-            };
-            let stroke = Stroke::new(strength, look.palette.accent);
+            let is_passing = response.hovered();
+            let width = if is_passing { 1.0 } else { theme::STRONG };
+            let stroke = Stroke::new(width, look.palette.accent);
             let round = CornerRadius::same(theme::ROUND);
             let outer = place.expand(4.0);
             ui.painter()
@@ -371,10 +371,8 @@ impl Drawing<'_> {
     }
 
     fn control(&self, control: PadControl) {
-        let (ink, rect) = (
-            Ink::of(self.look, control, self.shown),
-            self.rect(place(control)),
-        );
+        let ink = Ink::of(self.look, control, self.shown);
+        let rect = self.rect(place(control));
         match control {
             PadControl::LeftTrigger | PadControl::RightTrigger => self.trigger(control, rect, ink),
             PadControl::LeftStick | PadControl::RightStick => self.stick(control, rect, ink),
@@ -401,14 +399,8 @@ impl Drawing<'_> {
     }
 
     fn plate(&self, rect: Rect, round: f32, ink: Ink) {
-        let painter = self.ui.painter();
-        painter.rect(
-            rect,
-            round * self.scale,
-            ink.fill,
-            ink.edge,
-            StrokeKind::Inside,
-        );
+        let (painter, round) = (self.ui.painter(), round * self.scale);
+        painter.rect(rect, round, ink.fill, ink.edge, StrokeKind::Inside);
     }
 
     fn sign(&self, control: PadControl, rect: Rect, color: Color32) {

@@ -5,7 +5,7 @@ use crate::ui::inputs::pad_picture::PadShown;
 use crate::ui::kit::{Label, Look, choose_ui};
 use crate::ui::text::inputs;
 use crate::ui::theme;
-use egui::{Align, Layout, Ui, vec2};
+use egui::Ui;
 
 /// Width of the name of a control.
 const NAME: f32 = 160.0;
@@ -24,11 +24,7 @@ pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Opt
             } else {
                 look.palette.text
             };
-            let left = Layout::left_to_right(Align::Center);
-            ui.allocate_ui_with_layout(vec2(NAME, theme::CONTROL), left, |ui| {
-                ui.set_min_width(NAME);
-                Label::new(look.say(inputs::control(control)), color).ui(ui);
-            });
+            Label::new(look.say(inputs::control(control)), color).cell_ui(ui, NAME);
             action_ui(ui, look, control, shown)
         });
         changed = changed.or(row.inner);
@@ -48,11 +44,9 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
     if !all.contains(before) {
         all.push(before.clone());
     }
-    let words: Vec<String> = all.iter().map(|action| shown.does(look, action)).collect();
-    let choices: Vec<(PadAction, &str)> = all
-        .into_iter()
-        .zip(words.iter().map(String::as_str))
-        .collect();
+    let all = all.into_iter();
+    let choices = all.map(|action| (action.clone(), shown.does(look, &action)));
+    let choices: Vec<(PadAction, String)> = choices.collect();
     let mut action = before.clone();
     let name = look.say(inputs::control(control));
     let chosen = ui.add_enabled_ui(!before.is_single(), |ui| {

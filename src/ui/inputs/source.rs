@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind, InputSource};
 use crate::link::Owner;
 use crate::record::ArmRefusal;
+use crate::share::gateway::GatewayClient;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, inputs, words};
 use crate::ui::theme;
@@ -54,7 +55,7 @@ pub(crate) fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
 /// How it goes in one line, or why it could not be opened.
 pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, words: &str) {
     let look = pane.look;
-    let refused = pane.state.hand().inputs.refused.as_ref();
+    let refused = pane.hand().inputs.refused.as_ref();
     let refused = refused.filter(|(refused, _)| Some(*refused) == kind);
     let (words, color): (String, Color32) = match refused {
         Some((_, why)) => (errors::not_opened(look, why), look.palette.warn),
@@ -63,54 +64,73 @@ pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, wo
     Label::new(&words, color).wrap().ui(ui);
 }
 
-/// True if this may move the hand now.
-fn moves(pane: &Pane<'_>, action: &InputAction) -> bool {
-    let owner = pane.state.hand().connection.outside_owner();
-    matches!(
-        (action, owner),
-        (
-            InputAction::Grant(InputSource::Stream),
-            Some(Owner::Stream(_))
-        ) | (InputAction::Grant(InputSource::Dds), Some(Owner::Dds))
-            | (InputAction::Grant(InputSource::Pad), Some(Owner::Gamepad))
-            | (InputAction::Grant(InputSource::Mirror), Some(Owner::Mirror))
-    )
-}
-
 /// Lets a source move the hand, or says that it does.
 pub(crate) fn grant_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
-    (source, action): (&str, InputAction),
+    source: InputSource,
     missing: Option<&str>,
 ) {
     let look = pane.look;
-    let hand = pane.state.hand();
-    if moves(pane, &action) {
+    let owner = pane.hand().connection.outside_owner();
+    let (name, moves) = match source {
+        InputSource::Stream => (inputs::STREAM, matches!(owner, Some(Owner::Stream(_)))),
+        InputSource::Dds => (inputs::DDS, owner == Some(Owner::Dds)),
+        InputSource::Pad => (inputs::PAD, owner == Some(Owner::Gamepad)),
+        InputSource::Mirror => (inputs::MIRROR, owner == Some(Owner::Mirror)),
+    };
+    if moves {
         Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
         return;
     }
-    // What has to be held can still be held once it may.
-    let refusal = hand.arm_refusal(pane.state.now);
-    let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
-    let refusal = refusal.map(|reason| words::refusal(look, reason));
-    let taken = hand
-        .connection
-        .outside_owner()
-        .map(|_| look.say(inputs::TAKEN));
-    let reason = no_hand(pane).or(taken).or(missing);
-    let reason = reason.map(ToOwned::to_owned).or(refusal);
-    let name = look.pair(look.say(inputs::GRANT), source);
-    let button = Button::said(look, inputs::GRANT)
-        .named(&name)
-        .weight(Weight::Strong)
-        .large();
-    let button = button.disabled(reason.as_deref());
-    button.on_click(ui, pane, Action::Input(action));
+    let grant = Grant {
+        name: look.say(name),
+        action: InputAction::Grant(source),
+        missing,
+    };
+    grant.ui(ui, pane);
+}
+
+/// Lets a client of the gateway move the hand.
+pub(crate) fn grant_client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
+    let grant = Grant {
+        name: &client.address.to_string(),
+        action: InputAction::GrantClient(client.id),
+        missing: None,
+    };
+    grant.ui(ui, pane);
+}
+
+/// Who is to move the hand, and why that cannot be.
+struct Grant<'a> {
+    name: &'a str,
+    action: InputAction,
+    missing: Option<&'a str>,
+}
+
+impl Grant<'_> {
+    fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let (look, hand) = (pane.look, pane.hand());
+        // What has to be held can still be held once it may.
+        let refusal = hand.arm_refusal(pane.state.now);
+        let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
+        let refusal = refusal.map(|reason| words::refusal(look, reason));
+        let owner = hand.connection.outside_owner();
+        let taken = owner.map(|_| look.say(inputs::TAKEN));
+        let reason = no_hand(pane).or(taken).or(self.missing);
+        let reason = reason.map(ToOwned::to_owned).or(refusal);
+        let name = look.pair(look.say(inputs::GRANT), self.name);
+        let button = Button::said(look, inputs::GRANT)
+            .named(&name)
+            .weight(Weight::Strong)
+            .large();
+        let button = button.disabled(reason.as_deref());
+        button.on_click(ui, pane, Action::Input(self.action));
+    }
 }
 
 /// Why nothing can be opened without a hand.
 fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
-    let is_live = pane.state.hand().connection.status.state.is_live();
+    let is_live = pane.hand().connection.status.state.is_live();
     (!is_live).then(|| pane.look.say(inputs::NO_HAND))
 }

@@ -8,7 +8,6 @@ pub(crate) mod tracks;
 
 use crate::app::action::Action;
 use crate::app::readings::Freshness;
-use crate::app::settings::AngleUnit;
 use crate::hand::Dof;
 use crate::poses::Preset;
 use crate::ui::hand::aim;
@@ -45,8 +44,7 @@ impl JointsView {
     /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             let line = least_line(ui.pixels_per_point());
             let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
             let room = ui.available_height() - theme::CONTROL - theme::STEP - below;
@@ -61,15 +59,13 @@ impl JointsView {
                 aim::link(ui);
             }
             let style = RowStyle { line, each, linked };
-            ScrollArea::vertical()
-                .max_height(room)
-                .auto_shrink(false)
-                .show(ui, |ui| {
-                    ui.spacing_mut().item_spacing.y = 0.0;
-                    for dof in Dof::ALL {
-                        ui.push_id(dof, |ui| row_ui(ui, pane, dof, style));
-                    }
-                });
+            let area = ScrollArea::vertical().max_height(room);
+            area.auto_shrink(false).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                for dof in Dof::ALL {
+                    ui.push_id(dof, |ui| row_ui(ui, pane, dof, style));
+                }
+            });
             all_joints_ui(ui, pane);
             presets_ui(ui, pane);
         });
@@ -79,11 +75,7 @@ impl JointsView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, each: bool) {
         let look = pane.look;
         let unit = pane.state.settings.angle_unit;
-        let text = look.say(match unit {
-            AngleUnit::Raw => main::UNIT_RAW,
-            AngleUnit::Degrees => main::UNIT_DEGREES,
-            AngleUnit::Percent => main::UNIT_PERCENT,
-        });
+        let text = look.say(main::angle_unit(unit));
         let button = Button::new(text, look.say(main::UNIT_TIP))
             .named(look.say(main::UNIT_NAME))
             .weight(Weight::Quiet);
@@ -98,19 +90,14 @@ impl JointsView {
             self.each = Some(!each);
         }
         age_ui(ui, pane);
-        let hand = pane.state.hand();
-        let live =
-            pane.freshness(hand.readings.sample.angle.map(|angle| angle.asked)) == Freshness::Live;
+        let hand = pane.hand();
+        let asked = hand.readings.sample.angle.map(|angle| angle.asked);
+        let is_live = pane.freshness(asked) == Freshness::Live && pane.recorded().is_none();
+        let refusal = hand.arm_refusal(pane.state.now);
         // A first look must find what comes before moving; the header says why it cannot be armed.
-        let recorded = pane.state.timeline.is_some();
-        if live
-            && !recorded
-            && !hand.connection.is_armed()
-            && hand.arm_refusal(pane.state.now).is_none()
-        {
-            Label::new(look.say(window::ARM_FIRST), look.palette.accent)
-                .small()
-                .ui(ui);
+        if is_live && !hand.connection.is_armed() && refusal.is_none() {
+            let label = Label::new(look.say(window::ARM_FIRST), look.palette.accent);
+            label.small().ui(ui);
         }
     }
 }
@@ -118,13 +105,8 @@ impl JointsView {
 /// How old the angles are, where they are not live.
 pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
-    let asked = pane
-        .state
-        .hand()
-        .readings
-        .sample
-        .angle
-        .map(|angle| angle.asked);
+    let angle = pane.hand().readings.sample.angle;
+    let asked = angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
         Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),

@@ -5,18 +5,16 @@ use crate::hand::Dof;
 use crate::ui::faults::entry::unseen_mark_ui;
 use crate::ui::joints::age_ui;
 use crate::ui::joints::row::JointRow;
-use crate::ui::joints::row_view::explain_ui;
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{main, window};
 use crate::ui::theme;
-use egui::{Align, Frame, Layout, Margin, Ui, vec2};
+use egui::{Align, Frame, Layout, Ui, vec2};
 
 /// Draws the rail. Where joints can be set, its head opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
-    kit::card_ui(ui, look, |ui| {
-        ui.set_min_height(ui.available_height());
+    kit::full_card_ui(ui, look, |ui| {
         let title = look.say(main::JOINTS);
         if can_open {
             let name = look.told(window::OPEN, title);
@@ -27,9 +25,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
                 pane.lay_out(ui, layouts.toggled(WindowRoom::Joints));
             }
         } else {
-            Label::new(title, look.palette.text)
-                .font(theme::title())
-                .ui(ui);
+            Label::new(title, look.palette.text).title().ui(ui);
         }
         // Its place is kept while there is nothing to tell.
         let size = vec2(ui.available_width(), theme::TEXT_LINE);
@@ -48,11 +44,8 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
 fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
     let (look, row) = (pane.look, JointRow::new(dof, pane));
     let drive = DriveWords::of(pane, dof);
-    let margin = Margin {
-        left: 8,
-        ..Margin::ZERO
-    };
-    let shown = Frame::new().inner_margin(margin).show(ui, |ui| {
+    let frame = Frame::new().inner_margin(theme::GAP_LEFT);
+    let shown = frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, 0.0);
         ui.spacing_mut().interact_size.y = theme::TEXT_LINE;
         ui.horizontal(|ui| {
@@ -72,5 +65,5 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof) {
     let place = shown.response.rect;
     let bar = place.with_max_x(place.left() + theme::BAR);
     ui.painter().rect_filled(bar, theme::ROUND_TINY, row.color);
-    explain_ui(ui, pane, &row, (place, &drive));
+    row.explain_ui(ui, pane, place, &drive);
 }

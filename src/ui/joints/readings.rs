@@ -34,7 +34,7 @@ impl JointRow {
 
     fn angle_in_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>, unit: AngleUnit) {
         let palette = pane.look.palette;
-        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
+        let (angle, freshness) = pane.newest(self.dof, pane.hand().readings.sample.angle);
         let documented = angle.and_then(|angle| angle.documented());
         let text = match unit {
             AngleUnit::Raw => format::whole(angle.map(|angle| i64::from(angle.raw())), 4),
@@ -47,28 +47,28 @@ impl JointRow {
             AngleUnit::Raw => (name, if odd { palette.warn } else { palette.text }),
             AngleUnit::Degrees | AngleUnit::Percent => (format!("{name} °"), palette.muted),
         };
-        let label = Label::new(&text, pane.look.value(freshness, live)).named(&name);
-        label.number().right().put(ui, rect);
+        let color = pane.look.value(freshness, live);
+        number_ui(ui, rect, &name, Label::new(&text, color));
     }
 
     pub(crate) fn force_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let palette = pane.look.palette;
-        let (force, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.force);
+        let (force, freshness) = pane.newest(self.dof, pane.hand().readings.sample.force);
         let odd = force.is_some_and(|force| force.documented().is_none());
         let live = if odd { palette.warn } else { palette.text };
         let raw = force.map(|force| i64::from(force.raw()));
         let text = format::with_unit(raw, 4, Quantity::Force.row().unit);
         let name = self.named(pane, main::NAME_FORCE_ACTUAL);
-        let label = Label::new(&text, pane.look.value(freshness, live)).named(&name);
-        label.number().right().put(ui, rect);
+        let color = pane.look.value(freshness, live);
+        number_ui(ui, rect, &name, Label::new(&text, color));
     }
 
     /// Current and temperature, in another colour where the drive is warm or hot.
     pub(crate) fn drive_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
-        let (current, current_age) =
-            pane.newest(self.dof, pane.state.hand().readings.sample.current);
-        let (heat, heat_age) = pane.newest(self.dof, pane.state.hand().readings.sample.temperature);
+        let sample = &pane.hand().readings.sample;
+        let (current, current_age) = pane.newest(self.dof, sample.current);
+        let (heat, heat_age) = pane.newest(self.dof, sample.temperature);
         let raw = current.map(|current| i64::from(current.raw()));
         let milliamps = format::with_unit(raw, 4, Quantity::Current.row().unit);
         let degrees = format::whole(heat.map(|heat| i64::from(heat.raw())), 3);
@@ -86,7 +86,11 @@ impl JointRow {
             _ => heat_age,
         };
         let name = self.named(pane, main::NAME_DRIVE);
-        let label = Label::new(&text, look.value(age, live)).named(&name);
-        label.number().right().put(ui, rect);
+        number_ui(ui, rect, &name, Label::new(&text, look.value(age, live)));
     }
+}
+
+/// A reading against the right edge of its place.
+fn number_ui(ui: &mut Ui, place: Rect, name: &str, reading: Label<'_>) {
+    reading.named(name).number().right().put(ui, place);
 }

@@ -113,7 +113,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
 fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
-    explain_ui(ui, pane, row, (rect, &said));
+    row.explain_ui(ui, pane, rect, &said);
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, said.lamp);
     let name = row.named(pane, main::STATUS);
@@ -122,30 +122,27 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     label.put(ui, rect.with_min_x(rect.left() + 17.0));
 }
 
-/// The place of a drive's words as a button that opens their explanation.
-pub(crate) fn explain_ui(
-    ui: &Ui,
-    pane: &mut Pane<'_>,
-    row: &JointRow,
-    (rect, said): (Rect, &DriveWords),
-) {
-    let name = row.named(pane, notices::EXPLAIN);
-    let response = ui.interact(rect, row.id("explain"), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-    kit::focus_ring(ui, pane.look, &response, rect);
-    if response.clicked() {
-        pane.open(ViewRequest::Drive(row.dof));
+impl JointRow {
+    /// The place of a drive's words as a button that opens their explanation.
+    pub(crate) fn explain_ui(&self, ui: &Ui, pane: &mut Pane<'_>, rect: Rect, said: &DriveWords) {
+        let name = self.named(pane, notices::EXPLAIN);
+        let response = ui.interact(rect, self.id("explain"), Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        kit::focus_ring(ui, pane.look, &response, rect);
+        if response.clicked() {
+            pane.open(ViewRequest::Drive(self.dof));
+        }
+        let tip = pane.look.tip(notices::EXPLAIN);
+        let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
+        response
+            .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
+            .on_hover_cursor(CursorIcon::PointingHand);
     }
-    let tip = pane.look.tip(notices::EXPLAIN);
-    let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
-    response
-        .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
-        .on_hover_cursor(CursorIcon::PointingHand);
 }
 
 /// A sign where the hand holds another speed or force than the user set, whose lines are not shown.
 fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let joint = hand.controls.joints[row.dof];
     let one = |caption, wanted: Option<i16>, held: i16| {
         let wanted = format::whole(wanted.map(i64::from), 0);
@@ -169,7 +166,7 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 
 /// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
 fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
-    let (hand, look) = (pane.state.hand(), pane.look);
+    let (hand, look) = (pane.hand(), pane.look);
     let joint = hand.controls.joints[row.dof];
     let Some((speed, force)) = joint.speed.zip(joint.force) else {
         return;
@@ -192,7 +189,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 
 fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let look = pane.look;
-    let locked = pane.state.hand().controls.joints[row.dof].locked;
+    let locked = pane.hand().controls.joints[row.dof].locked;
     let (icon, tip) = if locked {
         (theme::LOCKED, main::UNLOCK_TIP)
     } else {

@@ -79,9 +79,9 @@ impl TrackRow<'_> {
 impl JointRow {
     /// Target over actual.
     pub(crate) fn angle_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, linked: bool) {
-        let look = pane.look;
-        let joint = pane.state.hand().controls.joints[self.dof];
-        let (angle, freshness) = pane.newest(self.dof, pane.state.hand().readings.sample.angle);
+        let (look, hand) = (pane.look, pane.hand());
+        let joint = hand.controls.joints[self.dof];
+        let (angle, freshness) = pane.newest(self.dof, hand.readings.sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
         let setting = TrackRow {
             caption: main::ANGLE,
@@ -96,12 +96,7 @@ impl JointRow {
                 ..SlideTrack::new(&name, Angle::MAX.get(), look.value(freshness, self.color))
             },
             scale: NumberScale::of_angle(pane.state.settings.angle_unit, self.dof),
-            other: pane
-                .state
-                .hand()
-                .held_otherwise(self.dof)
-                .target
-                .map(Angle::get),
+            other: hand.held_otherwise(self.dof).target.map(Angle::get),
             after: READING + theme::GAP,
         };
         if let Some(value) = setting.ui(ui, pane) {
@@ -112,7 +107,7 @@ impl JointRow {
 
 /// The threshold over the live force of one joint; without a row the threshold of all.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let joints = hand.controls.joints;
     let name = named(pane, row, main::NAME_FORCE_THRESHOLD);
     let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
@@ -160,7 +155,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// The speed of one joint; without a row that of all.
 pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let joints = hand.controls.joints;
     let (runs, off) = (series(pane), pane.recorded().or(series(pane)));
     let value = value_of(row, joints.map(|joint| joint.speed.map(Speed::get)));
@@ -211,7 +206,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Each trial of a series sets its own force and speed: what the user set is not in force then.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
-    let runs = pane.state.hand().runs_series();
+    let runs = pane.hand().runs_series();
     runs.then(|| pane.look.say(main::SERIES_RUNS))
 }
 
@@ -238,7 +233,7 @@ fn value_of(row: Option<&JointRow>, values: PerDof<Option<i16>>) -> Option<i16> 
 
 fn staged(pane: &Pane<'_>, tip: Text) -> String {
     let tip = pane.look.say(tip);
-    if pane.state.hand().connection.is_armed() {
+    if pane.hand().connection.is_armed() {
         return tip.into();
     }
     format!("{tip}\n{}", pane.look.say(main::STAGED))

@@ -33,29 +33,29 @@ pub(crate) struct Choice {
     text: Text,
     manner: ButtonRole,
     disabled: Option<Text>,
-    does: Vec<Action>,
+    does: Action,
 }
 
 impl Choice {
-    /// A button that asks for nothing yet.
-    pub(crate) const fn new(text: Text, manner: ButtonRole) -> Self {
+    /// A button that asks for something.
+    pub(crate) const fn new(text: Text, manner: ButtonRole, does: Action) -> Self {
         Self {
             text,
             manner,
             disabled: None,
-            does: Vec::new(),
+            does,
         }
-    }
-
-    /// Asks for this too.
-    pub(crate) fn does(mut self, action: Action) -> Self {
-        self.does.push(action);
-        self
     }
 
     /// Cannot be pressed, for this reason.
     pub(crate) fn disabled(mut self, reason: Option<Text>) -> Self {
         self.disabled = reason;
+        self
+    }
+
+    /// Cannot be pressed for this reason before any other.
+    pub(crate) fn refused(mut self, reason: Option<Text>) -> Self {
+        self.disabled = reason.or(self.disabled);
         self
     }
 }
@@ -209,11 +209,11 @@ impl CardView {
     }
 
     /// Draws the card, if there is one, over `shade`; what the user asked for in it.
-    pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Vec<Action> {
+    pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Option<Action> {
         let Some(card) = card else {
             self.shown = None;
             self.informs = false;
-            return Vec::new();
+            return None;
         };
         let key = (card.title.clone(), card.choices.len());
         let mut choices = card.choices.iter();
@@ -239,8 +239,8 @@ impl CardView {
         if is_new {
             ui.ctx().move_to_top(shown.response.layer_id);
         }
-        let pressed = shown.inner.and_then(|index| card.choices.get(index));
-        pressed.map_or_else(Vec::new, |choice| choice.does.clone())
+        let pressed = card.choices.get(shown.inner?);
+        pressed.map(|choice| choice.does.clone())
     }
 
     /// The card in the middle of a place, as high as it was last; the button that was pressed.
@@ -286,8 +286,8 @@ impl CardView {
         is_new: bool,
     ) -> (Option<usize>, f32) {
         let (look, palette) = (card.look, card.look.palette);
-        let title = Label::new(&card.title, palette.text).font(theme::large());
-        title.wrap().ui(ui);
+        let title = Label::new(&card.title, palette.text);
+        title.font(theme::large()).wrap().ui(ui);
         let lines = ScrollArea::vertical().max_height(most).show(ui, |ui| {
             for line in &card.lines {
                 line_ui(ui, look, line);
@@ -302,7 +302,7 @@ impl CardView {
             let ask = look.told(cards::TYPE, word);
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
-                let field = controls::edit_ui(ui, (&ask, ""), &mut self.typed);
+                let field = controls::edit_ui(ui, &ask, "", &mut self.typed);
                 if is_new {
                     field.request_focus();
                 }
@@ -318,12 +318,8 @@ impl CardView {
     /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.
     fn choices_ui(&self, ui: &mut Ui, card: &Card, is_new: bool) -> Option<usize> {
         let look = card.look;
-        let (escaped, entered) = ui.input(|input| {
-            (
-                input.key_pressed(Key::Escape),
-                input.key_pressed(Key::Enter),
-            )
-        });
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        let (escaped, entered) = (pressed(Key::Escape), pressed(Key::Enter));
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
         let untyped = untyped.map(|word| look.told(cards::TYPE, word));

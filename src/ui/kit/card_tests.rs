@@ -56,7 +56,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
     room.below += u32::from(below.clicked());
     let card = room.card.clone();
     let asked = room.cards.ui(ui, body, card);
-    if !asked.is_empty() {
+    if asked.is_some() {
         room.card = None;
     }
     room.asked.extend(asked);
@@ -71,8 +71,8 @@ fn card() -> Card {
 }
 
 fn titled(title: &'static str) -> Card {
-    let cancel = Choice::new(cards::CANCEL, ButtonRole::Safe);
-    let cancel = cancel.does(Action::Param(ParamAction::Decline));
+    let decline = Action::Param(ParamAction::Decline);
+    let cancel = Choice::new(cards::CANCEL, ButtonRole::Safe, decline);
     offering(said(title).choice(cancel))
 }
 
@@ -93,10 +93,10 @@ fn said(title: &'static str) -> Card {
 }
 
 fn offering(card: Card) -> Card {
-    let best = Choice::new(text("Best"), ButtonRole::Main).disabled(Some(text("not yet")));
-    let danger = Choice::new(cards::TYPE, ButtonRole::Danger).does(Action::Disarm);
-    card.choice(Choice::new(text("Other"), ButtonRole::Plain))
-        .choice(best)
+    let best = Choice::new(text("Best"), ButtonRole::Main, Action::Arm);
+    let danger = Choice::new(cards::TYPE, ButtonRole::Danger, Action::Disarm);
+    card.choice(Choice::new(text("Other"), ButtonRole::Plain, Action::Arm))
+        .choice(best.disabled(Some(text("not yet"))))
         .choice(danger)
 }
 

@@ -1,16 +1,17 @@
 //! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::app::action::Action;
-use crate::ui::kit::pane::Pane;
+use crate::ui::kit::pane::{Pane, ViewRequest};
 use crate::ui::style::Look;
 use crate::ui::text::Text;
 use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
-    PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TouchPhase, Ui,
-    Vec2, WidgetInfo, vec2,
+    PointerButton, Popup, PopupCloseBehavior, Pos2, ProgressBar, Rect, Response, RichText, Role,
+    Sense, Stroke, StrokeKind, TouchPhase, Ui, Vec2, WidgetInfo, vec2,
 };
+use egui_extras::{TableBuilder, TableRow};
 
 /// Seconds for which a press on what cannot be pressed is answered.
 const TOLD_S: f32 = 3.0;
@@ -66,6 +67,11 @@ impl<'a> Label<'a> {
         self.font(theme::small())
     }
 
+    /// As the title of what is below it.
+    pub(crate) fn title(self) -> Self {
+        self.font(theme::title())
+    }
+
     /// With digits of one width.
     pub(crate) fn number(self) -> Self {
         self.font(theme::number())
@@ -105,10 +111,19 @@ impl<'a> Label<'a> {
             label.truncate()
         });
         if let Some(name) = self.name {
-            ui.ctx()
-                .accesskit_node_builder(response.id, |node| node.set_label(name));
+            rename(&response, name);
         }
         response
+    }
+
+    /// Draws it in a place of this width in a row.
+    pub(crate) fn cell_ui(self, ui: &mut Ui, width: f32) -> Response {
+        cell_ui(ui, vec2(width, theme::CONTROL), |ui| self.ui(ui))
+    }
+
+    /// Draws it in the next column of a table's row.
+    pub(crate) fn column_ui(self, row: &mut TableRow<'_, '_>) {
+        row.col(|ui| drop(self.ui(ui)));
     }
 
     /// Draws it.
@@ -120,9 +135,7 @@ impl<'a> Label<'a> {
         let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
-            ui.ctx().accesskit_node_builder(response.id, |node| {
-                node.set_label(name);
-            });
+            rename(&response, name);
         }
         if elided {
             response = response.on_hover_text(self.text);
@@ -143,12 +156,27 @@ impl<'a> Label<'a> {
     }
 }
 
+/// Lets a screen reader call something else than what it says.
+pub(crate) fn rename(response: &Response, name: &str) {
+    response
+        .ctx
+        .accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// What can be clicked if that is so.
+pub(crate) fn click_if(enabled: bool) -> Sense {
+    if enabled {
+        Sense::click()
+    } else {
+        Sense::hover()
+    }
+}
+
 /// Width of a text on one line.
 pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
-    ui.painter()
-        .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
-        .size()
-        .x
+    let (text, color) = (text.to_owned(), Color32::PLACEHOLDER);
+    let galley = ui.painter().layout_no_wrap(text, font, color);
+    galley.size().x
 }
 
 /// How a button looks.
@@ -214,6 +242,12 @@ impl<'a> Button<'a> {
     pub(crate) const fn tip(mut self, tip: &'a str) -> Self {
         self.tip = tip;
         self
+    }
+
+    /// The thing to do now, if that is so.
+    pub(crate) const fn strong_if(self, is_so: bool) -> Self {
+        let strong = Weight::Strong;
+        self.weight(if is_so { strong } else { Weight::Normal })
     }
 
     /// As high as what matters most.
@@ -291,6 +325,18 @@ impl<'a> Button<'a> {
         }
     }
 
+    /// Draws it, and opens something when it is pressed.
+    pub(crate) fn opens(self, ui: &mut Ui, pane: &mut Pane<'_>, opens: ViewRequest) {
+        if self.ui(ui, pane.look).clicked() {
+            pane.open(opens);
+        }
+    }
+
+    /// Draws it, and turns something on or off when it is pressed.
+    pub(crate) fn flips(self, ui: &mut Ui, look: Look, on: &mut bool) {
+        *on ^= self.ui(ui, look).clicked();
+    }
+
     const fn font(&self) -> FontId {
         match self.weight {
             Weight::Stop => theme::large(),
@@ -338,44 +384,33 @@ impl<'a> Button<'a> {
     /// The button without its text, for those that paint their own.
     pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let enabled = self.disabled.is_none() && ui.is_enabled();
-        let sense = if enabled {
-            Sense::click()
-        } else {
-            Sense::hover()
-        };
-        let response = ui.interact(rect, id, sense);
+        let response = ui.interact(rect, id, click_if(enabled));
         let name = self.name.unwrap_or(self.text);
         response.widget_info(|| match self.selected {
             Some(selected) => WidgetInfo::selected(Role::Button, enabled, selected, name),
             None => WidgetInfo::labeled(Role::Button, enabled, name),
         });
         let (fill, edge) = self.colors(look, &response);
-        let round = if self.weight == Weight::Stop {
-            theme::ROUND
-        } else {
-            theme::ROUND_SMALL
+        let round = match self.weight {
+            Weight::Stop => theme::ROUND,
+            _ => theme::ROUND_SMALL,
         };
-        ui.painter().rect(
-            rect,
-            CornerRadius::same(round),
-            fill,
-            Stroke::new(1.0, edge),
-            StrokeKind::Inside,
-        );
+        let edge = Stroke::new(1.0, edge);
+        ui.painter()
+            .rect(rect, round, fill, edge, StrokeKind::Inside);
         focus_ring(ui, look, &response, rect);
         let tip = match self.disabled {
             Some(reason) => format!("{}\n{reason}", self.tip).trim().to_owned(),
             None => self.tip.to_owned(),
         };
-        let told = self
-            .disabled
-            .is_some_and(|reason| told_ui(ui, &response, reason));
+        let disabled = self.disabled;
+        let told = disabled.is_some_and(|reason| told_ui(ui, &response, reason));
         let response = if tip.is_empty() || told {
             response
         } else {
             response.on_hover_text(tip)
         };
-        match self.disabled {
+        match disabled {
             Some(_) => response,
             None => response.on_hover_cursor(egui::CursorIcon::PointingHand),
         }
@@ -520,6 +555,12 @@ pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// A table whose cells have what stands in them beside each other, in the middle of their height.
+pub(crate) fn table<'a>(ui: &'a mut Ui, id: impl egui::AsIdSalt) -> TableBuilder<'a> {
+    let row = Layout::left_to_right(Align::Center);
+    TableBuilder::new(ui).id_salt(id).cell_layout(row)
+}
+
 /// The title of a card, and what stands at the right end of its row, from right to left.
 pub(crate) fn head_ui<R>(
     ui: &mut Ui,
@@ -537,11 +578,10 @@ pub(crate) fn head_ui<R>(
     row.inner
 }
 
-/// A line of text that counts as it is typed.
-pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String) -> Response {
+/// A line of text that counts as it is typed: what a screen reader says, and what is shown while it is empty.
+pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
-        .align(Align2::LEFT_CENTER)
         .char_limit(EDIT_MAX)
         .margin(theme::FIELD_INSET)
         .align(Align2::LEFT_CENTER)
@@ -549,6 +589,11 @@ pub(crate) fn edit_ui(ui: &mut Ui, (name, hint): (&str, &str), text: &mut String
     let response = ui.add(edit);
     named_field(&response, name, true, text);
     response
+}
+
+/// The same with a name and a hint in the window's language.
+pub(crate) fn edit_said_ui(ui: &mut Ui, look: Look, said: Text, text: &mut String) -> Response {
+    edit_ui(ui, look.say(said), look.tip(said), text)
 }
 
 /// A panel of one size without a border, with this room left free around what is in it.
@@ -587,6 +632,19 @@ pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R
     cell.inner
 }
 
+/// How much of a whole is done.
+pub(crate) fn share(done: usize, total: usize) -> f32 {
+    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
+    count(done) / count(total.max(1))
+}
+
+/// How much is done, as a bar that has a name.
+pub(crate) fn progress_ui(ui: &mut Ui, look: Look, name: &str, share: f32) {
+    let bar = ProgressBar::new(share).desired_height(6.0);
+    let bar = ui.add(bar.fill(look.palette.accent));
+    bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
+}
+
 /// Small words that wrap.
 pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
     Label::new(text, color).small().wrap().ui(ui)
@@ -601,44 +659,77 @@ pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: 
     });
 }
 
-/// A button for each value, of which one is chosen; `tip` explains those whose text has none. True if another was chosen.
-pub(crate) fn pick_ui<T: Copy + PartialEq>(
-    ui: &mut Ui,
+/// A button for each of several values, of which one is chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pick {
     look: Look,
-    (chosen, tip): (&mut T, Text),
-    all: impl IntoIterator<Item = (T, Text)>,
-) -> bool {
-    let before = *chosen;
-    for (value, text) in all {
-        let own = look.tip(text);
-        let tip = if own.is_empty() { look.say(tip) } else { own };
-        let button = Button::new(look.say(text), tip).choice(before == value);
-        if button.ui(ui, look).clicked() {
-            *chosen = value;
-        }
+    tip: Text,
+}
+
+impl Pick {
+    /// `tip` explains those whose text has none.
+    pub(crate) const fn new(look: Look, tip: Text) -> Self {
+        Self { look, tip }
     }
-    before != *chosen
+
+    /// Draws the buttons; true if another was chosen.
+    pub(crate) fn ui<T: Copy + PartialEq>(
+        self,
+        ui: &mut Ui,
+        chosen: &mut T,
+        all: impl IntoIterator<Item = (T, Text)>,
+    ) -> bool {
+        let (look, before) = (self.look, *chosen);
+        for (value, text) in all {
+            let own = look.tip(text);
+            let tip = if own.is_empty() {
+                look.say(self.tip)
+            } else {
+                own
+            };
+            let button = Button::new(look.say(text), tip).choice(before == value);
+            if button.ui(ui, look).clicked() {
+                *chosen = value;
+            }
+        }
+        before != *chosen
+    }
+}
+
+/// A menu behind a button that stays open while something in it is pressed.
+pub(crate) fn drawer(button: &Response) -> Popup<'_> {
+    Popup::menu(button).close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+}
+
+/// An entry of a menu; true if it was pressed.
+pub(crate) fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
+    let button = ui.button(look.say(text));
+    button.on_hover_text(look.tip(text)).clicked()
+}
+
+/// A tick with what it stands for; true if it was changed.
+pub(crate) fn tick_ui(ui: &mut Ui, look: Look, text: Text, on: &mut bool) -> bool {
+    let tick = ui.checkbox(on, look.say(text));
+    tick.on_hover_text(look.tip(text)).changed()
 }
 
 /// One of several, from a list that opens; true if another one was chosen.
-pub(crate) fn choose_ui<T: Clone + PartialEq>(
+pub(crate) fn choose_ui<T: Clone + PartialEq, S: AsRef<str>>(
     ui: &mut Ui,
     name: &str,
     chosen: &mut T,
-    all: &[(T, &str)],
+    all: &[(T, S)],
 ) -> bool {
     let text = all.iter().find(|(value, _)| value == chosen);
     let before = chosen.clone();
     let shown = egui::ComboBox::from_id_salt(name)
-        .selected_text(text.map_or("-", |(_, text)| text))
+        .selected_text(text.map_or("-", |(_, text)| text.as_ref()))
         .show_ui(ui, |ui| {
             for (value, text) in all {
-                ui.selectable_value(chosen, value.clone(), *text);
+                ui.selectable_value(chosen, value.clone(), text.as_ref());
             }
         });
-    ui.ctx().accesskit_node_builder(shown.response.id, |node| {
-        node.set_label(name);
-    });
+    rename(&shown.response, name);
     *chosen != before
 }
 
@@ -683,11 +774,8 @@ pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
 /// A round lamp.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
-    painter.circle_filled(
-        center,
-        theme::LAMP + theme::HALO,
-        color.gamma_multiply(0.22),
-    );
+    let halo = color.gamma_multiply(0.22);
+    painter.circle_filled(center, theme::LAMP + theme::HALO, halo);
     painter.circle_filled(center, theme::LAMP, color);
 }
 

@@ -27,7 +27,7 @@ impl DriveWords {
     pub(crate) fn of(pane: &Pane<'_>, dof: Dof) -> Self {
         let look = pane.look;
         let palette = look.palette;
-        let sample = &pane.state.hand().readings.sample;
+        let sample = &pane.hand().readings.sample;
         let status = sample.status.map(|group| group.value[dof]);
         let faults = sample.faults.map(|group| group.value[dof]);
         let fault = faults.and_then(|faults| faults.iter().next());

@@ -20,6 +20,13 @@ const TYPED_MAX: usize = 8;
 /// What was read, or why it is none, in words.
 type Read<T> = Result<T, String>;
 
+/// Where a field is drawn, and whether what stands in it was refused.
+struct FieldPlace {
+    id: Id,
+    rect: Rect,
+    is_refused: bool,
+}
+
 /// What both kinds of fields have in common.
 #[derive(Debug, Clone, Copy)]
 struct Field<'a> {
@@ -34,7 +41,20 @@ struct Field<'a> {
     counts_when_left: bool,
 }
 
-impl Field<'_> {
+impl<'a> Field<'a> {
+    /// For text, at most so many characters.
+    const fn new(name: &'a str, max: usize) -> Self {
+        Self {
+            name,
+            hint: "",
+            tip: "",
+            disabled: None,
+            max,
+            is_number: false,
+            counts_when_left: true,
+        }
+    }
+
     /// Draws it with what is in force. What was typed, once it counts; what cannot be read stays, and is told why.
     fn ui<T>(
         self,
@@ -43,11 +63,9 @@ impl Field<'_> {
         value: &str,
         read: impl FnOnce(&str) -> Read<T>,
     ) -> Option<T> {
+        let line = theme::CONTROL.min(ui.spacing().interact_size.y);
         let (width, height) = if self.is_number {
-            (
-                theme::FIELD,
-                theme::CONTROL.min(ui.spacing().interact_size.y),
-            )
+            (theme::FIELD, line)
         } else {
             (ui.available_width(), theme::CONTROL)
         };
@@ -63,7 +81,12 @@ impl Field<'_> {
         let typed = own.field.map(|(_, text)| text);
         let mut refused = own.refused;
         let mut text = typed.clone().unwrap_or_else(|| value.to_owned());
-        let response = self.edit_ui(ui, (pane.look, refused.is_some()), &mut text, (id, rect));
+        let place = FieldPlace {
+            id,
+            rect,
+            is_refused: refused.is_some(),
+        };
+        let response = self.edit_ui(ui, pane.look, &mut text, &place);
         let by_tab = ui.input(|input| input.key_pressed(Key::Tab));
         if (self.is_number || by_tab) && response.gained_focus() {
             select_all(ui, id, &text);
@@ -102,17 +125,11 @@ impl Field<'_> {
         new
     }
 
-    fn edit_ui(
-        self,
-        ui: &mut Ui,
-        (look, is_refused): (Look, bool),
-        text: &mut String,
-        (id, rect): (Id, Rect),
-    ) -> Response {
-        let palette = look.palette;
+    fn edit_ui(self, ui: &mut Ui, look: Look, text: &mut String, place: &FieldPlace) -> Response {
+        let (palette, rect) = (look.palette, place.rect);
         let enabled = self.disabled.is_none();
-        let has_focus = ui.memory(|memory| memory.has_focus(id));
-        let edge = match (is_refused, has_focus) {
+        let has_focus = ui.memory(|memory| memory.has_focus(place.id));
+        let edge = match (place.is_refused, has_focus) {
             (true, _) => palette.bad,
             (false, true) => palette.accent,
             (false, false) => palette.edge,
@@ -133,7 +150,7 @@ impl Field<'_> {
             .corner_radius(theme::ROUND_SMALL)
             .inner_margin(theme::NUMBER_INSET);
         let edit = TextEdit::singleline(text)
-            .id(id)
+            .id(place.id)
             .font(font)
             .text_color(ink)
             .hint_text(self.hint)
@@ -162,15 +179,7 @@ pub(crate) struct TextField<'a>(Field<'a>);
 impl<'a> TextField<'a> {
     /// A field of at most so many characters, with what a screen reader says.
     pub(crate) const fn new(name: &'a str, max: usize) -> Self {
-        Self(Field {
-            name,
-            hint: "",
-            tip: "",
-            disabled: None,
-            max,
-            is_number: false,
-            counts_when_left: true,
-        })
+        Self(Field::new(name, max))
     }
 
     /// Shows this while nothing stands in it.
@@ -201,36 +210,35 @@ impl<'a> TextField<'a> {
 /// A field for a number, which counts when the field is left.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
-    name: &'a str,
-    tip: &'a str,
-    disabled: Option<&'a str>,
+    field: Field<'a>,
     range: RangeInclusive<f64>,
     decimals: usize,
-    counts_when_left: bool,
 }
 
 impl<'a> NumberField<'a> {
     /// A field for whole numbers of a range: what a screen reader says, and what it does, in a sentence.
     pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
-        Self {
-            name,
+        let field = Field {
             tip,
-            disabled: None,
+            is_number: true,
+            ..Field::new(name, TYPED_MAX)
+        };
+        Self {
+            field,
             range,
             decimals: 0,
-            counts_when_left: true,
         }
     }
 
     /// Nothing can be typed now, for this reason.
     pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
-        self.disabled = reason;
+        self.field.disabled = reason;
         self
     }
 
     /// What was typed counts with Enter alone, not when the field is left: it is sent to a hand.
     pub(crate) const fn needs_enter(mut self) -> Self {
-        self.counts_when_left = false;
+        self.field.counts_when_left = false;
         self
     }
 
@@ -267,20 +275,12 @@ impl<'a> NumberField<'a> {
             let number = strict(text, decimals).filter(|value| self.range.contains(value));
             number.ok_or_else(|| format!("{only} {from}..{to}"))
         };
-        let tip = match self.disabled {
+        let tip = match self.field.disabled {
             Some(reason) => reason.to_owned(),
-            None => format!("{} {from}..{to}", self.tip),
+            None => format!("{} {from}..{to}", self.field.tip),
         };
-        let field = Field {
-            name: self.name,
-            hint: "",
-            tip: &tip,
-            disabled: self.disabled,
-            max: TYPED_MAX,
-            is_number: true,
-            counts_when_left: self.counts_when_left,
-        };
-        field.ui(ui, pane, &shown, read)
+        let tip = tip.as_str();
+        Field { tip, ..self.field }.ui(ui, pane, &shown, read)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::effect::Effect;
+use crate::app::hands::Hand;
 use crate::app::layout::{Breakpoint, Layout, RoomLayouts};
 use crate::app::readings::Freshness;
 use crate::app::state::State;
@@ -43,7 +44,12 @@ pub(crate) enum ViewRequest {
     Palette,
 }
 
-impl Pane<'_> {
+impl<'a> Pane<'a> {
+    /// The hand that is shown.
+    pub(crate) fn hand(&self) -> &'a Hand {
+        self.state.hand()
+    }
+
     /// Opens this after the frame.
     pub(crate) const fn open(&mut self, opens: ViewRequest) {
         *self.opens = Some(opens);
@@ -69,17 +75,18 @@ impl Pane<'_> {
         if let Some(recorded) = self.recorded() {
             return Some(recorded);
         }
-        if self.state.hand().runs_series() {
+        let hand = self.hand();
+        if hand.runs_series() {
             return Some(self.look.say(main::SERIES_RUNS));
         }
-        if self.state.hand().connection.outside_owner().is_some() {
+        if hand.connection.outside_owner().is_some() {
             return Some(self.look.say(inputs::TAKEN));
         }
-        let advice = match self.state.hand().arm_refusal(self.state.now) {
+        let advice = match hand.arm_refusal(self.state.now) {
             Some(ArmRefusal::LetGo) => main::REFUSED_LET_GO,
             _ => main::NOT_ARMED,
         };
-        (!self.state.hand().connection.is_armed()).then(|| self.look.say(advice))
+        (!hand.connection.is_armed()).then(|| self.look.say(advice))
     }
 
     /// Why nothing at all can be asked of a hand now: a recording is shown.
@@ -90,14 +97,14 @@ impl Pane<'_> {
 
     /// How fresh something asked for at `asked` is.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
-        let hand = self.state.hand();
+        let hand = self.hand();
         hand.readings
             .freshness(asked, hand.connection.is_live(), self.state.now)
     }
 
     /// The same for the reading of a fingertip.
     pub(crate) fn tip_freshness(&self, finger: Finger) -> Freshness {
-        let hand = self.state.hand();
+        let hand = self.hand();
         hand.readings
             .tip_freshness(finger, hand.connection.is_live(), self.state.now)
     }

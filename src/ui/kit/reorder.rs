@@ -18,8 +18,8 @@ impl Reorder {
         &mut self,
         ui: &Ui,
         look: Look,
-        rect: Rect,
-        (at, id): (usize, Id),
+        at: usize,
+        (id, rect): (Id, Rect),
     ) -> Option<(usize, usize)> {
         let own = ui.interact(rect, id.with("reorder"), Sense::drag());
         if own.drag_started() {

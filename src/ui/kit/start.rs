@@ -37,7 +37,7 @@ impl StartButton {
     /// Draws the button over what it needs.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, wish: StartWish) {
         let (look, palette) = (pane.look, pane.look.palette);
-        let is_armed = pane.state.hand().connection.is_armed();
+        let is_armed = pane.hand().connection.is_armed();
         let reason = wish.refused;
         let (text, action) = if is_armed {
             wish.start
@@ -92,7 +92,7 @@ impl StartButton {
             (begins, has_pointer && pointer.primary_down() || by_key)
         });
         let now = pane.state.now;
-        let connection = &pane.state.hand().connection;
+        let connection = &pane.hand().connection;
         let is_stopped = self
             .since
             .is_some_and(|at| connection.is_disarmed_since(at));

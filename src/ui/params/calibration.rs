@@ -1,12 +1,12 @@
 //! The card of a calibration of the force sensors: what must be so, live; how far it is; the offsets before and after.
 
-use crate::app::procedures::{CalibrateProcedure, ProcedureStage};
+use crate::app::procedures::{CalibrateProcedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
 use crate::hand::{Dof, ForceReading};
 use crate::record::Calibrated;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Check, Checks, Offsets, TAKES};
 use crate::ui::kit::{ButtonRole, Card, Look, format};
-use crate::ui::params::choices::{asking, close};
+use crate::ui::params::choices::{asking, close, step};
 use crate::ui::text::{Text, cards, errors, words};
 
 pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card {
@@ -23,20 +23,17 @@ pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card 
 }
 
 fn ask(state: &State, card: Card, run: &Checks) -> Card {
-    let (sample, link, now) = (
-        &state.hand().readings.sample,
-        &state.hand().connection.status,
-        state.now,
-    );
-    let card = Check::ALL
-        .into_iter()
-        .fold(card.words(cards::CALIBRATE_WORDS), |card, check| {
-            card.check(run.check(check, sample, link, now), cards::check(check))
-        });
+    let (hand, now) = (state.hand(), state.now);
+    let (sample, link) = (&hand.readings.sample, &hand.connection.status);
+    let mut card = card.words(cards::CALIBRATE_WORDS);
+    for check in Check::ALL {
+        card = card.check(run.check(check, sample, link, now), cards::check(check));
+    }
     let force = sample.force.map(|force| force.value.map(ForceReading::raw));
     let card = offsets(card, &[(cards::OFFSET_NOW, force)]);
     let not_yet = (!run.is_ready(sample, link, now)).then_some(cards::CALIBRATE_NOT_YET);
-    asking(state, card, (cards::CALIBRATE, ButtonRole::Main), not_yet)
+    let begin = step(cards::CALIBRATE, ButtonRole::Main, ProcedureAction::Begin);
+    asking(state, card, begin.disabled(not_yet))
 }
 
 fn over(look: Look, card: Card, before: Option<Offsets>, report: &CalibrateReport) -> Card {

@@ -38,15 +38,12 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
         card = dangers(look, card, &question.dangers);
         manner = ButtonRole::Danger;
     }
-    let why = state
-        .hand()
-        .params
-        .write_refusal(&state.hand().connection.status)
-        .map(device::refusal);
-    let back = Choice::new(device::DECLINE, ButtonRole::Safe);
-    let agree = Choice::new(agree, manner).does(Action::Param(ParamAction::Agree));
-    card.choice(back.does(Action::Param(ParamAction::Decline)))
-        .choice(agree.disabled(why))
+    let hand = state.hand();
+    let why = hand.params.write_refusal(&hand.connection.status);
+    let decline = Action::Param(ParamAction::Decline);
+    let agree = Choice::new(agree, manner, Action::Param(ParamAction::Agree));
+    card.choice(Choice::new(device::DECLINE, ButtonRole::Safe, decline))
+        .choice(agree.disabled(why.map(device::refusal)))
 }
 
 /// What a SAVE changes for the next power-up, row by row.

@@ -9,7 +9,7 @@ use crate::ui::text::{Text, cards, device};
 
 /// A button that goes one step further.
 pub(crate) fn step(text: Text, manner: ButtonRole, step: ProcedureAction) -> Choice {
-    Choice::new(text, manner).does(Action::Procedure(step))
+    Choice::new(text, manner, Action::Procedure(step))
 }
 
 /// The way out of a card that was read.
@@ -17,20 +17,9 @@ pub(crate) fn close() -> Choice {
     step(cards::CLOSE, ButtonRole::Safe, ProcedureAction::Close)
 }
 
-/// A card that asks whether to begin, unless nothing can begin now or not yet.
-pub(crate) fn asking(
-    state: &State,
-    card: Card,
-    (begin, manner): (Text, ButtonRole),
-    not_yet: Option<Text>,
-) -> Card {
-    let why = rest_refusal(&state.hand().connection.status)
-        .map(device::refusal)
-        .or(not_yet);
-    card.choice(step(
-        cards::CANCEL,
-        ButtonRole::Safe,
-        ProcedureAction::Close,
-    ))
-    .choice(step(begin, manner, ProcedureAction::Begin).disabled(why))
+/// A card that asks whether to begin, unless nothing can begin now.
+pub(crate) fn asking(state: &State, card: Card, begin: Choice) -> Card {
+    let moves = rest_refusal(&state.hand().connection.status).map(device::refusal);
+    let cancel = step(cards::CANCEL, ButtonRole::Safe, ProcedureAction::Close);
+    card.choice(cancel).choice(begin.refused(moves))
 }

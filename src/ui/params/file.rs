@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
-use crate::params::rows::{ParamId, Value};
+use crate::params::rows::ParamId;
 use crate::ui::kit::{Button, Label, Pane, Weight};
 use crate::ui::params::flash::moment;
 use crate::ui::params::table::{cell_name, cell_ui, value_text};
@@ -17,8 +17,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     let palette = look.palette;
     let file = &compared.file;
     let title = format!("{}: {}", look.say(device::COMPARED), compared.name);
-    let title = Label::new(&title, palette.text).font(theme::title());
-    title.ui(ui);
+    Label::new(&title, palette.text).title().ui(ui);
     let parts = [
         file.hand.clone(),
         moment(&file.at),
@@ -36,8 +35,8 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
                 Label::note(look, text).ui(ui);
             }
             ui.end_row();
-            for row in file.params.iter() {
-                row_ui(ui, pane, compared, row);
+            for (id, _) in file.params.iter() {
+                row_ui(ui, pane, compared, id);
                 ui.end_row();
             }
         });
@@ -61,7 +60,7 @@ fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
     close.on_click(ui, pane, Action::Param(ParamAction::CloseFile));
 }
 
-fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (ParamId, Value)) {
+fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, id: ParamId) {
     let look = pane.look;
     let palette = look.palette;
     let words = device::whole_name(look, id);
@@ -77,19 +76,21 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, (id, value): (P
     if tick.on_hover_text(look.say(tip)).changed() {
         pane.actions.push(Action::Param(ParamAction::Tick(id)));
     }
-    let held = pane.state.hand().params.live(id).map(|(value, _)| value);
-    let hand = pane.state.hand();
+    let hand = pane.hand();
+    let held = hand.params.live(id).map(|(value, _)| value);
     let is_live = hand.connection.is_live();
     let fresh = hand.params.freshness(id, is_live, pane.state.now);
     let color = look.value(fresh, palette.text);
     let label = cell_name(pane, id, device::LIVE);
-    cell_ui(ui, (&label, &value_text(id, held), color), "");
-    let text = value_text(id, Some(value));
-    let (words, color) = if held == Some(value) {
+    let text = value_text(id, held);
+    cell_ui(ui, Label::new(&text, color).named(&label), "");
+    let value = compared.file.params.get(id);
+    let text = value_text(id, value);
+    let (words, color) = if held == value {
         (format!("{text}  {}", look.say(device::SAME)), palette.muted)
     } else {
         (text, palette.warn)
     };
     let label = cell_name(pane, id, device::IN_FILE);
-    cell_ui(ui, (&label, &words, color), "");
+    cell_ui(ui, Label::new(&words, color).named(&label), "");
 }

@@ -7,7 +7,7 @@ use crate::app::params::state::Doing;
 use crate::params::backups::Backup;
 use crate::params::file::SaveVerdict;
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{cards, device, errors, main, notices};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui, vec2};
@@ -34,18 +34,14 @@ pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let reason = hand.params.save_refusal(&hand.connection.status);
     let reason = reason.map(|why| look.say(device::refusal(why)));
     // Bright only where it is the next thing to do.
     let unsaved = hand.params.unsaved();
-    let weight = if hand.params.to_apply().is_empty() && !unsaved.is_empty() {
-        Weight::Strong
-    } else {
-        Weight::Normal
-    };
-    let save = Button::said(look, device::SAVE);
-    let save = save.weight(weight).disabled(reason);
+    let is_next = hand.params.to_apply().is_empty() && !unsaved.is_empty();
+    let save = Button::said(look, device::SAVE).strong_if(is_next);
+    let save = save.disabled(reason);
     kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
         save.on_click(ui, pane, Action::Param(ParamAction::Save));
     });
@@ -60,20 +56,11 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
 
 /// What is known, the newest first.
 fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
-    let (look, book) = (pane.look, &pane.state.hand().params);
+    let (look, book) = (pane.look, &pane.hand().params);
     let palette = look.palette;
     let mut lines = Vec::new();
-    if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
-        lines.push((look.say(doing).to_owned(), palette.accent));
-    }
-    if let Some((end, _)) = &book.save {
-        let color = if device::is_saved(end) {
-            palette.ok
-        } else {
-            palette.bad
-        };
-        lines.push((device::save_end(look, end), color));
-    }
+    lines.extend(doing(pane).map(|doing| (doing.to_owned(), palette.accent)));
+    lines.extend(save_end(pane));
     if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
     }
@@ -112,6 +99,22 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     lines
 }
 
+/// What is done with the parameters now, but for reading them.
+pub(crate) fn doing(pane: &Pane<'_>) -> Option<&'static str> {
+    let doing = pane.hand().params.doing;
+    let doing = device::doing(doing).filter(|_| doing != Doing::Reading);
+    doing.map(|doing| pane.look.say(doing))
+}
+
+/// How the last save ended.
+pub(crate) fn save_end(pane: &Pane<'_>) -> Option<(String, Color32)> {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let (end, _) = pane.hand().params.save.as_ref()?;
+    let is_saved = device::is_saved(end);
+    let color = if is_saved { palette.ok } else { palette.bad };
+    Some((device::save_end(look, end), color))
+}
+
 /// `2026-11-21 12:30:00 UTC`, from a stamp.
 pub(crate) fn moment(stamp: &str) -> String {
     stamp.replace('T', " ").replace('Z', " UTC")
@@ -119,7 +122,7 @@ pub(crate) fn moment(stamp: &str) -> String {
 
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let nothing = pane.state.hand().params.live_params().is_empty();
+    let nothing = pane.hand().params.live_params().is_empty();
     let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
         let dump = Button::said(look, device::DUMP);
@@ -128,7 +131,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             .on_click(ui, pane, Action::Param(ParamAction::Dump));
         open.on_click(ui, pane, Action::Param(ParamAction::Open(None)));
     });
-    if let Some(refused) = &pane.state.hand().params.file_refused {
+    if let Some(refused) = &pane.hand().params.file_refused {
         let words = notices::notice(look, refused);
         Label::new(&words, look.palette.warn).small().wrap().ui(ui);
         if let Some(path) = path_ui(ui, look, "parameters") {
@@ -136,9 +139,8 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 .push(Action::Param(ParamAction::Open(Some(path))));
         }
     }
-    let title = Label::said(look, device::BACKUPS);
-    title.font(theme::title()).ui(ui);
-    let backups = &pane.state.hand().params.backups;
+    Label::said(look, device::BACKUPS).title().ui(ui);
+    let backups = &pane.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
     let area = ScrollArea::vertical().auto_shrink(false).max_height(most);
     let area = area.id_salt("backups").min_scrolled_height(0.0);
@@ -163,10 +165,8 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
         }
         Err(error) => {
             let name = backup.path.file_name().unwrap_or_default();
-            (
-                name.to_string_lossy().into_owned(),
-                Some(errors::file(look, error)),
-            )
+            let name = name.to_string_lossy().into_owned();
+            (name, Some(errors::file(look, error)))
         }
     };
     let tip = format!("{words}\n{}", look.say(device::BACKUP_TIP));
@@ -187,7 +187,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
 /// The buttons of what is done to a hand only under a card. Each opens its card and does nothing else.
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let live = pane.state.hand().connection.status.state.is_live();
+    let live = pane.hand().connection.status.state.is_live();
     for (text, action) in [
         (cards::RESET_ENTRY, Action::FactoryReset),
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),

@@ -11,7 +11,7 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::refusal::ParamRefusal;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
+use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::params::table::ShownRows;
 use crate::ui::text::{device, errors};
 use crate::ui::theme;
@@ -32,9 +32,8 @@ impl DeviceView {
             kit::bare(Panel::bottom("flash"), 172.0, theme::GAP_TOP)
         };
         flash.show(ui, |ui| flash::flash_ui(ui, pane));
-        kit::card_ui(ui, pane.look, |ui| {
-            ui.set_min_height(ui.available_height());
-            if let Some(compared) = &pane.state.hand().params.compared {
+        kit::full_card_ui(ui, pane.look, |ui| {
+            if let Some(compared) = &pane.hand().params.compared {
                 return file::file_ui(ui, pane, compared);
             }
             ui.horizontal(|ui| self.find_ui(ui, pane));
@@ -50,29 +49,24 @@ impl DeviceView {
         let look = pane.look;
         ui.scope(|ui| {
             ui.set_max_width(200.0);
-            kit::edit_ui(ui, look.both(device::FIND), &mut self.shown.words);
+            kit::edit_said_ui(ui, look, device::FIND, &mut self.shown.words);
         });
         kit::right_ui(ui, |ui| {
-            let refusal = pane
-                .state
-                .hand()
-                .params
-                .read_refusal(&pane.state.hand().connection.status);
+            let hand = pane.hand();
+            let refusal = hand.params.read_refusal(&hand.connection.status);
             let refusal = refusal.map(|why| look.say(device::refusal(why)));
             let read = Button::said(look, device::READ);
             read.disabled(refusal)
                 .on_click(ui, pane, Action::Param(ParamAction::Read));
-            let only = Button::said(look, device::ONLY);
-            if only.choice(self.shown.only).ui(ui, look).clicked() {
-                self.shown.only = !self.shown.only;
-            }
+            let only = Button::said(look, device::ONLY).choice(self.shown.only);
+            only.flips(ui, look, &mut self.shown.only);
         });
     }
 }
 
 /// What is done with what is staged.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
     let apply = match hand.params.to_apply().iter().count() {
         0 => look.say(device::APPLY).to_owned(),
@@ -83,40 +77,30 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let is_known =
         hand.readings.sample.speed_set.is_some() && hand.connection.status.state.is_live();
     let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
-    let weight = match hand.params.apply_refusal(&hand.connection.status) {
-        None => Weight::Strong,
-        Some(_) => Weight::Normal,
-    };
+    let link = &hand.connection.status;
+    let no_apply = why(hand.params.apply_refusal(link));
+    let no_undo = why(hand.params.undo_refusal(link));
     let apply = Button::new(&apply, look.tip(device::APPLY))
         .named(look.say(device::APPLY))
-        .weight(weight);
+        .strong_if(no_apply.is_none());
     let undo = Button::said(look, device::UNDO);
     let drop = Button::said(look, device::UNSTAGE_ALL);
     let copy = Button::said(look, device::COPY);
     let tools = [
-        (
-            apply,
-            why(hand.params.apply_refusal(&hand.connection.status)),
-            ParamAction::Apply,
-        ),
-        (
-            undo,
-            why(hand.params.undo_refusal(&hand.connection.status)),
-            ParamAction::Undo,
-        ),
+        (apply, no_apply, ParamAction::Apply),
+        (undo, no_undo, ParamAction::Undo),
         (drop, nothing, ParamAction::UnstageAll),
         (copy, unknown, ParamAction::CopyLive),
     ];
     for (button, disabled, wish) in tools {
-        button
-            .disabled(disabled)
-            .on_click(ui, pane, Action::Param(wish));
+        let button = button.disabled(disabled);
+        button.on_click(ui, pane, Action::Param(wish));
     }
 }
 
 /// What is going on, or how old it all is.
 fn status(pane: &Pane<'_>) -> (String, Color32) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let book = &hand.params;
     if let Some(doing) = device::doing(book.doing) {
         return (look.say(doing).into(), look.palette.accent);

@@ -21,7 +21,7 @@ use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{asking, close, step};
 use crate::ui::params::table::value_text;
-use crate::ui::text::{cards, device, errors, main};
+use crate::ui::text::{Text, cards, device, errors, main};
 use std::path::Path;
 
 /// The word that a return to the factory's parameters wants typed, in every language.
@@ -55,10 +55,8 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
 fn from_to(look: Look, change: &PlaceChange) -> String {
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
-    look.pair(
-        look.say(device::name(change.id)),
-        &format!("{from} -> {to}"),
-    )
+    let name = look.say(device::name(change.id));
+    look.pair(name, &format!("{from} -> {to}"))
 }
 
 /// Where the hand is now, and where it will be if that is elsewhere.
@@ -83,7 +81,12 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
         _ if places.new == places.old => cards::POWERED,
         _ => cards::FOLLOWED,
     });
-    asking(state, card, (cards::CHANGE, ButtonRole::Danger), None)
+    asking(state, card, begin(cards::CHANGE))
+}
+
+/// The button that begins what cannot simply be taken back.
+fn begin(text: Text) -> Choice {
+    step(text, ButtonRole::Danger, ProcedureAction::Begin)
 }
 
 fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
@@ -104,7 +107,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
             PlaceStep::Writing(place) => {
                 card.progress(0.4, (cards::WRITING, places.endpoint(*place)))
             }
-            PlaceStep::Keeping(place) => keep_card(state, look, change, (*place, *since)),
+            PlaceStep::Keeping(place) => keep_card(state, change, *place, *since),
             PlaceStep::Returning => Card::new(look, cards::GOING_BACK).progress(0.9, String::new()),
             PlaceStep::Offering(_) => offer_card(look, run),
             PlaceStep::Saving(_) => {
@@ -114,16 +117,14 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     }
 }
 
-fn keep_card(
-    state: &State,
-    look: Look,
-    change: &PlaceChange,
-    (place, since): (WhichPlace, Moment),
-) -> Card {
+fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Moment) -> Card {
+    let look = Look::of(state);
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
+    let part = seconds / KEEP_WITHIN.as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
     let lost = (!state.hand().connection.status.state.is_live()).then_some(main::REFUSED_OFFLINE);
     let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);
+    let back = step(cards::GO_BACK, ButtonRole::Plain, ProcedureAction::GoBack);
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))
         .words(match place {
@@ -131,15 +132,8 @@ fn keep_card(
             WhichPlace::Old => cards::KEEP_WAITS,
         })
         .note((cards::NOW_AT, change.places.endpoint(place)))
-        .progress(
-            seconds / KEEP_WITHIN.as_secs_f32(),
-            (cards::GOES_BACK_IN, left),
-        )
-        .choice(step(
-            cards::GO_BACK,
-            ButtonRole::Plain,
-            ProcedureAction::GoBack,
-        ))
+        .progress(part, (cards::GOES_BACK_IN, left))
+        .choice(back)
         .choice(keep.disabled(lost))
 }
 
@@ -224,7 +218,7 @@ fn backup(card: Card, backup: &Path) -> Card {
 /// The ways back to a hand: each place where it may be.
 fn ways(card: Card, places: &PlacePair) -> Card {
     let connect = |text, place: &Endpoint| {
-        Choice::new(text, ButtonRole::Plain).does(Action::Connect(place.clone()))
+        Choice::new(text, ButtonRole::Plain, Action::Connect(place.clone()))
     };
     let card = card.choice(connect(cards::TO_OLD, &places.old));
     if places.new == places.old {
@@ -240,7 +234,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
         ProcedureStage::Asking => {
             let card = Card::new(look, cards::RESET_TITLE).words(cards::RESET_WORDS);
             let card = now_and_then(card, places).typed(RESET_WORD);
-            asking(state, card, (cards::RESET, ButtonRole::Danger), None)
+            asking(state, card, begin(cards::RESET))
         }
         ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, device::BACKING_UP),
         ProcedureStage::Doing(ResetStep::Sending, _) => card.progress(0.4, cards::RESET_SENDING),

@@ -9,7 +9,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
 use crate::ui::text::{Text, device, panels, poses};
 use crate::ui::theme;
-use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, Layout, RichText, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableBuilder, TableRow};
 
 /// Characters of an address.
@@ -47,7 +47,7 @@ pub(crate) struct ShownRows {
 
 impl ShownRows {
     fn passes(&self, pane: &Pane<'_>, id: ParamId) -> bool {
-        if self.only && !pane.state.hand().params.differs(id) {
+        if self.only && !pane.hand().params.differs(id) {
             return false;
         }
         let name = device::whole_name(pane.look, id).to_lowercase();
@@ -77,26 +77,19 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
     let width = ui.available_width();
+    let row = Layout::left_to_right(Align::Center);
     let mut table = TableBuilder::new(ui)
-        .cell_layout(Layout::left_to_right(Align::Center))
+        .cell_layout(row)
         .auto_shrink(false)
         .min_scrolled_height(SCROLLED_LEAST);
     for column in COLUMNS {
         table = table.column(Column::exact(column * (width / WIDTH).min(1.0)));
     }
     let table = table.column(Column::remainder());
-    let heads = [
-        poses::NAME,
-        device::LIVE,
-        device::STAGED,
-        device::SAVED,
-        device::RANGE,
-    ];
+    let (live, staged, saved) = (device::LIVE, device::STAGED, device::SAVED);
     let table = table.header(theme::LIST_LINE, |mut head| {
-        for text in heads {
-            head.col(|ui| {
-                Label::note(look, text).ui(ui);
-            });
+        for text in [poses::NAME, live, staged, saved, device::RANGE] {
+            Label::note(look, text).column_ui(&mut head);
         }
     });
     table.body(|mut body| {
@@ -106,7 +99,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                Label::said(look, title).font(theme::title()).ui(ui);
+                Label::said(look, title).title().ui(ui);
                 Label::note(look, about).ui(ui);
             });
             for id in own {
@@ -138,12 +131,12 @@ fn line_ui(body: &mut TableBody<'_>, height: f32, line: impl FnOnce(&mut Ui)) {
 
 /// True if the last write of a row did not end as it should.
 fn has_trouble(pane: &Pane<'_>, id: ParamId) -> bool {
-    let end = pane.state.hand().params.outcome(id);
+    let end = pane.hand().params.outcome(id);
     end.is_some_and(|end| end.verdict != RowVerdict::Applied)
 }
 
 fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
-    let (book, muted) = (&pane.state.hand().params, pane.look.palette.muted);
+    let (book, muted) = (&pane.hand().params, pane.look.palette.muted);
     row.set_selected(book.staged(id).is_some());
     row.col(|ui| name_ui(ui, pane, id));
     row.col(|ui| live_ui(ui, pane, id));
@@ -172,7 +165,8 @@ fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
         let file = book.known.saved.as_ref().filter(|_| saved.is_some());
         let day = file.and_then(|file| file.at.get(..10)).unwrap_or_default();
         let name = cell_name(pane, id, device::SAVED);
-        cell_ui(ui, (&name, &value_text(id, saved), color), day);
+        let value = value_text(id, saved);
+        cell_ui(ui, Label::new(&value, color).named(&name), day);
     });
     row.col(|ui| range_ui(ui, pane, id));
 }
@@ -187,7 +181,7 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     };
     let name = cell_name(pane, id, device::RANGE);
     let cell = |ui: &mut Ui| {
-        cell_ui(ui, (&name, &range, muted), "");
+        cell_ui(ui, Label::new(&range, muted).named(&name), "");
         if id.factory().is_some() {
             let name = cell_name(pane, id, device::FACTORY);
             let factory = value_text(id, id.factory());
@@ -224,10 +218,10 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
 }
 
 /// A value, and beside or below it what is to be known of it.
-pub(crate) fn cell_ui(ui: &mut Ui, (name, value, color): (&str, &str, Color32), below: &str) {
+pub(crate) fn cell_ui(ui: &mut Ui, value: Label<'_>, below: &str) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
-        Label::new(value, color).number().named(name).ui(ui);
+        value.number().ui(ui);
         if !below.is_empty() {
             let below = RichText::new(below).small().weak();
             ui.add(egui::Label::new(below).extend());
@@ -241,7 +235,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         ParamId::DefaultSpeed(dof) | ParamId::DefaultForce(dof) => palette.dof[dof],
         _ => palette.text,
     };
-    let is_applied = pane.state.hand().params.outcome(id).is_some() && !has_trouble(pane, id);
+    let is_applied = pane.hand().params.outcome(id).is_some() && !has_trouble(pane, id);
     let name = Label::new(look.say(device::name(id)), color);
     if !is_applied && !id.is_place() {
         name.ui(ui);
@@ -263,7 +257,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 
 /// What went wrong with a row, and what the hand said.
 fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
-    let Some(end) = pane.state.hand().params.outcome(id) else {
+    let Some(end) = pane.hand().params.outcome(id) else {
         return;
     };
     let palette = pane.look.palette;
@@ -277,8 +271,8 @@ fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
 }
 
 fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
-    let live = pane.state.hand().params.live(id);
-    let hand = pane.state.hand();
+    let hand = pane.hand();
+    let live = hand.params.live(id);
     let is_live = hand.connection.is_live();
     let fresh = hand.params.freshness(id, is_live, pane.state.now);
     let color = pane.look.value(fresh, pane.look.palette.text);
@@ -290,13 +284,13 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     };
     let value = value_text(id, live.map(|(value, _)| value));
     let name = cell_name(pane, id, device::LIVE);
-    cell_ui(ui, (&name, &value, color), &below);
+    cell_ui(ui, Label::new(&value, color).named(&name), &below);
 }
 
 /// The field of what is to be staged, and the way to drop it.
 fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
-    let book = &pane.state.hand().params;
+    let book = &pane.hand().params;
     let staged = book.staged(id);
     let live = book.live(id).map(|(value, _)| value);
     let shown = staged.or(live);
@@ -308,7 +302,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         let new = match id {
             ParamId::IpAddress => address_ui(ui, pane, &name, shown),
             ParamId::ReduRatio => speed_ui(ui, &name, shown),
-            _ => number_ui(ui, pane, (&name, id), shown),
+            _ => number_ui(ui, pane, id, shown),
         };
         if let Some(new) = new {
             // What the hand holds already is not staged.
@@ -323,31 +317,22 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     }
 }
 
-fn number_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (name, id): (&str, ParamId),
-    value: Option<Value>,
-) -> Option<Value> {
+fn number_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId, value: Option<Value>) -> Option<Value> {
     let (min, max) = id.range()?;
     let value = match value {
         Some(Value::Number(number)) => Some(number),
         _ => None,
     };
+    let name = cell_name(pane, id, device::STAGED);
     let tip = pane.look.tip(device::STAGED);
-    let field = NumberField::new(name, tip, min.into()..=max.into());
+    let field = NumberField::new(&name, tip, min.into()..=max.into());
     let typed = field.whole_ui(ui, pane, value)?;
     Some(Value::Number(i32::try_from(typed).ok()?))
 }
 
 fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
     let all = SerialSpeed::ALL.map(|speed| Value::Number(i32::from(speed.code())));
-    let texts = all.map(|value| value_text(ParamId::ReduRatio, Some(value)));
-    let all: Vec<_> = all
-        .into_iter()
-        .map(Some)
-        .zip(texts.iter().map(String::as_str))
-        .collect();
+    let all = all.map(|value| (Some(value), value_text(ParamId::ReduRatio, Some(value))));
     let mut chosen = value;
     ui.spacing_mut().combo_width = 0.0;
     kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
@@ -367,7 +352,7 @@ fn address_ui(ui: &mut Ui, pane: &mut Pane<'_>, name: &str, value: Option<Value>
 /// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.
 fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let name = device::whole_name(look, id);
     let label = look.told(device::CHANGE, name);
     let live = hand.params.live(id).map(|(value, _)| value);

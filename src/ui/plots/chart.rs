@@ -3,7 +3,7 @@
 use crate::history::{History, Series, Trace};
 use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::plots::bars;
-use crate::ui::plots::scales::{self, Scales};
+use crate::ui::plots::scales::{self, ScaleAxis, Scales};
 use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
 use crate::ui::text::{Text, panels};
@@ -55,6 +55,12 @@ pub(crate) struct ChartCurve<'a> {
 }
 
 impl<'a> ChartCurve<'a> {
+    /// A plain line of what was measured.
+    pub(crate) fn measured(history: &'a History, series: Series, color: Color32) -> Self {
+        let stroke = Stroke::new(theme::LINE, color);
+        Self::new(Points::Measured(history, series), stroke)
+    }
+
     /// A plain line.
     pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
         Self {
@@ -78,6 +84,14 @@ impl<'a> ChartCurve<'a> {
                 pieces.map(|piece| (self, piece.as_slice())).collect()
             }
         }
+    }
+
+    /// True if a column of pixels holds more than one point of a piece.
+    fn is_dense(&self, piece: &[[f64; 2]], per_s: f64) -> bool {
+        let ends = piece.first().zip(piece.last());
+        let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
+        let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
+        self.style == LineStyle::Solid && count > columns + 2.0
     }
 
     fn line(&self, piece: &[[f64; 2]]) -> Line<'static> {
@@ -152,6 +166,16 @@ pub(crate) struct Chart<'a> {
     pub(crate) is_sparkline: bool,
 }
 
+/// Height of one of several charts over one axis of time, which the lowest has below it.
+pub(crate) const fn height_over_axis(height: f32, is_lowest: bool) -> f32 {
+    let axis = if is_lowest {
+        theme::PLOT_TIME_AXIS
+    } else {
+        0.0
+    };
+    height + axis
+}
+
 /// What was drawn, with the response of the numbers beside it.
 pub(crate) type ChartResponse = PlotResponse<Response>;
 
@@ -200,16 +224,10 @@ impl<'a> Chart<'a> {
         let bounds = PlotBounds::from_min_max([from_s, scale.0], [to_s, scale.1]);
         let pieces = self.curves.iter().flat_map(|curve| curve.pieces(&traces));
         let per_s = f64::from(columns) / (to_s - from_s);
-        let (dense, sparse): (Vec<_>, Vec<_>) = pieces.partition(|piece| is_dense(*piece, per_s));
-        let marks = ui.input(|input| input.modifiers.shift);
+        let (dense, sparse): (Vec<_>, Vec<_>) =
+            pieces.partition(|(curve, piece)| curve.is_dense(piece, per_s));
         let is_fixed = view.scales.chosen(self.title).is_some();
-        let plot = self.plot(is_fixed).width(width);
-        let plot = plot.allow_drag([!marks, false]);
-        let plot = plot.boxed_zoom_pointer_button(if marks {
-            PointerButton::Primary
-        } else {
-            PointerButton::Secondary
-        });
+        let plot = with_drags(ui, self.plot(is_fixed).width(width));
         let shown = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds);
             self.items(plot);
@@ -247,8 +265,8 @@ impl<'a> Chart<'a> {
             hovered_plot_item: None,
         };
         if !self.is_sparkline {
-            let of = (self.title, aim);
-            view.scales.axis_ui(ui, &shown.inner, self.look, of);
+            let axis = ScaleAxis::new(self.title, aim, &shown.inner);
+            view.scales.axis_ui(ui, self.look, &axis);
         }
         view.act(ui, &shown, self.title, bounds);
         shown
@@ -367,10 +385,10 @@ impl<'a> Chart<'a> {
             else {
                 continue;
             };
-            let value = history
-                .reading(series, at_s)
-                .map(|reading| f64::from(reading.value));
-            let value = value.map(|value| format!("{:.digits$}", value - curve.zero[1]));
+            let value = history.reading(series, at_s).map(|reading| {
+                let value = f64::from(reading.value) - curve.zero[1];
+                format!("{value:.digits$}")
+            });
             let text = value.unwrap_or_else(|| format::UNKNOWN.to_owned());
             let format = TextFormat::simple(theme::number(), curve.stroke.color);
             job.append(&format!(" {text:>6}"), 0.0, format);
@@ -384,13 +402,8 @@ impl<'a> Chart<'a> {
         let response = ui.add(egui::Label::new(galley));
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
-        let name = format!(
-            "{} {}",
-            look.say(self.title),
-            look.say(panels::UNDER_POINTER)
-        );
-        ui.ctx()
-            .accesskit_node_builder(response.id, |node| node.set_label(name));
+        let name = look.told(self.title, look.say(panels::UNDER_POINTER));
+        kit::rename(&response, &name);
     }
 
     fn plot(&self, is_fixed: bool) -> Plot<'_> {
@@ -450,11 +463,8 @@ impl<'a> Chart<'a> {
         if let Some([a, b]) = self.cursors {
             let accent = self.look.palette.accent;
             let between = egui_plot::Span::new("", a.min(b)..=a.max(b));
-            plot.span(
-                between
-                    .fill(accent.gamma_multiply(0.08))
-                    .border_color(accent),
-            );
+            let between = between.fill(accent.gamma_multiply(0.08));
+            plot.span(between.border_color(accent));
         }
         for (at_s, color) in &self.moments {
             plot.vline(VLine::new("", *at_s).color(*color));
@@ -486,12 +496,16 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// True if a column of pixels holds more than one point.
-fn is_dense((curve, piece): (&ChartCurve<'_>, &[[f64; 2]]), per_s: f64) -> bool {
-    let ends = piece.first().zip(piece.last());
-    let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
-    let count = f64::from(u32::try_from(piece.len()).unwrap_or(u32::MAX));
-    curve.style == LineStyle::Solid && count > columns + 2.0
+/// A drag moves the plot in time; with shift, or by the right button, it marks what to zoom into.
+fn with_drags<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
+    let marks = ui.input(|input| input.modifiers.shift);
+    let boxes = if marks {
+        PointerButton::Primary
+    } else {
+        PointerButton::Secondary
+    };
+    plot.allow_drag([!marks, false])
+        .boxed_zoom_pointer_button(boxes)
 }
 
 /// From a place to a piece of a line.
@@ -502,6 +516,21 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 }
 
 impl ChartView {
+    /// Time went on to `now_s`: it is shown from where a history begins, so many seconds of it while it follows.
+    pub(crate) fn advance(&mut self, history: &History, now_s: f64, window_s: f64) {
+        let first_s = history.first_secs().unwrap_or(now_s);
+        self.time.advance((first_s.min(now_s), now_s), window_s);
+    }
+
+    /// How times are told: from now on backwards, unless the chart stands still.
+    pub(crate) fn times(&self, look: Look) -> Times {
+        if self.time.is_held() {
+            Times::Clock
+        } else {
+            Times::From(self.time.span().1, look.say(panels::NOW))
+        }
+    }
+
     /// The time that the pointer is at in one of the charts.
     pub(crate) fn pointed_s(&self) -> Option<f64> {
         let (from_s, to_s) = self.time.span();
@@ -572,9 +601,9 @@ mod tests {
     fn only_more_points_than_columns_are_a_band() {
         let points: Vec<[f64; 2]> = (0..100_u8).map(|n| [f64::from(n), 1.0]).collect();
         let curve = ChartCurve::new(Points::Own(&points), Stroke::new(1.0, Color32::RED));
-        assert!(is_dense((&curve, &points), 0.5));
-        assert!(!is_dense((&curve, &points), 2.0));
+        assert!(curve.is_dense(&points, 0.5));
+        assert!(!curve.is_dense(&points, 2.0));
         let alone = points.get(..1).unwrap_or_default();
-        assert!(!is_dense((&curve, alone), 0.5));
+        assert!(!curve.is_dense(alone, 0.5));
     }
 }

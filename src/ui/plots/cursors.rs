@@ -34,11 +34,10 @@ pub(crate) struct Cursors(pub(crate) Option<[f64; 2]>);
 
 /// What two cursors say of one line: A, B, B - A, change a second, smallest, largest, mean; `None` = not known.
 fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64>; 7] {
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let read = |at_s| {
-        history
-            .reading(series, at_s)
-            .map(|reading| f64::from(reading.value))
+        let reading = history.reading(series, at_s);
+        reading.map(|reading| f64::from(reading.value))
     };
     let (a, b) = (read(a_s), read(b_s));
     let difference = a.zip(b).map(|(a, b)| b - a);
@@ -72,10 +71,8 @@ impl Cursors {
         let times = lowest.transform.bounds().range_x();
         for (at_s, (short, name)) in self.0.iter_mut().flatten().zip(NAMES) {
             let x = lowest.transform.position_from_point_x(*at_s);
-            let at = pos2(
-                x.clamp(frame.left() + half, frame.right() - half),
-                frame.bottom() + half,
-            );
+            let x = x.clamp(frame.left() + half, frame.right() - half);
+            let at = pos2(x, frame.bottom() + half);
             let flag = Rect::from_center_size(at, vec2(CURSOR_FLAG, CURSOR_FLAG));
             let response = ui.interact(flag, Id::unique(("cursor", short)), Sense::drag());
             response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
@@ -108,10 +105,8 @@ impl Cursors {
         let title = look.say(panel.title);
         let head = ui.horizontal(|ui| {
             let button = Button::new(title, look.tip(panels::FIGURES));
-            let pressed = button
-                .named(look.say(panels::FIGURES))
-                .ui(ui, look)
-                .clicked();
+            let button = button.named(look.say(panels::FIGURES));
+            let pressed = button.ui(ui, look).clicked();
             let apart = format!("B - A = {:.3} s", at[1] - at[0]);
             let label = Label::new(&apart, look.palette.muted).number();
             label.named(look.say(panels::APART)).ui(ui);
@@ -142,19 +137,14 @@ impl Cursors {
                 let name = look.say(words::dof(line.dof));
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
-                    let text = value.map_or_else(
-                        || format::UNKNOWN.into(),
-                        |value| {
-                            // Four digits fill the column of a narrow plot.
-                            let is_long = value.abs() >= 1000.0;
-                            let digits = if is_long {
-                                0
-                            } else {
-                                panel.row.decimals.max(1)
-                            };
-                            format!("{value:.digits$}")
-                        },
-                    );
+                    let text = value.map(|value| {
+                        // Four digits fill the column of a narrow plot.
+                        let is_long = value.abs() >= 1000.0;
+                        let digits = panel.row.decimals.max(1);
+                        let digits = if is_long { 0 } else { digits };
+                        format!("{value:.digits$}")
+                    });
+                    let text = text.unwrap_or_else(|| format::UNKNOWN.into());
                     let named = format!("{name} {title}: {}", look.say(column));
                     cell(ui, &text, Some(&named));
                 }

@@ -42,10 +42,8 @@ impl DrivesPlace<'_> {
         let xs = Rangef::new(whole.left() + theme::PLOT_AXIS, whole.right() - self.end);
         let frame = Rect::from_x_y_ranges(xs, whole.y_range());
         let words = whole.with_max_x(xs.min - 2.0 * theme::STEP);
-        Label::new(name, look.palette.muted)
-            .small()
-            .right()
-            .paint(ui, words);
+        let label = Label::new(name, look.palette.muted).small();
+        label.right().paint(ui, words);
         let mut top = frame.top();
         for dof in self.joints {
             self.row(ui, pane, *dof, frame.with_min_y(top));
@@ -60,10 +58,9 @@ impl DrivesPlace<'_> {
         let told = at.and_then(|at| {
             let (from_s, to_s) = self.span;
             let part = f64::from((at.x - xs.min) / xs.span().max(1.0));
-            let row = self.joints.iter().enumerate().find(|(row, _)| {
-                let rows = height(row + 1) - theme::STEP;
-                at.y < frame.top() + rows
-            });
+            let below = |row: usize| frame.top() + height(row + 1) - theme::STEP;
+            let mut rows = self.joints.iter().enumerate();
+            let row = rows.find(|(row, _)| at.y < below(*row));
             told(pane, *row?.1, from_s + part * (to_s - from_s))
         });
         response
@@ -78,7 +75,7 @@ impl DrivesPlace<'_> {
         let mark = bar.translate(vec2(-theme::STEP - BAR / 2.0, 0.0));
         let mark = mark.with_max_x(mark.left() + BAR);
         ui.painter().rect_filled(mark, 0.0, palette.dof[dof]);
-        let history = &pane.state.hand().measured.history;
+        let history = &pane.hand().measured.history;
         let (from_s, to_s) = self.span;
         let runs = history.status(dof, from_s, to_s).map(|run| {
             let fault = run.faults.and_then(|faults| faults.iter().next());
@@ -86,10 +83,8 @@ impl DrivesPlace<'_> {
             let [from, to] = ends.map(|at_s| self.x(frame, at_s));
             (Rangef::new(from, to), palette.drive(fault, run.status))
         });
-        for (xs, color) in seen(
-            runs.filter(|(_, color)| *color != palette.faint),
-            palette.bad,
-        ) {
+        let known = runs.filter(|(_, color)| *color != palette.faint);
+        for (xs, color) in seen(known, palette.bad) {
             let xs = Rangef::new(xs.min, xs.max.min(frame.right()));
             let stretch = Rect::from_x_y_ranges(xs, bar.y_range());
             ui.painter().rect_filled(stretch, 0.0, color);
@@ -126,7 +121,7 @@ fn seen(
 /// What the drive of a joint said at a time, and since when.
 fn told(pane: &Pane<'_>, dof: Dof, at_s: f64) -> Option<String> {
     let look = pane.look;
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let run = history.status(dof, at_s, at_s).last()?;
     let lasted = Duration::from_secs_f64((run.until_s - run.from_s).max(0.0));
     let since = clock(run.from_s, 0.1);

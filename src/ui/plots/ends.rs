@@ -2,14 +2,12 @@
 //! so that equal curves are told apart, too. A click hides a joint's curves.
 
 use crate::hand::Dof;
-use crate::ui::kit::{Label, Look, format};
+use crate::ui::kit::{self, Label, Look, format};
 use crate::ui::plots::chart::ChartResponse;
 use crate::ui::plots::panels::Panel;
 use crate::ui::text::{panels, words};
 use crate::ui::theme;
-use egui::{
-    Color32, CursorIcon, Rangef, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
-};
+use egui::{Color32, CursorIcon, Rangef, Rect, Response, Role, Stroke, Ui, WidgetInfo, pos2};
 
 /// From here on there is room for names.
 const NAMED_FROM: f32 = 600.0;
@@ -43,83 +41,81 @@ pub(crate) fn width(ui: &Ui) -> f32 {
     VALUES + theme::STEP + name
 }
 
-/// Draws them beside a plot. The joint that the pointer is at, and whether it was pressed.
-pub(crate) fn ends_ui(
-    ui: &Ui,
-    look: Look,
-    (panel, chart): (&Panel, &ChartResponse),
-    ends: &[CurveEnd],
-) -> Option<(Dof, bool)> {
-    if ends.iter().all(|end| end.value.is_none()) {
-        return None;
-    }
-    let frame = *chart.transform.frame();
-    let right = frame.right() + width(ui);
-    let place = |end: &CurveEnd| {
-        let y = end
-            .value
-            .map(|value| chart.transform.position_from_point_y(value));
-        y.unwrap_or(frame.bottom())
-            .clamp(frame.top(), frame.bottom())
-    };
-    let mut ends: Vec<(f32, &CurveEnd)> = ends.iter().map(|end| (place(end), end)).collect();
-    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let wanted: Vec<f32> = ends.iter().map(|(y, _)| *y).collect();
-    let count = f32::from(u8::try_from(ends.len()).unwrap_or(u8::MAX));
-    let pitch = (frame.height() / count).min(theme::TEXT_LINE);
-    let middles = apart(&wanted, pitch, frame.y_range());
-    let mut pointed = None;
-    for ((y, end), middle) in ends.into_iter().zip(middles) {
-        let ys = Rangef::new(middle - pitch / 2.0, middle + pitch / 2.0);
-        let xs = Rangef::new(frame.right() + LEADER, right);
-        let place = Rect::from_x_y_ranges(xs, ys);
-        if end.value.is_some() {
-            let leader = Stroke::new(1.0, end.color.gamma_multiply(0.6));
-            let line = [pos2(frame.right(), y), pos2(xs.min, middle)];
-            ui.painter().line_segment(line, leader);
-        }
-        let response = end_ui(ui, look, (panel, end), place);
-        if response.hovered() {
-            pointed = Some((end.dof, response.clicked()));
-        }
-    }
-    pointed
+/// The plot beside which ends stand.
+pub(crate) struct PlotEnds<'a> {
+    pub(crate) look: Look,
+    pub(crate) panel: &'a Panel,
+    pub(crate) chart: &'a ChartResponse,
 }
 
-/// The value of one curve, and its name where there is room.
-fn end_ui(ui: &Ui, look: Look, (panel, end): (&Panel, &CurveEnd), place: Rect) -> Response {
-    let name = look.say(words::dof(end.dof));
-    let id = ui.scope_id().with((panel.title.en, end.dof.index()));
-    // A finger would hide the wrong one: there the menu does it.
-    let sense = if ui.pixels_per_point() < TOUCHED {
-        Sense::click()
-    } else {
-        Sense::hover()
-    };
-    let response = ui.interact(place, id, sense);
-    let named = look.pair(look.say(panel.title), name);
-    let role = if sense.interactive() {
-        Role::Button
-    } else {
-        Role::Label
-    };
-    response.widget_info(|| WidgetInfo::selected(role, true, true, &named));
-    let digits = panel.row.decimals;
-    let text = end.value.map_or_else(
-        || format::UNKNOWN.to_owned(),
-        |value| format!("{value:.digits$}"),
-    );
-    let (value, rest) = place.split_left_right_at_x(place.left() + VALUE);
-    let label = Label::new(&text, end.color).number().right();
-    label.paint(ui, value);
-    if rest.width() > VALUE {
-        let label = Label::new(name, end.color).small();
-        label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
+impl PlotEnds<'_> {
+    /// Draws the ends. The joint that the pointer is at, and whether it was pressed.
+    pub(crate) fn ui(&self, ui: &Ui, ends: &[CurveEnd]) -> Option<(Dof, bool)> {
+        if ends.iter().all(|end| end.value.is_none()) {
+            return None;
+        }
+        let chart = self.chart;
+        let frame = *chart.transform.frame();
+        let right = frame.right() + width(ui);
+        let place = |end: &CurveEnd| {
+            let y = |value| chart.transform.position_from_point_y(value);
+            let y = end.value.map_or(frame.bottom(), y);
+            y.clamp(frame.top(), frame.bottom())
+        };
+        let mut ends: Vec<(f32, &CurveEnd)> = ends.iter().map(|end| (place(end), end)).collect();
+        ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let wanted: Vec<f32> = ends.iter().map(|(y, _)| *y).collect();
+        let count = f32::from(u8::try_from(ends.len()).unwrap_or(u8::MAX));
+        let pitch = (frame.height() / count).min(theme::TEXT_LINE);
+        let middles = apart(&wanted, pitch, frame.y_range());
+        let mut pointed = None;
+        for ((y, end), middle) in ends.into_iter().zip(middles) {
+            let ys = Rangef::new(middle - pitch / 2.0, middle + pitch / 2.0);
+            let xs = Rangef::new(frame.right() + LEADER, right);
+            let place = Rect::from_x_y_ranges(xs, ys);
+            if end.value.is_some() {
+                let leader = Stroke::new(1.0, end.color.gamma_multiply(0.6));
+                let line = [pos2(frame.right(), y), pos2(xs.min, middle)];
+                ui.painter().line_segment(line, leader);
+            }
+            let response = self.end_ui(ui, end, place);
+            if response.hovered() {
+                pointed = Some((end.dof, response.clicked()));
+            }
+        }
+        pointed
     }
-    let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
-    response
-        .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text(tip)
+
+    /// The value of one curve, and its name where there is room.
+    fn end_ui(&self, ui: &Ui, end: &CurveEnd, place: Rect) -> Response {
+        let (look, panel) = (self.look, self.panel);
+        let name = look.say(words::dof(end.dof));
+        let id = ui.scope_id().with((panel.title.en, end.dof.index()));
+        // A finger would hide the wrong one: there the menu does it.
+        let sense = kit::click_if(ui.pixels_per_point() < TOUCHED);
+        let response = ui.interact(place, id, sense);
+        let named = look.pair(look.say(panel.title), name);
+        let role = if sense.interactive() {
+            Role::Button
+        } else {
+            Role::Label
+        };
+        response.widget_info(|| WidgetInfo::selected(role, true, true, &named));
+        let digits = panel.row.decimals;
+        let text = end.value.map(|value| format!("{value:.digits$}"));
+        let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
+        let (value, rest) = place.split_left_right_at_x(place.left() + VALUE);
+        let label = Label::new(&text, end.color).number().right();
+        label.paint(ui, value);
+        if rest.width() > VALUE {
+            let label = Label::new(name, end.color).small();
+            label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
+        }
+        let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
+        response
+            .on_hover_cursor(CursorIcon::PointingHand)
+            .on_hover_text(tip)
+    }
 }
 
 /// Middles at least a pitch apart, as near to the wanted ones as there is room; both in the same order.

@@ -9,10 +9,10 @@ use crate::ui::plots::PlotView;
 use crate::ui::plots::notes::notes_ui;
 use crate::ui::plots::panels::PANELS;
 use crate::ui::plots::times::length;
-use crate::ui::text::{Text, panels, words};
+use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Color32, Popup, PopupCloseBehavior, Role, Ui, WidgetInfo};
+use egui::{Color32, Popup, Role, Ui, WidgetInfo};
 
 /// Width of the menu.
 const MENU: f32 = 264.0;
@@ -32,10 +32,8 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         }
         if !is_narrow {
             let note = Button::said(look, panels::NOTE);
-            let note = note.named(look.say(panels::NOTE_NAME)).ui(ui, look);
-            if note.clicked() {
-                pane.open(ViewRequest::Note);
-            }
+            let note = note.named(look.say(panels::NOTE_NAME));
+            note.opens(ui, pane, ViewRequest::Note);
         }
         pause_ui(ui, pane, view, is_narrow);
         window_ui(ui, pane, view);
@@ -50,8 +48,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         .named(look.say(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
-    let menu = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    menu.show(|ui| {
+    kit::drawer(&button).show(|ui| {
         ui.set_max_width(MENU);
         ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);
@@ -60,7 +57,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         legend_ui(ui, look, view);
         ui.separator();
         ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
-        if entry_ui(ui, look, (look.say(panels::NOTE_NAME), panels::NOTE_NAME)) {
+        if kit::entry_ui(ui, look, panels::NOTE_NAME) {
             pane.open(ViewRequest::Note);
             Popup::close_all(ui.ctx());
         }
@@ -74,10 +71,6 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         let hint = egui::RichText::new(look.say(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
-}
-
-fn entry_ui(ui: &mut Ui, look: Look, (words, text): (&str, Text)) -> bool {
-    ui.button(words).on_hover_text(look.tip(text)).clicked()
 }
 
 /// A switch for each plot. The last one that is shown stays.
@@ -98,12 +91,13 @@ fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
     let words = look.fill(panels::SAVE_CSV, &[&length(to_s - from_s)]);
-    let save = entry_ui(ui, look, (&words, panels::SAVE_CSV)).then(|| {
-        let history = &pane.state.hand().measured.history;
+    let save = ui.button(words).on_hover_text(look.tip(panels::SAVE_CSV));
+    let save = save.clicked().then(|| {
+        let history = &pane.hand().measured.history;
         let series = view.shown_series(pane);
         Action::Save(Export::Plots(history.table(&series, from_s, to_s)))
     });
-    let picture = entry_ui(ui, look, (look.say(panels::SAVE_PNG), panels::SAVE_PNG));
+    let picture = kit::entry_ui(ui, look, panels::SAVE_PNG);
     let picture = picture.then(|| Action::SavePicture(view.pixels()));
     if let Some(action) = save.or(picture) {
         pane.actions.push(action);
@@ -164,44 +158,52 @@ fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
         ui.spacing_mut().button_padding = egui::vec2(theme::STEP, 2.0);
         ui.spacing_mut().interact_size.y = 20.0;
         for dof in Dof::ALL {
-            let shown = !view.hidden[dof];
             let words = look.say(words::dof(dof));
-            let named = format!("{}: {words}", look.say(panels::HISTORY));
-            let sign = ("■ ", palette.dof[dof]);
-            let response = switch_ui(ui, look, (sign, words, shown));
-            response.widget_info(|| WidgetInfo::selected(Role::Button, true, shown, &named));
-            if response
-                .on_hover_text(look.say(panels::SHOW_CURVE))
-                .clicked()
-            {
-                view.hidden[dof] = shown;
-            }
+            let switch = CurveSwitch {
+                sign: "■ ",
+                color: palette.dof[dof],
+                words,
+                name: &format!("{}: {words}", look.say(panels::HISTORY)),
+                is_on: !view.hidden[dof],
+            };
+            view.hidden[dof] ^= switch.ui(ui, look, look.say(panels::SHOW_CURVE));
         }
-        let (words, on) = (look.say(panels::THRESHOLDS), view.thresholds);
-        let response = switch_ui(ui, look, (("- - ", palette.text), words, on));
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, words));
-        if response
-            .on_hover_text(look.tip(panels::THRESHOLDS))
-            .clicked()
-        {
-            view.thresholds = !on;
-        }
+        let words = look.say(panels::THRESHOLDS);
+        let switch = CurveSwitch {
+            sign: "- - ",
+            color: palette.text,
+            words,
+            name: words,
+            is_on: view.thresholds,
+        };
+        view.thresholds ^= switch.ui(ui, look, look.tip(panels::THRESHOLDS));
     });
 }
 
-/// A sign and words, pale while off.
-fn switch_ui(
-    ui: &mut Ui,
-    look: Look,
-    (sign, words, on): ((&str, Color32), &str, bool),
-) -> egui::Response {
-    let (line, text) = if on {
-        (sign.1, look.palette.text)
-    } else {
-        (look.palette.edge, look.palette.faint)
-    };
-    let mut job = LayoutJob::default();
-    job.append(sign.0, 0.0, TextFormat::simple(theme::small(), line));
-    job.append(words, 0.0, TextFormat::simple(theme::small(), text));
-    ui.add(egui::Button::new(job).frame_when_inactive(false))
+/// A switch for curves: a sign and words, pale while off.
+struct CurveSwitch<'a> {
+    sign: &'a str,
+    color: Color32,
+    words: &'a str,
+    /// What a screen reader says.
+    name: &'a str,
+    is_on: bool,
+}
+
+impl CurveSwitch<'_> {
+    /// Draws it; true if it was pressed.
+    fn ui(&self, ui: &mut Ui, look: Look, tip: &str) -> bool {
+        let (line, text) = if self.is_on {
+            (self.color, look.palette.text)
+        } else {
+            (look.palette.edge, look.palette.faint)
+        };
+        let mut job = LayoutJob::default();
+        job.append(self.sign, 0.0, TextFormat::simple(theme::small(), line));
+        job.append(self.words, 0.0, TextFormat::simple(theme::small(), text));
+        let response = ui.add(egui::Button::new(job).frame_when_inactive(false));
+        let info = || WidgetInfo::selected(Role::Button, true, self.is_on, self.name);
+        response.widget_info(info);
+        response.on_hover_text(tip).clicked()
+    }
 }

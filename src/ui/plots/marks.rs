@@ -3,6 +3,7 @@
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
+use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{notices, panels};
 use crate::ui::theme;
@@ -12,8 +13,8 @@ use egui::{Color32, Rect, Ui, pos2, vec2};
 const NOTE_SHOWN: usize = 24;
 
 /// The lines.
-pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): (f64, f64)) -> Vec<(f64, Color32)> {
-    let marks = pane.state.hand().measured.history.marks(from_s, to_s);
+pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): TimeSpan) -> Vec<(f64, Color32)> {
+    let marks = pane.hand().measured.history.marks(from_s, to_s);
     let moment = |mark: &Mark| (mark.at.secs(), told(pane.look, &mark.kind).1);
     marks.map(moment).collect()
 }
@@ -30,17 +31,15 @@ struct MarkWords {
 pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let rect = *shown.transform.frame();
     let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
-    let marks = pane.state.hand().measured.history.marks(from_s, to_s);
+    let marks = pane.hand().measured.history.marks(from_s, to_s);
     let words = marks.map(|mark| {
         let x = shown.transform.position_from_point_x(mark.at.secs());
         let (text, color) = told(pane.look, &mark.kind);
-        let text = text.chars().take(NOTE_SHOWN).collect();
-        let more = 0;
         MarkWords {
             x,
-            text,
+            text: text.chars().take(NOTE_SHOWN).collect(),
             color,
-            more,
+            more: 0,
         }
     });
     let width = |text: &str| kit::text_width(ui, text, theme::small());
@@ -118,12 +117,8 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     // A line is easily missed by some pixels.
     let per_point = shown.transform.dvalue_dpos()[0];
     let by_s = f64::from(theme::STEP) * per_point;
-    let marks = pane
-        .state
-        .hand()
-        .measured
-        .history
-        .marks(at_s - by_s, at_s + by_s);
+    let history = &pane.hand().measured.history;
+    let marks = history.marks(at_s - by_s, at_s + by_s);
     let lines = marks.map(|mark| {
         let at = clock(mark.at.secs(), per_point);
         format!("{at}  {}", told(pane.look, &mark.kind).0)

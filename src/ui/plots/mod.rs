@@ -22,11 +22,10 @@ use crate::ui::kit::{self, Label, Look, Pane, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::cursors::Cursors;
 use crate::ui::plots::drives::DrivesPlace;
-use crate::ui::plots::ends::CurveEnd;
+use crate::ui::plots::ends::{CurveEnd, PlotEnds};
 use crate::ui::plots::panels::{PANELS, Panel, PanelLine};
 use crate::ui::plots::scales::joined;
 use crate::ui::plots::time_window::TimeSpan;
-use crate::ui::plots::times::Times;
 use crate::ui::text::panels as text;
 use crate::ui::theme;
 use egui::{Align2, Role, Stroke, Ui, WidgetInfo, pos2};
@@ -91,26 +90,23 @@ impl PlotView {
 
     /// Time went on; nothing that was chosen for one hand is kept for another.
     fn advance(&mut self, pane: &Pane<'_>) {
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         if self.hand != hand.connection.endpoint && hand.connection.endpoint.is_some() {
             self.hand.clone_from(&hand.connection.endpoint);
             self.view.time.follow();
             self.cursors = Cursors::default();
         }
-        let now = pane.state.now.secs();
-        let first = hand.measured.history.first_secs().unwrap_or(now);
         let window = pane.state.settings.plot_window.seconds();
-        self.view.time.advance((first.min(now), now), window);
+        let now_s = pane.state.now.secs();
+        self.view.advance(&hand.measured.history, now_s, window);
     }
 
     fn body_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let plots = &pane.state.settings.plots;
         let shown = PANELS.iter().filter(|panel| plots.shows(panel.kind));
         let shown: Vec<&Panel> = shown.collect();
-        let at = shown
-            .iter()
-            .position(|panel| Some(panel.kind) == self.chosen);
-        let at = at.unwrap_or_default();
+        let is_chosen = |panel: &&Panel| Some(panel.kind) == self.chosen;
+        let at = shown.iter().position(is_chosen).unwrap_or_default();
         let Some(chosen) = shown.get(at).copied() else {
             return;
         };
@@ -151,7 +147,7 @@ impl PlotView {
         let (tall, low): (Vec<&Panel>, Vec<&Panel>) = shown
             .into_iter()
             .partition(|panel| tall.contains(&panel.kind));
-        self.tall_ui(ui, pane, &tall, (height, end));
+        self.tall_ui(ui, pane, &tall, height);
         for panel in low {
             self.sparkline_ui(ui, pane, panel, end);
         }
@@ -168,7 +164,7 @@ impl PlotView {
 
     /// Which of so many shown plots are tall, and how high: two if there is room for them, with this much taken below.
     fn tall(ui: &Ui, pane: &Pane<'_>, shown: usize, below: f32) -> (Vec<PlotKind>, f32) {
-        let height = |tall: usize| tall_height(ui, (tall, shown - tall), below);
+        let height = |tall: usize| tall_height(ui, tall, shown - tall, below);
         let count = match shown {
             0 | 1 => shown,
             _ if height(2) >= TALL_LEAST => 2,
@@ -180,23 +176,12 @@ impl PlotView {
     }
 
     /// The tall plots, over one axis of time.
-    fn tall_ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        shown: &[&Panel],
-        (height, end): (f32, f32),
-    ) {
-        let mut pointed = None;
+    fn tall_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &[&Panel], height: f32) {
+        let (end, mut pointed) = (ends::width(ui), None);
         for (n, panel) in shown.iter().enumerate() {
             let is_lowest = n + 1 == shown.len();
-            let axis = if is_lowest {
-                theme::PLOT_TIME_AXIS
-            } else {
-                0.0
-            };
             let place = PlotPlace {
-                height: height + axis,
+                height: chart::height_over_axis(height, is_lowest),
                 end,
                 is_lowest,
                 is_sparkline: false,
@@ -208,8 +193,12 @@ impl PlotView {
             if is_lowest {
                 self.cursors.flags_ui(ui, pane.look, &chart);
             }
-            let ends = self.ends(pane, panel);
-            pointed = pointed.or(ends::ends_ui(ui, pane.look, (panel, &chart), &ends));
+            let ends = PlotEnds {
+                look: pane.look,
+                panel,
+                chart: &chart,
+            };
+            pointed = pointed.or(ends.ui(ui, &self.ends(pane, panel)));
             if chart.response.clicked() {
                 self.chosen = Some(panel.kind);
             }
@@ -225,7 +214,7 @@ impl PlotView {
 
     /// The newest values of a plot: those at its right edge.
     fn ends(&self, pane: &Pane<'_>, panel: &Panel) -> Vec<CurveEnd> {
-        let history = &pane.state.hand().measured.history;
+        let history = &pane.hand().measured.history;
         let (_, to_s) = self.view.time.span();
         let end = |line: PanelLine| {
             let reading = history.reading(line.series, to_s);
@@ -290,14 +279,15 @@ impl PlotView {
         place: &PlotPlace,
     ) -> ChartResponse {
         let look = pane.look;
-        let hand = pane.state.hand();
+        let hand = pane.hand();
+        let own = |history, line: &PanelLine| {
+            let points = Points::Measured(history, line.series);
+            ChartCurve::new(points, self.stroke(look, line))
+        };
         let curve = |line: &PanelLine| ChartCurve {
             steps: line.wished,
             told: (!line.wished).then_some(panel.row.decimals),
-            ..ChartCurve::new(
-                Points::Measured(&hand.measured.history, line.series),
-                self.stroke(look, line),
-            )
+            ..own(&hand.measured.history, line)
         };
         let lines = panel.lines(&self.hidden);
         // The second recording stands behind the first.
@@ -307,10 +297,7 @@ impl PlotView {
                 zero: [beside.offset_s(), 0.0],
                 style: dash::nth(1),
                 beside: true,
-                ..ChartCurve::new(
-                    Points::Measured(&beside.history, line.series),
-                    self.stroke(look, line),
-                )
+                ..own(&beside.history, line)
             })
         });
         let mut levels = Vec::new();
@@ -329,11 +316,7 @@ impl PlotView {
             moments: marks::moments(pane, span),
             cursors: self.cursors.0,
             least: panel.row.least_scale,
-            times: if self.view.time.is_held() {
-                Times::Clock
-            } else {
-                Times::From(span.1, look.say(text::NOW))
-            },
+            times: self.view.times(look),
             is_lowest: place.is_lowest,
             end: place.end,
             is_sparkline: place.is_sparkline,
@@ -375,7 +358,7 @@ impl PlotView {
 }
 
 /// Height of each tall plot beside so many sparklines, and what is below.
-fn tall_height(ui: &Ui, (tall, low): (usize, usize), below: f32) -> f32 {
+fn tall_height(ui: &Ui, tall: usize, low: usize, below: f32) -> f32 {
     let count = |count: usize| f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     let room = ui.available_height() - theme::PLOT_TIME_AXIS - below;
     ((room - count(low) * (SPARKLINE + theme::STEP)) / count(tall.max(1))).floor()

@@ -13,7 +13,7 @@ const SHOWN: usize = 28;
 
 /// Draws the list, the newest first, if there are any. The moment that is to be shown, seconds.
 pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let all = history.marks(f64::NEG_INFINITY, f64::INFINITY);
     let mut notes: Vec<(&Mark, &str)> = all
         .filter_map(|mark| match &mark.kind {

@@ -49,10 +49,8 @@ pub(crate) fn step((low, high): (f64, f64), base: f64) -> f64 {
 pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32) -> (f64, f64) {
     let (low, high) = extent.unwrap_or(least);
     let (low, high) = (low.min(least.0), high.max(least.1));
-    let step = step(
-        (low, high),
-        (high - low) / f64::from(height.max(1.0)) * BASE_PX,
-    );
+    let base = (high - low) / f64::from(height.max(1.0)) * BASE_PX;
+    let step = step((low, high), base);
     // Ends at half a step, so that little of the plot stays empty.
     let half = step / 2.0;
     // A value a hair below zero must not take a quarter of the plot.
@@ -115,6 +113,23 @@ struct SettledScale {
     roomy_since: Option<f64>,
 }
 
+/// The numbers beside a plot.
+pub(crate) struct ScaleAxis<'a> {
+    title: Text,
+    ends: (f64, f64),
+    response: &'a Response,
+}
+
+impl<'a> ScaleAxis<'a> {
+    pub(crate) const fn new(title: Text, ends: (f64, f64), response: &'a Response) -> Self {
+        Self {
+            title,
+            ends,
+            response,
+        }
+    }
+}
+
 /// The scales that the user chose; others follow their values.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
@@ -166,13 +181,8 @@ impl Scales {
     }
 
     /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
-    pub(crate) fn axis_ui(
-        &mut self,
-        ui: &Ui,
-        axis: &Response,
-        look: Look,
-        (title, (low, high)): (Text, (f64, f64)),
-    ) {
+    pub(crate) fn axis_ui(&mut self, ui: &Ui, look: Look, axis: &ScaleAxis<'_>) {
+        let (title, (low, high), axis) = (axis.title, axis.ends, axis.response);
         let per_point = (high - low) / f64::from(axis.rect.height().max(1.0));
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
         if axis.double_clicked() {

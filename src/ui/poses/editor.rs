@@ -6,16 +6,18 @@ use crate::hand::grip::GripThresholds;
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{EntryId, LibraryPose, NAME_CHARS_MAX};
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::sequence_view::FIRST_GAP_MM;
 use crate::ui::poses::tiles::{shares, start_ui};
 use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
-use egui::{Color32, Layout, ScrollArea, Ui, vec2};
+use egui::{ScrollArea, Ui, vec2};
 
 /// Characters of all tags.
 const TAGS_MAX: usize = 120;
+/// Width of the words before the fields.
+const CAPTION: f32 = 88.0;
 /// Height of all fields below the picture.
 const FIELDS: f32 = 12.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
@@ -23,7 +25,7 @@ const FIELDS: f32 = 12.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL
 pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let height = (ui.available_height() - FIELDS).clamp(48.0, 320.0);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), height));
-    panel::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
+    tile::pose_ui(ui, pane.look, picture, &shares(&pose.angles));
     ScrollArea::vertical().id_salt(pose.id).show(ui, |ui| {
         words_ui(ui, pane, pose);
         ui.horizontal(|ui| gap_ui(ui, pane, pose));
@@ -41,16 +43,6 @@ fn change(pane: &mut Pane<'_>, pose: &LibraryPose, edit: PoseEdit) {
     pane.actions.push(Action::Library(edit));
 }
 
-/// A word before its field, as wide as all such words.
-fn caption_ui(ui: &mut Ui, text: &str, color: Color32) {
-    let size = vec2(88.0, theme::CONTROL);
-    let left = Layout::left_to_right(egui::Align::Center);
-    ui.allocate_ui_with_layout(size, left, |ui| {
-        ui.set_min_width(size.x);
-        Label::new(text, color).ui(ui);
-    });
-}
-
 fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let tags = pose.tags.join(", ");
@@ -60,7 +52,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
         (tune::TAGS, TAGS_MAX, &tags, PoseEdit::Tags),
     ] {
         ui.horizontal(|ui| {
-            caption_ui(ui, look.say(caption), look.palette.muted);
+            Label::muted(look, caption).cell_ui(ui, CAPTION);
             let field = TextField::new(look.say(caption), max).hint(look.tip(caption));
             if let Some(text) = field.ui(ui, pane, value) {
                 change(pane, pose, edit(text));
@@ -115,8 +107,7 @@ fn thresholds_words(thresholds: &GripThresholds) -> String {
 
 fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     let look = pane.look;
-    let fixed = pose.gap.map(|_| look.say(poses::ANGLE_OF_GAP));
-    if let Some(angle) = angle_ui(ui, pane, (dof, pose.angles[dof]), fixed) {
+    if let Some(angle) = angle_ui(ui, pane, pose, dof) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
     }
     let text = look.say(poses::LEAVE);
@@ -131,20 +122,14 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
 }
 
 /// One joint's angle as a number behind its name; the number that was confirmed.
-fn angle_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    (dof, angle): (Dof, Angle),
-    fixed: Option<&str>,
-) -> Option<Angle> {
+fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));
-    caption_ui(ui, name, look.palette.dof[dof]);
+    Label::new(name, look.palette.dof[dof]).cell_ui(ui, CAPTION);
     let label = format!("{name} pose {}", look.say(poses::ANGLE));
-    let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0);
-    let typed = field
-        .disabled(fixed)
-        .whole_ui(ui, pane, Some(angle.get()))?;
+    let fixed = pose.gap.map(|_| look.say(poses::ANGLE_OF_GAP));
+    let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0).disabled(fixed);
+    let typed = field.whole_ui(ui, pane, Some(pose.angles[dof].get()))?;
     Angle::new(typed).ok()
 }
 
@@ -169,7 +154,7 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
 
 fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let unknown = pane.state.hand().pose_now(pane.state.now).is_none();
+    let unknown = pane.hand().pose_now(pane.state.now).is_none();
     let edit = |edit| Action::Library(LibraryEdit::Pose(pose.id, edit));
     let at = pane.state.poses.library.place(pose.id).unwrap_or_default();
     let [earlier, later] = [at.saturating_sub(1), at + 1].map(|to| edit(PoseEdit::Move(to)));

@@ -26,11 +26,11 @@ impl GestureView {
         let look = pane.look;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let hint = [panels::GESTURES_FIXED, panels::GESTURES_USER].map(|text| look.say(text));
+            let hint = hint.join(" · ");
             ui.horizontal(|ui| {
                 self.naming_ui(ui, pane);
-                Label::new(&hint.join(" · "), look.palette.muted)
-                    .small()
-                    .ui(ui);
+                let hint = Label::new(&hint, look.palette.muted);
+                hint.small().ui(ui);
             });
             if self.naming {
                 self.names_ui(ui, pane)
@@ -58,11 +58,9 @@ impl GestureView {
             (panels::GESTURE_NAME_EDIT, Weight::Normal)
         };
         let tip = look.tip(panels::GESTURE_NAME_EDIT);
-        let mut button = Button::new(look.say(text), tip).weight(weight);
-        button.selected = Some(self.naming);
-        if button.ui(ui, look).clicked() {
-            self.naming = !self.naming;
-        }
+        let button = Button::new(look.say(text), tip).weight(weight);
+        let button = button.selected(self.naming);
+        button.flips(ui, look, &mut self.naming);
     }
 
     fn names_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -7,31 +7,19 @@ use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
 use crate::ui::hand::{aim, figures};
-use crate::ui::kit::{Button, Label, Look, NumberField, Pane};
-use crate::ui::text::errors::no_gap;
-use crate::ui::text::{Text, main, poses};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane};
+use crate::ui::text::{main, poses};
 use crate::ui::theme;
-use egui::{Id, Popup, PopupCloseBehavior, Slider, Ui, vec2};
+use egui::{Id, Slider, Ui, vec2};
 
 /// Width of the drawer.
 const DRAWER: f32 = 420.0;
-
-/// What a kind is called.
-pub(crate) const fn kind_words(kind: GripKind) -> Text {
-    match kind {
-        GripKind::Pinch => poses::KIND_PINCH,
-        GripKind::ThreeFingers => poses::KIND_THREE,
-        GripKind::AllFingers => poses::KIND_ALL,
-        GripKind::Around => poses::KIND_AROUND,
-    }
-}
 
 /// The button in the strip of poses, with its drawer.
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
-    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    drawer.width(DRAWER).show(|ui| {
+    kit::drawer(&button).width(DRAWER).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         kinds_ui(ui, pane);
         gap_ui(ui, pane);
@@ -45,8 +33,8 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.horizontal(|ui| {
         for kind in GripKind::ALL {
             let offered = kind.offered();
-            let button = Button::said(look, kind_words(kind)).choice(offered.is_ok());
-            let no_gap = offered.err().map(|why| look.say(no_gap(why)));
+            let button = Button::said(look, poses::kind(kind)).choice(offered.is_ok());
+            let no_gap = offered.err().map(|why| look.say(poses::no_gap(why)));
             button.disabled(no_gap).ui(ui, look);
         }
     });
@@ -54,7 +42,7 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 /// Why no gap can be sent now, though the hand is armed.
 fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
     let closed = (!grip::is_open_for_pinch(hand)).then(|| look.say(poses::GAP_CLOSED));
     pane.unready().or(locked).or(closed)
@@ -62,7 +50,7 @@ fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
 
 /// Where the hand was sent, or is; the widest if it does not pinch.
 fn gap_now(pane: &Pane<'_>) -> Gap {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let targets = hand.controls.joints.map(|joint| joint.target).all();
     let sent = targets.map(|angles| angles.map(|angle: Angle| f32::from(angle.get())));
     let gap = [sent, grip::counts(hand)].into_iter().flatten();
@@ -73,12 +61,10 @@ fn gap_now(pane: &Pane<'_>) -> Gap {
 /// The gap: sent while the hand is armed, else shown on the drawn hand.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let is_armed = pane.state.hand().connection.is_armed();
+    let is_armed = pane.hand().connection.is_armed();
     let refused = refusal(pane);
-    let id = Id::unique(("gap in the drawer", pane.state.hand().label.slot));
-    let wish = ui
-        .data(|data| data.get_temp::<f32>(id))
-        .filter(|_| !is_armed);
+    let id = Id::unique(("gap in the drawer", pane.hand().label.slot));
+    let wish: Option<f32> = ui.data(|data| data.get_temp(id)).filter(|_| !is_armed);
     let mut mm = wish.unwrap_or_else(|| gap_now(pane).mm().round());
     ui.spacing_mut().slider_width = DRAWER / 2.0;
     let range = Gap::MIN.mm()..=Gap::MAX.mm();
@@ -118,7 +104,7 @@ fn pose(look: Look, gap: Gap) -> LibraryPose {
 
 /// Before a gap can be sent: that the hand is not armed, or the button that opens it.
 fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     if !is_armed {
         Label::note(look, poses::GAP_WISH).wrap().ui(ui);
     } else if !grip::is_open_for_pinch(hand) {
@@ -142,21 +128,16 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let range = f64::from(from)..=f64::from(to);
         let field = NumberField::new(look.say(poses::BLOCK), look.tip(poses::BLOCK), range);
         let not_held = held.is_none().then(|| look.say(poses::BLOCK_NOT_HELD));
-        let typed = field
-            .decimals(1)
-            .needs_enter()
-            .disabled(not_held)
-            .ui(ui, pane, None);
-        if let Some(size_mm) = typed {
+        let field = field.decimals(1).needs_enter().disabled(not_held);
+        if let Some(size_mm) = field.ui(ui, pane, None) {
             #[expect(clippy::cast_possible_truncation, reason = "a size of at most 120 mm")]
             pane.actions.push(Action::MeasureBlock(size_mm as f32));
         }
     });
-    let endpoint = pane.state.hand().connection.endpoint.as_ref();
+    let endpoint = pane.hand().connection.endpoint.as_ref();
     let blocks = pane.state.settings.size_blocks(endpoint);
     let sizes = blocks.blocks().iter();
     let sizes: Vec<String> = sizes.map(|own| format!("{} mm", own.size_mm)).collect();
-    let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
     let known = if blocks.is_empty() {
         look.say(poses::BLOCKS_NONE).to_owned()
     } else {

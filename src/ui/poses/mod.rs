@@ -8,18 +8,17 @@ pub(crate) mod shipped;
 pub(crate) mod tiles;
 
 use crate::app::action::Action;
-use crate::hand::PerDof;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, PoseId};
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Label, Pane, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Pane, Pick, Weight, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, for_all_ui, tile_ui};
 use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
-use egui::{ScrollArea, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
 /// What the view shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,8 +59,7 @@ impl PoseView {
         if newest != self.shown {
             (self.shown, self.chosen) = (newest, newest);
         }
-        kit::card_ui(ui, pane.look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, pane.look, |ui| {
             ui.horizontal(|ui| self.head_ui(ui, pane));
             if self.section != PoseSection::InHand {
                 for_all_ui(ui, pane);
@@ -79,8 +77,8 @@ impl PoseView {
     /// The sections, and what is done with all poses.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let sections = (&mut self.section, poses::SECTION_TIP);
-        kit::pick_ui(ui, look, sections, PoseSection::ALL);
+        let sections = Pick::new(look, poses::SECTION_TIP);
+        sections.ui(ui, &mut self.section, PoseSection::ALL);
         if matches!(self.section, PoseSection::Mine | PoseSection::Sequences) {
             kit::right_ui(ui, |ui| tools_ui(ui, pane));
         }
@@ -97,7 +95,7 @@ impl PoseView {
             capture_ui(ui, pane, capture.weight(Weight::Strong));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
-                kit::edit_ui(ui, look.both(poses::FIND), &mut self.find);
+                kit::edit_said_ui(ui, look, poses::FIND, &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
@@ -129,8 +127,11 @@ impl PoseView {
                 ui.spacing_mut().item_spacing = vec2(gap, theme::GAP);
                 for (index, (_, pose)) in shown.iter().enumerate() {
                     let (id, place) = ui.allocate_space(vec2(width, 158.0));
-                    let moved = self.order.place(ui, pane.look, place, (index, id));
-                    if tile_ui(ui, place, pane, (pose, self.chosen == Some(pose.id))) {
+                    let moved = self.order.place(ui, pane.look, index, (id, place));
+                    let tile = UiBuilder::new().id_salt(pose.id).max_rect(place);
+                    let tile = tile.layout(Layout::top_down_justified(Align::Min));
+                    let is_chosen = self.chosen == Some(pose.id);
+                    if tile_ui(&mut ui.new_child(tile), pane, pose, is_chosen) {
                         self.chosen = Some(pose.id);
                     }
                     let Some((from, to)) = moved else { continue };
@@ -168,8 +169,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let words = notices::notice(pane.look, refused);
-    let label = Label::new(&words, pane.look.palette.warn);
-    label.small().wrap().ui(ui);
+    kit::say_ui(ui, &words, pane.look.palette.warn);
     if let Some(path) = path_ui(ui, pane.look, "poses") {
         pane.actions.push(Action::ImportPoses(Some(path)));
     }
@@ -178,12 +178,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.2);
-        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
-        let open = PerDof::splat(Some(1.0));
-        panel::pose_ui(ui, look, picture, &open);
-        let title = Label::said(look, poses::EMPTY_TITLE);
-        title.font(theme::title()).ui(ui);
+        tile::empty_ui(ui, look, 1.0, poses::EMPTY_TITLE);
         Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let tip = look.tip(poses::CAPTURE);

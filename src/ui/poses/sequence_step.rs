@@ -1,13 +1,13 @@
 //! One step of a sequence as a row: its pose, its times and its place. Every change is an action.
 
 use crate::app::action::Action;
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, GripKind};
 use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{
     EntryId, Millis, Retries, Sequence, SequenceStep, StepGoal, UntilHolding,
 };
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
 use crate::ui::text::{Text, main, poses};
@@ -33,18 +33,16 @@ pub(crate) fn step_now(pane: &Pane<'_>, sequence: &Sequence) -> Option<usize> {
     if let Some(preview) = preview.filter(|own| own.sequence == sequence.id) {
         return Some(preview.at(pane.state.now).step);
     }
-    let run = pane.state.hand().sequence.as_ref();
+    let run = pane.hand().sequence.as_ref();
     let run = run.filter(|run| run.entry == EntryId::Sequence(sequence.id))?;
     run.is_running().then_some(run.view.at)
 }
 
 /// Draws the row of one step.
-pub(crate) fn step_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
-    sequence: &Sequence,
-    (at, step): (usize, &SequenceStep),
-) {
+pub(crate) fn step_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
+    let Some(step) = sequence.steps.get(at) else {
+        return;
+    };
     let look = pane.look;
     let place = ui.max_rect();
     let fill = if step_now(pane, sequence) == Some(at) {
@@ -70,7 +68,7 @@ pub(crate) fn step_ui(
     until_ui(&mut top, look, at, &mut new);
     numbers_ui(&mut bottom, pane, at, &mut new);
     if let Some((name, angles)) = shown(pane, step.goal) {
-        panel::sign_ui(ui, look, picture, &shares(&angles));
+        tile::sign_ui(ui, look, picture, &shares(&angles));
         kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &name));
     }
     if new != *step {
@@ -86,7 +84,7 @@ fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
             Some((pose.name.clone(), pose.angles))
         }
         StepGoal::Gap { gap, .. } => {
-            let name = pane.look.say(poses::KIND_PINCH);
+            let name = pane.look.say(poses::kind(GripKind::Pinch));
             Some((format!("{name} {} mm", gap.mm()), gap.angles()))
         }
     }
@@ -178,9 +176,7 @@ impl StepNumber {
             ui.set_min_width(NUMBER.x);
             ui.spacing_mut().item_spacing.y = 0.0;
             ui.spacing_mut().interact_size.y = 20.0;
-            Label::new(look.say(self.caption), look.palette.muted)
-                .small()
-                .ui(ui);
+            Label::note(look, self.caption).ui(ui);
             field.ui(ui, pane, Some(self.now))
         });
         typed.inner
@@ -200,32 +196,31 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
     if let StepGoal::Gap { gap, force } = &mut step.goal {
         gap_ui(ui, pane, at, gap);
         let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
-        let typed = number.whole_ui(ui, pane);
-        *force = typed
-            .and_then(|typed| Force::new(typed).ok())
-            .unwrap_or(*force);
+        keep(force, number.whole_ui(ui, pane).map(Force::new));
     }
     let number = StepNumber {
         caption: main::NAME_SPEED,
         ..StepNumber::whole(at, poses::SPEED, step.speed.get(), Speed::MAX.get())
     };
-    let speed = number.whole_ui(ui, pane);
-    let speed = speed.and_then(|typed| Speed::new(typed).ok());
-    step.speed = speed.unwrap_or(step.speed);
+    keep(&mut step.speed, number.whole_ui(ui, pane).map(Speed::new));
     let mut millis = |caption: Text, time: &mut Millis| {
         let number = StepNumber::whole(at, caption, time.get(), Millis::MAX);
-        let typed = number.whole_ui(ui, pane);
-        let typed = typed.and_then(|typed| Millis::try_from(typed).ok());
-        *time = typed.unwrap_or(*time);
+        keep(time, number.whole_ui(ui, pane).map(Millis::try_from));
     };
     millis(poses::DWELL, &mut step.dwell);
     millis(poses::LIMIT, &mut step.limit);
     if let Some(until) = &mut step.until {
         millis(poses::WITHIN, &mut until.within);
         let number = StepNumber::whole(at, poses::RETRIES, until.retries.get(), Retries::MAX);
-        let typed = number.whole_ui(ui, pane);
-        let typed = typed.and_then(|typed| Retries::try_from(typed).ok());
-        until.retries = typed.unwrap_or(until.retries);
+        let typed = number.whole_ui(ui, pane).map(Retries::try_from);
+        keep(&mut until.retries, typed);
+    }
+}
+
+/// Takes what was typed, if it can be taken.
+fn keep<T, E>(own: &mut T, typed: Option<Result<T, E>>) {
+    if let Some(Ok(typed)) = typed {
+        *own = typed;
     }
 }
 
@@ -237,8 +232,6 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, gap: &mut Gap) {
         ..StepNumber::whole(at, poses::GAP, gap.mm(), Gap::MAX.mm())
     };
     #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
-    let typed = number
-        .ui(ui, pane)
-        .and_then(|typed| Gap::new(typed as f32).ok());
-    *gap = typed.unwrap_or(*gap);
+    let typed = number.ui(ui, pane).map(|typed| Gap::new(typed as f32));
+    keep(gap, typed);
 }

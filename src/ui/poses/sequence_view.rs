@@ -7,8 +7,8 @@ use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
-use crate::ui::hand::panel;
-use crate::ui::kit::{self, Button, Label, Pane, TextField, Weight, reorder};
+use crate::ui::hand::tile;
+use crate::ui::kit::{self, Button, Label, Pane, TextField, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_ui};
 use crate::ui::text::{panels, poses};
 use crate::ui::theme;
@@ -96,12 +96,12 @@ impl SequenceView {
             .max_height(most)
             .min_scrolled_height(0.0);
         area.show(ui, |ui| {
-            for (at, step) in sequence.steps.iter().enumerate() {
+            for at in 0..sequence.steps.len() {
                 let width = ui.available_width() - theme::GAP;
                 let (id, place) = ui.allocate_space(vec2(width, ROW));
-                let moved = self.order.place(ui, pane.look, place, (at, id));
+                let moved = self.order.place(ui, pane.look, at, (id, place));
                 let builder = UiBuilder::new().max_rect(place).id_salt((sequence.id, at));
-                step_ui(&mut ui.new_child(builder), pane, sequence, (at, step));
+                step_ui(&mut ui.new_child(builder), pane, sequence, at);
                 if let Some((from, to)) = moved {
                     change(pane, sequence, SequenceEdit::Move(from, to));
                 }
@@ -113,11 +113,9 @@ impl SequenceView {
 
     fn add_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
         let look = pane.look;
-        let all: Vec<_> = pane.state.poses.library.poses.iter().collect();
-        let all: Vec<_> = all
-            .iter()
-            .map(|pose| (Some(pose.id), pose.name.as_str()))
-            .collect();
+        let all = pane.state.poses.library.poses.iter();
+        let all = all.map(|pose| (Some(pose.id), pose.name.as_str()));
+        let all: Vec<(Option<PoseId>, &str)> = all.collect();
         if !all.iter().any(|(pose, _)| *pose == self.adding) {
             self.adding = all.first().and_then(|(pose, _)| *pose);
         }
@@ -129,11 +127,8 @@ impl SequenceView {
             change(pane, sequence, SequenceEdit::Add(pose));
         }
         if Button::said(look, poses::ADD_GRIP).ui(ui, look).clicked() {
-            change(
-                pane,
-                sequence,
-                SequenceEdit::AddGap(Gap::nearest(FIRST_GAP_MM)),
-            );
+            let gap = Gap::nearest(FIRST_GAP_MM);
+            change(pane, sequence, SequenceEdit::AddGap(gap));
         }
     }
 }
@@ -142,8 +137,7 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
         ui.add_space(ui.available_height() * 0.3);
-        let title = Label::said(look, poses::SEQUENCE_EMPTY);
-        title.font(theme::title()).ui(ui);
+        Label::said(look, poses::SEQUENCE_EMPTY).title().ui(ui);
         Label::muted(look, poses::SEQUENCE_EMPTY_BODY).wrap().ui(ui);
         if pane.state.poses.library.poses.is_empty() {
             Label::new(look.say(poses::NEEDS_POSES), palette.warn).ui(ui);
@@ -189,7 +183,7 @@ fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
     ui.painter()
         .rect_filled(rect, theme::ROUND, look.palette.sunken);
-    panel::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
+    tile::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
 }
 
 fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, egui::Color32) {
@@ -198,7 +192,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     if let Some(step) = dry {
         return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
-    let run = pane.state.hand().sequence.as_ref();
+    let run = pane.hand().sequence.as_ref();
     let Some(run) = run.filter(|run| run.entry == EntryId::Sequence(sequence.id)) else {
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
@@ -233,16 +227,14 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
 fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let id = sequence.id;
-    let own = pane.state.hand().sequence.as_ref();
+    let own = pane.hand().sequence.as_ref();
     let own = own.filter(|run| run.entry == EntryId::Sequence(id));
     let running = own.is_some_and(|run| run.is_running());
     let paused = own.is_some_and(|run| run.is_paused());
     let preview = pane.state.poses.preview.as_ref();
     let dry = preview.is_some_and(|preview| preview.sequence == id);
-    let empty = sequence
-        .steps
-        .is_empty()
-        .then(|| look.say(poses::STEPS_EMPTY));
+    let empty = sequence.steps.is_empty();
+    let empty = empty.then(|| look.say(poses::STEPS_EMPTY));
     let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = if paused {
@@ -267,12 +259,8 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
         (poses::END, idle, Action::Play(Play::End)),
     ];
     for (ui, (text, disabled, action)) in columns.iter_mut().zip(all) {
-        let weight = if text == poses::START {
-            Weight::Strong
-        } else {
-            Weight::Normal
-        };
-        let button = Button::said(look, text).weight(weight).large();
-        button.disabled(disabled).on_click(ui, pane, action);
+        let button = Button::said(look, text).strong_if(text == poses::START);
+        let button = button.large().disabled(disabled);
+        button.on_click(ui, pane, action);
     }
 }

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::EntryId;
 use crate::poses::starter::starter;
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{Button, Label, Pane, Weight};
 use crate::ui::poses::tiles::{pictured, shares, start_ui};
 use crate::ui::text::poses;
@@ -47,7 +47,7 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     ui.spacing_mut().item_spacing.y = theme::STEP;
     let (_, picture) = ui.allocate_space(vec2(place.width(), 88.0));
     if let Some(angles) = pictured(&state.poses, entry) {
-        panel::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&angles));
+        tile::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&angles));
     }
     let color = if hidden || overridden {
         look.palette.muted

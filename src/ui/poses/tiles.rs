@@ -8,16 +8,13 @@ use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
 use crate::poses::Play;
 use crate::poses::library::{EntryId, LibraryPose, StepGoal};
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::poses::grip_size;
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{
-    Id, Popup, PopupCloseBehavior, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, UiBuilder,
-    vec2,
-};
+use egui::{Id, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 
 /// An entry on the shelf, and its least height where that is low.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
@@ -37,9 +34,9 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     if let Some(unready) = pane.unready() {
         return Some(unready);
     }
-    let moves = |dof: Dof| !pose.leave[dof] && !pane.state.hand().controls.joints[dof].locked;
+    let moves = |dof: Dof| !pose.leave[dof] && !pane.hand().controls.joints[dof].locked;
     let any = Dof::ALL.into_iter().any(moves);
-    let pinches = pose.gap.is_none() || !grip::locks_pinch(pane.state.hand());
+    let pinches = pose.gap.is_none() || !grip::locks_pinch(pane.hand());
     (!any || !pinches).then(|| pane.look.say(main::LOCKED))
 }
 
@@ -52,51 +49,35 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 }
 
 /// A tile of the library: picture, name, tags. True if it was chosen.
-pub(crate) fn tile_ui(
-    ui: &mut Ui,
-    rect: Rect,
-    pane: &mut Pane<'_>,
-    (pose, chosen): (&LibraryPose, bool),
-) -> bool {
-    let look = pane.look;
+pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chosen: bool) -> bool {
+    let (look, rect) = (pane.look, ui.max_rect());
     let name = look.told(poses::POSE, &pose.name);
     let button = Button::new(&pose.name, look.say(poses::SELECT_TIP))
         .named(&name)
         .switch(chosen);
-    let builder = UiBuilder::new().id_salt(pose.id).max_rect(rect);
-    let mut ui = ui.new_child(builder.layout(egui::Layout::top_down_justified(egui::Align::Min)));
     ui.spacing_mut().item_spacing.y = theme::STEP;
     let high = rect.height() - theme::CONTROL - theme::STEP;
     let (_, top) = ui.allocate_space(vec2(rect.width(), high));
     let id = Id::unique(("pose", pose.id));
-    let response = button.ground(&mut ui, look, top, id);
+    let response = button.ground(ui, look, top, id);
     let (picture, words) = top.split_top_bottom_at_y(top.bottom() - 36.0);
-    panel::sign_ui(
-        &ui,
-        look,
-        picture.shrink(theme::STEP),
-        &shares(&pose.angles),
-    );
+    tile::sign_ui(ui, look, picture.shrink(theme::STEP), &shares(&pose.angles));
     let (upper, lower) = words
         .shrink2(vec2(theme::GAP, 0.0))
         .split_top_bottom_at_fraction(0.5);
+    let limits = format!("{} · {} g", pose.speed.get(), pose.force.get());
     let about = if let Some(gap) = pose.gap {
-        format!(
-            "{} mm · {} · {} g",
-            gap.mm(),
-            pose.speed.get(),
-            pose.force.get()
-        )
+        format!("{} mm · {limits}", gap.mm())
     } else if pose.tags.is_empty() {
-        format!("{} · {} g", pose.speed.get(), pose.force.get())
+        limits
     } else {
         pose.tags.join(" · ")
     };
     let name = Label::new(&pose.name, look.palette.text).center();
-    name.paint(&ui, upper);
+    name.paint(ui, upper);
     let about = Label::new(&about, look.palette.muted).small().center();
-    about.paint(&ui, lower);
-    start_ui(&mut ui, pane, EntryId::Pose(pose.id));
+    about.paint(ui, lower);
+    start_ui(ui, pane, EntryId::Pose(pose.id));
     response.clicked()
 }
 
@@ -105,9 +86,8 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
         kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            if Button::said(look, poses::EVERY).ui(ui, look).clicked() {
-                pane.open(ViewRequest::View(View::Poses));
-            }
+            let every = Button::said(look, poses::EVERY);
+            every.opens(ui, pane, ViewRequest::View(View::Poses));
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
             gestures_ui(ui, pane);
@@ -162,8 +142,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     }
     let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
-    let drawer = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    drawer.width(DRAWER).show(|ui| {
+    kit::drawer(&button).width(DRAWER).show(|ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             for gesture in named {
@@ -176,7 +155,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Keeps the pose of now.
 pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     let look = pane.look;
-    let unknown = pane.state.hand().pose_now(pane.state.now).is_none();
+    let unknown = pane.hand().pose_now(pane.state.now).is_none();
     let button = button.disabled(unknown.then(|| look.say(poses::CAPTURE_UNKNOWN)));
     let name = look.say(poses::POSE).to_owned();
     button.on_click(ui, pane, Action::Capture(name));
@@ -212,7 +191,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     if let Some(angles) = pictured(&state.poses, entry) {
         // Room for what stands in the corners.
         let picture = picture.shrink2(vec2(theme::GAP, 0.0));
-        panel::sign_ui(ui, look, picture, &shares(&angles));
+        tile::sign_ui(ui, look, picture, &shares(&angles));
     }
     let color = button.text_color(look);
     let words = words.expand2(vec2(theme::BAR, 0.0));
@@ -225,10 +204,8 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     if let Some(key) = key {
         let corner = Rect::from_min_size(picture.right_top() - vec2(14.0, 0.0), vec2(14.0, 16.0));
         let key = key.get().to_string();
-        Label::new(&key, look.palette.muted)
-            .small()
-            .right()
-            .paint(ui, corner);
+        let label = Label::new(&key, look.palette.muted).small();
+        label.right().paint(ui, corner);
     }
     if runs {
         let ring = Stroke::new(3.0, look.palette.accent);
@@ -311,11 +288,8 @@ pub(crate) fn gesture_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) -> 
     let look = pane.look;
     let known = pane.state.settings.gesture_name(gesture);
     let number = gesture.get().to_string();
-    let label = format!(
-        "{} {number} {}",
-        look.say(panels::GESTURE),
-        known.unwrap_or_default()
-    );
+    let name = known.unwrap_or_default();
+    let label = format!("{} {number} {name}", look.say(panels::GESTURE));
     let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
     let text = known.map_or_else(|| number.clone(), |name| format!("{name}  {number}"));
     let weight = match known {

@@ -8,7 +8,7 @@ use crate::record::file::FileMark;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::recordings::marks::{clock, shown};
 use crate::ui::text::recordings;
-use egui::{Popup, PopupCloseBehavior, ScrollArea, Ui};
+use egui::{Popup, ScrollArea, Ui};
 
 /// Recordings that are offered, the newest first.
 const OFFERED: usize = 200;
@@ -26,9 +26,7 @@ pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let off = off.named(&name).switch(true);
     off.on_click(ui, pane, Action::Recording(RecordingAction::Beside(None)));
     let align = Button::said(look, recordings::ALIGN).ui(ui, look);
-    let stays = PopupCloseBehavior::CloseOnClickOutside;
-    let menu = Popup::menu(&align).close_behavior(stays);
-    menu.show(|ui| align_ui(ui, pane, line, beside));
+    kit::drawer(&align).show(|ui| align_ui(ui, pane, line, beside));
 }
 
 fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
@@ -71,11 +69,7 @@ fn align_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, beside: &BesideRe
     let (mut at_own, mut at_other) = (beside.own, beside.other);
     let choose = |ui: &mut Ui, text, chosen: &mut Moment, all: &[(Moment, String)]| {
         ui.label(look.say(text));
-        let all: Vec<(Moment, &str)> = all
-            .iter()
-            .map(|(at, words)| (*at, words.as_str()))
-            .collect();
-        kit::choose_ui(ui, look.say(text), chosen, &all)
+        kit::choose_ui(ui, look.say(text), chosen, all)
     };
     let moved = choose(ui, recordings::ALIGN_OWN, &mut at_own, &own);
     let moved = choose(ui, recordings::ALIGN_OTHER, &mut at_other, &other) || moved;

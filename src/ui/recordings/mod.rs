@@ -8,8 +8,7 @@ pub(crate) mod table;
 use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, RecordingItem};
 use crate::app::state::State;
-use crate::hand::PerDof;
-use crate::ui::hand::panel;
+use crate::ui::hand::tile;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{
     self, Button, ButtonRole, Card, Choice, Label, Look, Pane, ViewRequest, Weight, format,
@@ -18,7 +17,8 @@ use crate::ui::recordings::table::{MarkedStretch, RecordingTable};
 use crate::ui::text::recordings;
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Frame, Panel, ProgressBar, Ui, vec2};
+use egui::{Frame, Panel, ProgressBar, Ui};
+use std::path::Path;
 use std::time::Duration;
 
 /// Other programs record too: the list is looked for again so often while it is open.
@@ -79,19 +79,15 @@ impl RecordingsView {
         let look = pane.look;
         kit::head_ui(ui, look, look.say(recordings::TITLE), |ui| {
             let other = Button::said(look, recordings::OPEN_OTHER).switch(self.other);
-            if other.ui(ui, look).clicked() {
-                self.other = !self.other;
-            }
+            other.flips(ui, look, &mut self.other);
             let mut simulated = pane.state.settings.recordings.record_simulated;
-            let text = look.say(recordings::SIM_TOO);
-            let tick = ui.checkbox(&mut simulated, text);
-            if tick.on_hover_text(look.tip(recordings::SIM_TOO)).changed() {
+            if kit::tick_ui(ui, look, recordings::SIM_TOO, &mut simulated) {
                 let action = RecordingAction::RecordSimulated(simulated);
                 pane.actions.push(Action::Recording(action));
             }
             ui.scope(|ui| {
                 ui.set_max_width(260.0);
-                kit::edit_ui(ui, look.both(recordings::FIND), &mut self.find);
+                kit::edit_said_ui(ui, look, recordings::FIND, &mut self.find);
             });
         });
     }
@@ -125,11 +121,7 @@ impl RecordingsView {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.2);
-        let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
-        panel::pose_ui(ui, look, picture, &PerDof::splat(Some(0.5)));
-        let title = Label::said(look, recordings::NONE_TITLE);
-        title.font(theme::title()).ui(ui);
+        tile::empty_ui(ui, look, 0.5, recordings::NONE_TITLE);
         if pane.state.recordings.folder.is_none() {
             Label::muted(look, recordings::NOWHERE).wrap().ui(ui);
             ui.add_space(theme::GAP);
@@ -140,15 +132,9 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         Label::muted(look, recordings::NONE).wrap().ui(ui);
         ui.add_space(theme::GAP);
-        let connect = Button::said(look, recordings::NONE_BUTTON);
-        if connect
-            .weight(Weight::Strong)
-            .large()
-            .ui(ui, look)
-            .clicked()
-        {
-            pane.open(ViewRequest::View(View::Connection));
-        }
+        let connect = Button::said(look, recordings::NONE_BUTTON).large();
+        let connect = connect.weight(Weight::Strong);
+        connect.opens(ui, pane, ViewRequest::View(View::Connection));
     });
 }
 
@@ -156,15 +142,10 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     for running in &pane.state.recordings.exports {
-        let mut items = pane.state.recordings.items.iter();
-        let item = items.find(|item| item.path == running.export.path);
-        let name = item.map_or_else(
-            || running.export.path.display().to_string(),
-            |item| recordings::title(look, pane.state, item),
-        );
+        let name = title_of(look, pane.state, &running.export.path);
         let form = look.say(recordings::form(running.export.form));
-        let parts: [&dyn std::fmt::Display; 2] = [&look.pair(&name, form), &running.percent];
-        let words = look.fill(recordings::EXPORTING, &parts);
+        let name = look.pair(&name, form);
+        let words = look.fill(recordings::EXPORTING, &[&name, &running.percent]);
         ui.horizontal(|ui| {
             let bar = ProgressBar::new(f32::from(running.percent) / 100.0);
             ui.add(bar.desired_width(160.0).desired_height(theme::GAP));
@@ -217,8 +198,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let budget = pane.state.settings.recordings.budget_gb;
     let used = format::size(bytes);
     ui.horizontal_wrapped(|ui| {
-        let parts: [&dyn std::fmt::Display; 3] = [&state.items.len(), &used, &budget];
-        let total = look.fill(recordings::TOTAL, &parts);
+        let total = look.fill(recordings::TOTAL, &[&state.items.len(), &used, &budget]);
         Label::new(&total, look.palette.muted).small().ui(ui);
         if !state.unread.is_empty() {
             let words = look.fill(recordings::UNREAD, &[&state.unread.len()]);
@@ -238,10 +218,9 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let Some(first) = state.planned.iter().min_by_key(|one| one.due_unix_s()) else {
         return;
     };
-    let bytes = state.planned.iter().map(|one| one.bytes).sum();
-    let parts: [&dyn std::fmt::Display; 3] =
-        [&state.planned.len(), &format::size(bytes), &first.due()];
-    let words = look.fill(recordings::BEYOND, &parts);
+    let count = state.planned.len();
+    let size = format::size(state.planned.iter().map(|one| one.bytes).sum());
+    let words = look.fill(recordings::BEYOND, &[&count, &size, &first.due()]);
     Label::new(&words, look.palette.warn).small().ui(ui);
     for (text, action) in [
         (recordings::ROOM_KEEP, RecordingAction::KeepPlanned),
@@ -254,16 +233,20 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// The question before a recording is deleted.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let path = state.recordings.to_delete.as_ref()?;
-    let mut all = state.recordings.items.iter();
-    let title = all
-        .find(|item| item.path == *path)
-        .map(|item| recordings::title(look, state, item));
-    let title = title.unwrap_or_else(|| path.display().to_string());
-    let back = Choice::new(recordings::DELETE_NOT, ButtonRole::Safe);
-    let delete = Choice::new(recordings::DELETE_SURE, ButtonRole::Danger);
-    let card = Card::new(look, recordings::DELETE_TITLE)
-        .warning(look.fill(recordings::DELETE_WHAT, &[&title]))
-        .choice(back.does(Action::Recording(RecordingAction::KeepIt)))
-        .choice(delete.does(Action::Recording(RecordingAction::Delete)));
-    Some(card)
+    let words = look.fill(recordings::DELETE_WHAT, &[&title_of(look, state, path)]);
+    let [keep, delete] = [RecordingAction::KeepIt, RecordingAction::Delete].map(Action::Recording);
+    let back = Choice::new(recordings::DELETE_NOT, ButtonRole::Safe, keep);
+    let delete = Choice::new(recordings::DELETE_SURE, ButtonRole::Danger, delete);
+    let card = Card::new(look, recordings::DELETE_TITLE).warning(words);
+    Some(card.choice(back).choice(delete))
+}
+
+/// What the recording of a path is called.
+fn title_of(look: Look, state: &State, path: &Path) -> String {
+    let mut items = state.recordings.items.iter();
+    let item = items.find(|item| item.path == path);
+    item.map_or_else(
+        || path.display().to_string(),
+        |item| recordings::title(look, state, item),
+    )
 }

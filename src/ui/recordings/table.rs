@@ -4,8 +4,8 @@ use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, RecordingItem};
 use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
-use crate::ui::hand::panel;
-use crate::ui::kit::{Button, Label, Look, Pane, TextField, ViewRequest, Weight, format};
+use crate::ui::hand::tile;
+use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, ViewRequest, Weight, format};
 use crate::ui::plots::times::length;
 use crate::ui::recordings::marks;
 use crate::ui::recordings::strip;
@@ -16,7 +16,7 @@ use egui::{
     Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
     Vec2, WidgetInfo, vec2,
 };
-use egui_extras::{Column, TableBuilder};
+use egui_extras::Column;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -89,11 +89,8 @@ impl RecordingTable<'_> {
         let look = pane.look;
         ui.spacing_mut().item_spacing.x = theme::STEP;
         let strip = strip_width(ui.available_width());
-        let mut table = TableBuilder::new(ui)
-            .id_salt("recorded")
-            .striped(true)
-            .cell_layout(Layout::left_to_right(Align::Center))
-            .auto_shrink([false, false]);
+        let table = kit::table(ui, "recorded").striped(true);
+        let mut table = table.auto_shrink(false);
         for (title, width) in COLUMNS {
             table = table.column(match width {
                 0.0 => Column::remainder().at_least(NAME).clip(true),
@@ -103,14 +100,10 @@ impl RecordingTable<'_> {
         }
         let table = table.header(theme::CONTROL, |mut row| {
             for (title, _) in COLUMNS {
-                row.col(|ui| {
-                    let text = if title == recordings::REPLAY {
-                        ""
-                    } else {
-                        look.say(title)
-                    };
-                    Label::new(text, look.palette.muted).small().ui(ui);
-                });
+                let is_named = title != recordings::REPLAY;
+                let text = if is_named { look.say(title) } else { "" };
+                let label = Label::new(text, look.palette.muted);
+                label.small().column_ui(&mut row);
             }
         });
         table.body(|body| {
@@ -240,8 +233,7 @@ impl RecordingTable<'_> {
         let named = look.pair(look.say(recordings::MORE), &title);
         let more = Button::said(look, recordings::MORE).named(&named);
         let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
-        let close = egui::PopupCloseBehavior::CloseOnClickOutside;
-        Popup::menu(&more).close_behavior(close).show(|ui| {
+        kit::drawer(&more).show(|ui| {
             ui.set_width(260.0);
             let field = TextField::new(look.say(recordings::RENAME), NAME_MAX);
             let field = field.hint(look.tip(recordings::RENAME));
@@ -249,8 +241,7 @@ impl RecordingTable<'_> {
                 let action = RecordingAction::Name(item.path.clone(), name.trim().to_owned());
                 pane.actions.push(Action::Recording(action));
             }
-            let reveal = ui.button(look.say(recordings::REVEAL));
-            if reveal.on_hover_text(look.tip(recordings::REVEAL)).clicked() {
+            if kit::entry_ui(ui, look, recordings::REVEAL) {
                 let reveal = RecordingAction::Reveal(item.path.clone());
                 pane.actions.push(Action::Recording(reveal));
                 ui.close();
@@ -258,16 +249,11 @@ impl RecordingTable<'_> {
             ui.separator();
             self.forms_ui(ui, pane, item);
             ui.separator();
-            let copy = ui.button(look.say(recordings::COPY_PATH));
-            if copy
-                .on_hover_text(look.tip(recordings::COPY_PATH))
-                .clicked()
-            {
+            if kit::entry_ui(ui, look, recordings::COPY_PATH) {
                 ui.copy_text(item.path.display().to_string());
                 ui.close();
             }
-            let delete = ui.button(look.say(recordings::DELETE));
-            if delete.on_hover_text(look.tip(recordings::DELETE)).clicked() {
+            if kit::entry_ui(ui, look, recordings::DELETE) {
                 let ask = RecordingAction::AskDelete(item.path.clone());
                 pane.actions.push(Action::Recording(ask));
                 ui.close();
@@ -355,7 +341,7 @@ fn moment_ui(ui: &mut Ui, look: Look, item: &RecordingItem, part: f64) {
     if let Some(pose) = item.poses.get(column) {
         let (_, place) = ui.allocate_space(HAND);
         let shares = PerDof::from_fn(|dof| pose[dof].map(|angle| f32::from(angle) / 1000.0));
-        panel::pose_ui(ui, look, place, &shares);
+        tile::pose_ui(ui, look, place, &shares);
     }
     let at = item.moment(part);
     let force = item.strip.get(column).filter(|force| force.is_finite());

@@ -60,11 +60,6 @@ impl Look {
         }
     }
 
-    /// The name of a control and its tooltip or hint in the window's language.
-    pub(crate) const fn both(self, text: Text) -> (&'static str, &'static str) {
-        (self.say(text), self.tip(text))
-    }
-
     /// The tooltip of a control in the window's language.
     pub(crate) const fn tip(self, text: Text) -> &'static str {
         self.say(text.tip())
@@ -85,7 +80,8 @@ impl Look {
     }
 
     /// Names after each other.
-    pub(crate) fn list(self, names: &[&str]) -> String {
+    pub(crate) fn list<N: AsRef<str>>(self, names: &[N]) -> String {
+        let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         names.join(match self.language {
             Language::En => ", ",
             Language::Zh => "、",

@@ -3,7 +3,6 @@
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
-use crate::hand::gap::NotOffered;
 use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
 use crate::link::scan::{HOSTS_MAX, HostsError, ScanHint};
@@ -20,7 +19,7 @@ use crate::transport::endpoint::typed::TypedError;
 use crate::transport::{Remedy, TransportError, WireFailure};
 use crate::trials::plan_settings::PlanReadError;
 use crate::ui::style::{Look, format};
-use crate::ui::text::{Text, inputs, poses};
+use crate::ui::text::{inputs, poses};
 use std::fmt::Display;
 use std::io::ErrorKind;
 
@@ -32,19 +31,26 @@ fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> Str
     }
 }
 
-/// Writes a table of errors as the function that says each in Chinese.
+/// Writes a table of errors as the function that says each in Chinese, and one of another name that says it in the window's language.
 macro_rules! chinese {
-    ($(fn $name:ident($error:ty) { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
+    ($($(#[$doc:meta])* fn $name:ident($error:ty) $(as $said:ident)? { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
+        $(#[$doc])*
         fn $name(error: $error) -> String {
             match error {
                 $($case $(if $guard)? => format!($words $(, $part)*),)*
             }
         }
+        $(
+            pub(crate) fn $said(look: Look, error: $error) -> String {
+                told(look, error, $name)
+            }
+        )?
     )*};
 }
 
 chinese! {
-    fn transport_zh(&TransportError) {
+    /// Why a wire could not be opened, or broke.
+    fn transport_zh(&TransportError) as transport {
         TransportError::Missing { place } => "{place} 不存在：请插入适配器，或选择其他端口。";
         TransportError::NotAPort { place } => "{place} 不是串口：请选择适配器的设备，例如 /dev/ttyUSB0。";
         TransportError::Permission { place, remedy } => "没有打开 {place} 的权限：{}。", remedy_zh(remedy);
@@ -102,7 +108,8 @@ chinese! {
         NotSent::TooSoon { wait } => "刚刚保存过，请等待 {} 秒", wait.as_secs_f64().ceil();
     }
 
-    fn request_zh(&RequestError) {
+    /// Why a request to the hand was not carried out.
+    fn request_zh(&RequestError) as request {
         RequestError::NotConnected => "没有连接：未发送任何内容。";
         RequestError::NotArmed => "未使能：未发送任何内容。";
         RequestError::NotOwner(LeaseRefusal::Taken(_)) => "灵巧手现由其他来源控制：未发送任何内容。";
@@ -141,7 +148,8 @@ chinese! {
         EndpointError::Value { key, value, want } => "{key}={value} 无效：应为{}。", want_zh(want);
     }
 
-    fn export_zh(&ExportError) {
+    /// Why an export was not written.
+    fn export_zh(&ExportError) as export {
         ExportError::Exists { path } => "{} 已存在，不会覆盖。", path.display();
         ExportError::Unwritable { path, error } => "无法写入 {}：{}。", path.display(), system_error_zh(error);
         ExportError::Unreadable { error } => "无法读完此录制：{}。", system_error_zh(error);
@@ -165,7 +173,8 @@ chinese! {
         Want::OneOf(all) => " {}", all.replace(", ", "、").replace(" or ", " 或 ");
     }
 
-    fn hosts_zh(&HostsError) {
+    /// What is wrong with addresses to scan.
+    fn hosts_zh(&HostsError) as hosts {
         HostsError::Host { text } => "{text} 不是主机：请输入地址，例如 192.168.11.210；端口不是 6000 时在后面加上冒号与端口。";
         HostsError::Port { port } => "{port} 不是端口：请输入 1 至 65535 的数字。";
         HostsError::Range { text } => "{text} 不是网段：请输入例如 192.168.11.0/24。";
@@ -173,14 +182,16 @@ chinese! {
         HostsError::Impossible { address } => "灵巧手不可能使用地址 {address}：请输入灵巧手的地址。";
     }
 
-    fn hint_zh(&ScanHint) {
+    /// What a scan heard that is no hand, or none it can name.
+    fn hint_zh(&ScanHint) as hint {
         ScanHint::OtherId { endpoint, hand_id } => "{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。";
         ScanHint::Refuses { endpoint, reason } => "{endpoint} 有应答，但不给出 HAND_ID（{}）：可能不是灵巧手。", reason_zh(reason);
         ScanHint::OtherTalk { endpoint } => "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。", endpoint.place();
         ScanHint::Garbled { place, bauds, bytes } => "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。", numbers(bauds);
     }
 
-    fn task_zh(&TaskError) {
+    /// Why a task could not go on.
+    fn task_zh(&TaskError) as task {
         TaskError::NotRead { id, why } => "无法读取 {}：{}", id.name(), request_zh(why);
         TaskError::NotReached => "灵巧手没有应答。";
         TaskError::NotMeant(_) => "没有确认要这样做。";
@@ -193,7 +204,8 @@ chinese! {
         BackupError::System(error) => "{}", system_error_zh(error);
     }
 
-    fn write_refusal_zh(&WriteRefusal) {
+    /// Why the write of a gateway's client was not done.
+    fn write_refusal_zh(&WriteRefusal) as write_refusal {
         WriteRefusal::NotGranted => "没有程序获准控制：需由人允许。";
         WriteRefusal::Taken => "其他来源正在控制。";
         WriteRefusal::Over => "此连接的控制权已结束：需重新连接。";
@@ -204,14 +216,16 @@ chinese! {
         WriteRefusal::Request(error) => "{}", request_zh(error);
     }
 
-    fn pad_zh(&PadTrouble) {
+    /// Why there is no gamepad.
+    fn pad_zh(&PadTrouble) as pad {
         PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄。";
         PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_error_zh(why);
         PadTrouble::MayNotOpen { path, remedy, .. } => "没有打开 {} 的权限：{}。", path.display(), remedy_zh(remedy);
         PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_error_zh(why);
     }
 
-    fn dds_zh(&DdsError) {
+    /// Why there is no DDS.
+    fn dds_zh(&DdsError) as dds {
         DdsError::NoInterface { name } => "本机没有带 IPv4 地址的网络接口 {name}：可用 'ip address' 查看。";
         DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_error_zh(&error.into());
         DdsError::Library { error } => "DDS 未能启动：“{error}”。";
@@ -227,7 +241,7 @@ chinese! {
         FileCause::Range { got, range } => "{got} 超出范围 {}", range.replace(" to ", " 至 ");
         FileCause::Kind { got, wanted } => "{got} 不是{}", value_kind_zh(*wanted);
         FileCause::Choice { got, known } => "“{got}”不可用，只能是 {known}";
-        FileCause::NotOffered(why) => "{}", no_gap(*why).zh.trim_end_matches('。');
+        FileCause::NotOffered(why) => "{}", poses::no_gap(*why).zh.trim_end_matches('。');
         FileCause::Pinches { dof } => "按尺寸抓握需要{}，请从此处删除", crate::ui::text::words::dof(*dof).zh;
         FileCause::NotSamples => "不是采样表";
         FileCause::Picture(_) => "图片格式不对";
@@ -262,11 +276,6 @@ fn numbers(all: &[u32]) -> String {
     all.join("、")
 }
 
-/// Why a wire could not be opened, or broke.
-pub(crate) fn transport(look: Look, error: &TransportError) -> String {
-    told(look, error, transport_zh)
-}
-
 /// What is wrong with the link.
 pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
     match (look.language, trouble) {
@@ -279,11 +288,6 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
         ),
         (_, trouble) => told(look, trouble, trouble_zh),
     }
-}
-
-/// Why a request to the hand was not carried out.
-pub(crate) fn request(look: Look, error: &RequestError) -> String {
-    told(look, error, request_zh)
 }
 
 /// What is wrong with an endpoint that was put together in the form.
@@ -305,35 +309,12 @@ pub(crate) fn typed(look: Look, error: &TypedError) -> String {
     }
 }
 
-/// What is wrong with addresses to scan.
-pub(crate) fn hosts(look: Look, error: &HostsError) -> String {
-    told(look, error, hosts_zh)
-}
-
-/// What a scan heard that is no hand, or none it can name.
-pub(crate) fn hint(look: Look, hint: &ScanHint) -> String {
-    told(look, hint, hint_zh)
-}
-
-/// Why a task could not go on.
-pub(crate) fn task(look: Look, error: &TaskError) -> String {
-    told(look, error, task_zh)
-}
-
 /// Why a file was not taken.
 pub(crate) fn file(look: Look, error: &FileError) -> String {
     told(look, error, |error| file_zh(error) + "。")
 }
 
 /// Why a kind of grip has no gap.
-pub(crate) const fn no_gap(why: NotOffered) -> Text {
-    match why {
-        NotOffered::BesideMiddle => poses::NO_GAP_THREE,
-        NotOffered::BesideOthers => poses::NO_GAP_ALL,
-        NotOffered::OnPalm => poses::NO_GAP_AROUND,
-    }
-}
-
 const fn value_kind_zh(kind: ValueKind) -> &'static str {
     match kind {
         ValueKind::Whole => "此处允许的整数",
@@ -366,11 +347,6 @@ pub(crate) fn backup(look: Look, error: &BackupError) -> String {
         Language::En => error.to_string(),
         Language::Zh => backup_zh(error),
     }
-}
-
-/// What the system said.
-pub(crate) fn export(look: Look, error: &ExportError) -> String {
-    told(look, error, export_zh)
 }
 
 pub(crate) fn system_error(look: Look, error: &SystemError) -> String {
@@ -426,21 +402,6 @@ const fn system_kind_zh(kind: ErrorKind) -> Option<&'static str> {
     })
 }
 
-/// Why the write of a gateway's client was not done.
-pub(crate) fn write_refusal(look: Look, refusal: &WriteRefusal) -> String {
-    told(look, refusal, write_refusal_zh)
-}
-
-/// Why there is no gamepad.
-pub(crate) fn pad(look: Look, trouble: &PadTrouble) -> String {
-    told(look, trouble, pad_zh)
-}
-
-/// Why there is no DDS.
-pub(crate) fn dds(look: Look, error: &DdsError) -> String {
-    told(look, error, dds_zh)
-}
-
 /// Why something was not opened at the place that the user named.
 pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     match refusal {
@@ -462,6 +423,7 @@ pub(crate) fn reason(look: Look, reason: Refusal) -> String {
 mod tests {
     use super::*;
     use crate::app::settings::Theme;
+    use crate::hand::gap::NotOffered;
     use crate::hand::kinematics::Side;
     use crate::link::Owner;
     use crate::params::rows::ParamId;

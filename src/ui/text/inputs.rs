@@ -1,6 +1,7 @@
 //! Sentences of what besides the window may move the hand: streams, the gateway, a gamepad with its controls and what they do.
 
 use crate::inputs::dds::ctrl::CtrlFault;
+use crate::inputs::follow::FollowPhase;
 use crate::inputs::line::LineFault;
 use crate::inputs::pad::{PadAction, PadControl};
 use crate::ui::style::phrase::texts;
@@ -71,16 +72,20 @@ texts! {
     LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先关节的量（满程 1000）：";
     FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
     OTHER_FOLLOWS: "At {}, {} follows this sender already: one sender must not move two hands.", "{} 上的 {} 已在跟随此来源：一个来源不可同时控制两只手。";
-    PHASE_WAITING: "arming", "使能中";
-    PHASE_FOLLOWING: "follows", "跟随中";
-    PHASE_FROZEN: "tracking frozen?", "追踪已停止？";
-    PHASE_SILENT: "silent: held", "无数据：已保持";
-    PHASE_RELEASED: "not held to run", "未按住运行键";
     NONE: "No gamepad", "没有手柄";
     POSE: "Pose {}", "姿态：{}";
     NO_POSE: "Pose {} (not in the library)", "姿态：{}（库中没有）";
     SINGLE: "One control must do this. Choose it at another control: the two change places.", "必须有一个控件执行此动作。请在另一个控件上选择它，两者会互换。";
     CHANGE: "Click to change what it does.", "点击可更改其动作。";
+
+    /// Where following stands.
+    fn phase(FollowPhase) {
+        FollowPhase::Waiting => "arming", "使能中";
+        FollowPhase::Following => "follows", "跟随中";
+        FollowPhase::Frozen => "tracking frozen?", "追踪已停止？";
+        FollowPhase::Silent => "silent: held", "无数据：已保持";
+        FollowPhase::Released => "not held to run", "未按住运行键";
+    }
 
     /// Why a line was refused.
     fn fault(LineFault) {

@@ -1,5 +1,6 @@
 //! Sentences of the top bar, the banners, the tabs and the joints.
 
+use crate::app::settings::AngleUnit;
 use crate::record::LinkState;
 use crate::ui::style::phrase::texts;
 
@@ -108,9 +109,6 @@ texts! {
     EVERY: "All", "全部";
     EACH: "Force and speed of each joint", "各自由度的力阈值与速度", "Shows or hides the force threshold and the speed of each joint.", "显示或隐藏各自由度的力阈值与速度。";
     LINK_FINGERS: "Link", "联动", "The four fingers move together: each goes as far as the one you move. The thumb stays apart.", "四指联动：拖动一指，其余三指移动相同的量。大拇指不受影响。";
-    UNIT_RAW: "0..1000", "0..1000";
-    UNIT_DEGREES: "Degrees", "角度制";
-    UNIT_PERCENT: "Percent", "百分比";
     UNIT_NAME: "Angle unit", "角度单位";
     UNIT_TIP: "Angles as 0 to 1000, in degrees, or in percent of the way to open. A decimal comma is understood.", "角度以 0 到 1000、度或张开百分比表示。";
     OPEN: "Open all", "全部张开", "Tells every joint that is not locked to open, at its set speed.", "令所有未锁定的自由度张开，按设定的速度。";
@@ -118,6 +116,13 @@ texts! {
     CLOSE: "Close", "握拢", "Bends fingers and thumb until their force thresholds stop them, at their set speeds. The thumb's rotation and locked joints stay.", "四指与大拇指弯曲，直到力阈值使其停止，按设定的速度。大拇指旋转与锁定的自由度不动。";
     AGE: "Age", "距今", "These values are old. The age counts from the request that brought them.", "这些数值已过时。时间从读取它们的请求算起。";
     NEVER_READ: "Not read yet", "尚未读取";
+
+    /// A unit of angles.
+    fn angle_unit(AngleUnit) {
+        AngleUnit::Raw => "0..1000", "0..1000";
+        AngleUnit::Degrees => "Degrees", "角度制";
+        AngleUnit::Percent => "Percent", "百分比";
+    }
 
     /// The word for a state of the link.
     fn link_state(LinkState) {

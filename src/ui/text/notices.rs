@@ -1,6 +1,6 @@
 //! Sentences of the faults, the recordings around them and the message log.
 
-use crate::app::notices::{Notice, NoticeKind, RequestKind};
+use crate::app::notices::{Level, Notice, NoticeKind, RequestKind};
 use crate::app::readings::faults::FaultKind;
 use crate::app::settings::Language;
 use crate::hand::gap::BlockError;
@@ -51,9 +51,6 @@ texts! {
     LOG_LOST: "older messages were dropped:", "已丢弃的较早消息：";
     LOG_MORE: "Older messages are found by their words, and copied with the rest.", "较早的消息可按关键词查找，复制时一并包含。";
     LOG_FILTER: "Filter messages", "筛选消息", "words, or info, warning, alarm", "关键词，或：信息、警告、报警";
-    WORD_INFO: "info", "信息";
-    WORD_WARN: "warning", "警告";
-    WORD_ALARM: "alarm", "报警";
     COPY: "Copy", "复制", "Copies the messages that are listed, with seconds since the start of the program.", "复制列出的消息，附程序启动以来的秒数。";
     COPIED: "Copied", "已复制";
 
@@ -82,6 +79,13 @@ texts! {
     ACT_LOCK: "locked", "已锁定";
     ACT_UNLOCK: "unlocked", "已解锁";
     NO_FAULT_BITS: "no fault", "无故障";
+
+    /// How much a message matters.
+    fn level(Level) {
+        Level::Info => "info", "信息";
+        Level::Warn => "warning", "警告";
+        Level::Alarm => "alarm", "报警";
+    }
 }
 
 /// Title, cause and advice of what is wrong with a drive.

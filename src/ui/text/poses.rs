@@ -1,5 +1,6 @@
 //! Sentences of the poses, the sequences and the hand's own gestures.
 
+use crate::hand::gap::{GripKind, NotOffered};
 use crate::ui::style::phrase::texts;
 
 texts! {
@@ -22,13 +23,6 @@ texts! {
 
     STRIP_GESTURES: "Gestures", "手内手势", "Shows the gestures that are stored in the hand.", "显示手内存储的手势。";
     GRIP_SIZE: "Grip by size", "按尺寸抓握", "Closes thumb and index to a gap in mm, and tells the size of what they hold.", "让拇指与食指合到指定的间距（mm），并显示所夹物体的尺寸。";
-    KIND_PINCH: "Pinch", "捏", "Between the pads of thumb and index.", "在拇指与食指的指腹之间。";
-    KIND_THREE: "Three fingers", "三指";
-    KIND_ALL: "All fingers", "全指";
-    KIND_AROUND: "Around", "环握";
-    NO_GAP_THREE: "There is no gap: the thumb faces the index only, and stays 25 mm beside the middle finger's pad.", "没有间距可言：拇指只正对食指，与中指指腹始终错开 25 mm。";
-    NO_GAP_ALL: "There is no gap: the thumb faces the index only, and stays 46 mm beside the ring finger's pad and 66 mm beside the little finger's.", "没有间距可言：拇指只正对食指，与无名指指腹始终错开 46 mm，与小指指腹错开 66 mm。";
-    NO_GAP_AROUND: "There is no gap: the fingers close on the palm, and how far they get depends on where the object lies.", "没有间距可言：手指向手掌合拢，能合多少取决于物体所在的位置。";
     GAP: "Gap, mm", "间距 mm", "Between the pads of thumb and index, by the model of the hand.", "拇指与食指指腹之间的距离，按手的模型计算。";
     GAP_WISH: "Not armed: the drawn hand shows where it would go.", "未使能：仅在图上显示将到达的位置。";
     GAP_OPEN: "Open for the grip", "先张开", "Opens thumb and index to 120 mm. From there they go to any gap without meeting.", "把拇指与食指张开到 120 mm，之后可到任意间距而不相碰。";
@@ -124,4 +118,19 @@ texts! {
     EXPERT: "For experts: the register that starts a gesture", "高级：手势的启动方式";
     FIND: "Find poses", "查找姿态", "name or tag", "名称或标签";
     FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";
+
+    /// What a kind of grip is called.
+    fn kind(GripKind) {
+        GripKind::Pinch => "Pinch", "捏", "Between the pads of thumb and index.", "在拇指与食指的指腹之间。";
+        GripKind::ThreeFingers => "Three fingers", "三指";
+        GripKind::AllFingers => "All fingers", "全指";
+        GripKind::Around => "Around", "环握";
+    }
+
+    /// Why a kind of grip has no gap.
+    fn no_gap(NotOffered) {
+        NotOffered::BesideMiddle => "There is no gap: the thumb faces the index only, and stays 25 mm beside the middle finger's pad.", "没有间距可言：拇指只正对食指，与中指指腹始终错开 25 mm。";
+        NotOffered::BesideOthers => "There is no gap: the thumb faces the index only, and stays 46 mm beside the ring finger's pad and 66 mm beside the little finger's.", "没有间距可言：拇指只正对食指，与无名指指腹始终错开 46 mm，与小指指腹错开 66 mm。";
+        NotOffered::OnPalm => "There is no gap: the fingers close on the palm, and how far they get depends on where the object lies.", "没有间距可言：手指向手掌合拢，能合多少取决于物体所在的位置。";
+    }
 }

@@ -33,8 +33,7 @@ texts! {
     REFUSED: "Nothing was taken of {}: {}", "未采用 {}：{}";
     NOT_SAVED: "Could not be written:", "无法写入：";
     NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
-    PATH: "Path of the file", "文件路径";
-    PATH_HINT: "or type the path of the file here", "或在此输入文件路径";
+    PATH: "Path of the file", "文件路径", "or type the path of the file here", "或在此输入文件路径";
     PATH_NONE: "No path was typed.", "尚未输入路径。";
     PATH_OPEN: "Open path", "打开路径", "Opens the file that was typed. Enter does the same.", "打开所输入的文件。按回车作用相同。";
 

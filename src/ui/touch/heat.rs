@@ -1,7 +1,7 @@
 //! From tactile counts to heat, on one scale for all fingers that never changes. Draws only the scale.
 
 use crate::app::readings::Freshness;
-use crate::hand::{Finger, PerFinger, TactileBlock};
+use crate::hand::{Finger, PerFinger};
 use crate::ui::hand::fingertip::{Sense, Tip};
 use crate::ui::kit::{Label, Pane};
 use crate::ui::text::panels;
@@ -16,13 +16,7 @@ const STEPS: u8 = 16;
 
 /// What is drawn of each fingertip; none where it was never read.
 pub(crate) fn tips(pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
-    PerFinger::from_fn(|finger| {
-        let block = pane.state.hand().readings.sample.tactile[finger]?;
-        Some(Tip {
-            stale: pane.tip_freshness(finger) != Freshness::Live,
-            ..tip(pane, finger, &block.value)
-        })
-    })
+    PerFinger::from_fn(|finger| tip(pane, finger))
 }
 
 /// The scale with what it runs over, from right to left; or that a fingertip has no zero.
@@ -45,7 +39,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 /// That a fingertip has no zero yet, where that is so.
 pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let (look, hand) = (pane.look, pane.state.hand());
+    let (look, hand) = (pane.look, pane.hand());
     let touched = Finger::ALL.into_iter().any(|finger| {
         hand.readings.sample.tactile[finger].is_some() && hand.readings.tare.zero(finger).is_none()
     });
@@ -56,21 +50,23 @@ pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-fn tip(pane: &Pane<'_>, finger: Finger, block: &TactileBlock) -> Tip {
+/// What is drawn of one fingertip; none if it was never read.
+pub(crate) fn tip(pane: &Pane<'_>, finger: Finger) -> Option<Tip> {
+    let block = pane.hand().readings.sample.tactile[finger]?.value;
     let mut heat = [None; 8];
-    if let Some(zero) = pane.state.hand().readings.tare.zero(finger) {
+    if let Some(zero) = pane.hand().readings.tare.zero(finger) {
         for ((heat, raw), zero) in heat.iter_mut().zip(block.raw).zip(zero.raw) {
             *heat = known(raw).then(|| part(raw, zero));
         }
     }
-    Tip {
+    Some(Tip {
         heat,
         normal_n: block.normal(),
         shear: block.tangential().zip(block.direction_deg().map(f32::from)),
         proximity: Some(counts_of(i64::from(block.proximity))),
-        stale: false,
+        stale: pane.tip_freshness(finger) != Freshness::Live,
         sense: Sense::of(block.normal_n, block.tangential_n),
-    }
+    })
 }
 
 /// Whether a channel says something: a live one rests near 3 million counts and ends below this.

@@ -7,9 +7,9 @@ pub(crate) mod tip_detail;
 use crate::app::action::Action;
 use crate::app::readings::friction::FrictionState;
 use crate::hand::Finger;
-use crate::ui::hand::fingertip::{self, Sense, Tip};
+use crate::ui::hand::fingertip::{self, Sense};
 use crate::ui::hand::panel::{self, HandPanel};
-use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
+use crate::ui::kit::{self, Button, Label, Pane, Pick, ViewRequest, format};
 use crate::ui::text::{main, panels, words};
 use crate::ui::theme;
 use crate::ui::touch::tip_detail::TipDetail;
@@ -42,9 +42,7 @@ impl TouchView {
     /// The card of the overview: the hand, and below it as much of the fingertips as leaves the hand its room.
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let tips = heat::tips(pane);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
+        kit::full_card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
                 panel::side_ui(ui, pane);
                 heat::no_zero_ui(ui, pane);
@@ -63,7 +61,7 @@ impl TouchView {
                 ui.columns(Finger::ALL.len(), |columns| {
                     for (ui, finger) in columns.iter_mut().zip(Finger::ALL) {
                         let picture = (below > FIGURES).then_some(picture);
-                        self.column_ui(ui, pane, (finger, tips[finger].as_ref()), picture);
+                        self.column_ui(ui, pane, finger, picture);
                     }
                 });
             }
@@ -75,7 +73,7 @@ impl TouchView {
         &mut self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        (finger, tip): (Finger, Option<&Tip>),
+        finger: Finger,
         picture: Option<f32>,
     ) {
         let look = pane.look;
@@ -87,7 +85,8 @@ impl TouchView {
             if let Some(height) = picture {
                 let size = vec2(ui.available_width(), height);
                 let (place, response) = ui.allocate_exact_size(size, Senses::click());
-                fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
+                let tip = heat::tip(pane, finger).unwrap_or_default();
+                fingertip::paint(ui.painter(), look, place, &tip);
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
@@ -121,21 +120,17 @@ impl TouchView {
                     heat::scale_ui(ui, pane);
                 });
                 self.tare_ui(ui, pane);
-                let tips = heat::tips(pane);
                 let height = ui.available_height();
                 ui.columns(Finger::ALL.len(), |columns| {
                     for (ui, finger) in columns.iter_mut().zip(Finger::ALL) {
                         let (_, place) = ui.allocate_space(vec2(ui.available_width(), height));
-                        self.tip_ui(ui, place, pane, (finger, tips[finger].as_ref()));
+                        self.tip_ui(ui, pane, place, finger);
                     }
                 });
             });
         });
         ui.add_space(theme::GAP);
-        kit::card_ui(ui, look, |ui| {
-            ui.set_min_height(ui.available_height());
-            self.lower_ui(ui, pane);
-        });
+        kit::full_card_ui(ui, look, |ui| self.lower_ui(ui, pane));
     }
 
     /// Whether the large fingertips are drawn beside the hand.
@@ -156,12 +151,11 @@ impl TouchView {
         let name = look.say(words::finger(finger));
         let title = format!("{}: {name}", look.say(panels::TIP));
         kit::head_ui(ui, look, &title, |ui| {
-            let shown = (&mut self.numbers, panels::NUMBERS.tip());
             let all = [(true, panels::NUMBERS), (false, panels::DETAIL)];
-            kit::pick_ui(ui, look, shown, all);
+            Pick::new(look, panels::NUMBERS.tip()).ui(ui, &mut self.numbers, all);
             let assumed = Label::note(look, panels::ASSUMED).ui(ui);
             assumed.on_hover_text(look.tip(panels::ASSUMED));
-            let zero = pane.state.hand().readings.tare.zero(finger);
+            let zero = pane.hand().readings.tare.zero(finger);
             let tared = match zero {
                 None => look.say(panels::NO_ZERO).to_owned(),
                 Some(zero) => panels::zero(look, zero, pane.state.now),
@@ -170,23 +164,17 @@ impl TouchView {
             tared.named(look.say(panels::TARED_NAME)).ui(ui);
         });
         if self.numbers {
-            ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| table::all_ui(ui, pane));
+            let area = ScrollArea::vertical().auto_shrink(false);
+            area.show(ui, |ui| table::all_ui(ui, pane));
         } else {
             self.detail.ui(ui, pane);
         }
     }
 
     /// A large fingertip: a button that chooses it, with its forces.
-    fn tip_ui(
-        &mut self,
-        ui: &mut Ui,
-        place: Rect,
-        pane: &Pane<'_>,
-        (finger, tip): (Finger, Option<&Tip>),
-    ) {
+    fn tip_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, place: Rect, finger: Finger) {
         let look = pane.look;
+        let tip = heat::tip(pane, finger).unwrap_or_default();
         let name = look.say(words::finger(finger));
         let label = format!("{}: {name}", look.say(panels::TIP));
         let button = Button::new(name, look.tip(panels::TOUCH))
@@ -196,10 +184,9 @@ impl TouchView {
         if button.ground(ui, look, place, id).clicked() {
             self.detail.finger = finger;
         }
-        let block = pane.state.hand().readings.sample.tactile[finger];
+        let block = pane.hand().readings.sample.tactile[finger];
         let block = block.map(|block| block.value);
-        let sense = tip.map_or(Sense::Fine, |tip| tip.sense);
-        let (below, color) = match (sense, self.detail.hold(finger)) {
+        let (below, color) = match (tip.sense, self.detail.hold(finger)) {
             (Sense::NoNumber, _) => (look.say(panels::NO_NUMBER).to_owned(), look.palette.warn),
             (Sense::Beyond, _) => (look.say(panels::BEYOND).to_owned(), look.palette.warn),
             (Sense::Fine, FrictionState::Slips) => {
@@ -212,11 +199,11 @@ impl TouchView {
             }
         };
         let normal = format!("{} N", format::newtons(block.map(|block| block.normal_n)));
-        let strong = match sense {
+        let strong = match tip.sense {
             Sense::Fine => look.palette.text,
             _ => look.palette.warn,
         };
-        let meaning = look.say(match sense {
+        let meaning = look.say(match tip.sense {
             Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
@@ -237,7 +224,7 @@ impl TouchView {
             }
             let top = (ui.available_height() - theme::TITLE_LINE).max(0.0);
             let (_, place) = ui.allocate_space(vec2(ui.available_width(), top));
-            fingertip::paint(ui.painter(), look, place, &tip.copied().unwrap_or_default());
+            fingertip::paint(ui.painter(), look, place, &tip);
             Label::new(name, look.palette.dof[finger.bend()]).ui(ui);
         });
     }
@@ -245,7 +232,7 @@ impl TouchView {
     /// Taring of all fingertips, of one, and back.
     fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let offline =
             (!hand.connection.status.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
         let finger = self.detail.finger;

@@ -3,7 +3,7 @@
 use crate::hand::{Finger, TactileBlock};
 use crate::ui::kit::{Label, Look, Pane, format};
 use crate::ui::text::{Text, panels, words};
-use egui::{Grid, Ui};
+use egui::{Color32, Grid, Ui};
 
 /// One row of numbers.
 pub(crate) struct TouchRow {
@@ -73,18 +73,22 @@ fn direction(block: &TactileBlock, look: Look) -> String {
 /// One number of one fingertip.
 pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
     let look = pane.look;
-    let block = pane.state.hand().readings.sample.tactile[finger];
+    let block = pane.hand().readings.sample.tactile[finger];
     let text = block.map(|block| (line.value)(&block.value, look));
-    number_ui(ui, pane, finger, (look.say(line.name), text));
+    let name = look.told(words::finger(finger), look.say(line.name));
+    number_ui(ui, color(pane, finger), &name, text);
+}
+
+/// The colour of the numbers of a fingertip.
+fn color(pane: &Pane<'_>, finger: Finger) -> Color32 {
+    let freshness = pane.tip_freshness(finger);
+    pane.look.value(freshness, pane.look.palette.text)
 }
 
 /// A number that is known or not, named for accessibility.
-fn number_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, (name, text): (&str, Option<String>)) {
-    let look = pane.look;
-    let color = look.value(pane.tip_freshness(finger), look.palette.text);
+fn number_ui(ui: &mut Ui, color: Color32, name: &str, text: Option<String>) {
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
-    let name = look.told(words::finger(finger), name);
-    Label::new(&text, color).number().named(&name).ui(ui);
+    Label::new(&text, color).number().named(name).ui(ui);
 }
 
 /// Every value of all fingertips, under their names.
@@ -114,7 +118,8 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Label::new(&caption, muted).ui(ui);
             for finger in Finger::ALL {
                 let text = channel_text(pane, finger, channel);
-                number_ui(ui, pane, finger, (&caption, text));
+                let name = look.told(words::finger(finger), &caption);
+                number_ui(ui, color(pane, finger), &name, text);
             }
             ui.end_row();
         }
@@ -123,7 +128,7 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
 
 /// A channel as sent, and its change from its zero.
 fn channel_text(pane: &Pane<'_>, finger: Finger, channel: usize) -> Option<String> {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let raw = hand.readings.sample.tactile[finger]?.value.raw;
     let raw = i64::from(*raw.get(channel)?);
     let zero = hand.readings.tare.zero(finger);

@@ -2,13 +2,12 @@
 
 use crate::hand::Finger;
 use crate::history::Series;
-use crate::ui::kit::{self, Look, Pane};
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::kit::{Look, Pane, Pick};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView};
 use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
-use crate::ui::theme;
-use egui::{Color32, Stroke, Ui};
+use egui::{Color32, Ui};
 use egui_plot::LineStyle;
 
 /// What can be shown, in seconds, with its name.
@@ -70,8 +69,9 @@ impl TipChannels {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             let zeros = [(false, panels::RAW), (true, panels::TARED)];
-            kit::pick_ui(ui, look, (&mut self.tared, panels::TARED.tip()), zeros);
-            if kit::pick_ui(ui, look, (&mut self.window_s, panels::LAST_TIP), WINDOWS) {
+            Pick::new(look, panels::TARED.tip()).ui(ui, &mut self.tared, zeros);
+            let windows = Pick::new(look, panels::LAST_TIP);
+            if windows.ui(ui, &mut self.window_s, WINDOWS) {
                 self.chart.time.follow();
             }
         });
@@ -79,20 +79,18 @@ impl TipChannels {
 
     fn plot_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
         let look = pane.look;
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let zero = hand.readings.tare.zero(finger).filter(|_| self.tared);
         let now = pane.state.now.secs();
-        let first = hand.measured.history.first_secs().unwrap_or(now);
-        self.chart
-            .time
-            .advance((first.min(now), now), self.window_s);
+        let history = &hand.measured.history;
+        self.chart.advance(history, now, self.window_s);
         let curve = |(channel, number): (u8, usize)| {
             let zero = zero.and_then(|zero| zero.raw.get(number).copied());
-            let points = Points::Measured(&hand.measured.history, Series::Channel(channel, finger));
+            let series = Series::Channel(channel, finger);
             ChartCurve {
                 zero: [0.0, zero.map_or(0.0, f64::from)],
                 told: Some(0),
-                ..ChartCurve::new(points, Stroke::new(theme::LINE, color(look, number)))
+                ..ChartCurve::measured(history, series, color(look, number))
             }
         };
         let chart = Chart {

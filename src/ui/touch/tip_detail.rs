@@ -7,7 +7,7 @@ use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::history::Series;
 use crate::ui::joints::track::SlideTrack;
 use crate::ui::kit::{self, Label, Look, Pane, format};
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView};
 use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{Text, panels};
@@ -53,7 +53,7 @@ impl TipDetail {
     /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
     pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
         for finger in Finger::ALL {
-            let block = pane.state.hand().readings.sample.tactile[finger];
+            let block = pane.hand().readings.sample.tactile[finger];
             let live = pane.tip_freshness(finger) == Freshness::Live;
             let block = block.filter(|_| live).map(|block| block.value);
             self.holds[finger] =
@@ -95,7 +95,7 @@ impl TipDetail {
     }
 
     fn block<'a>(&self, pane: &Pane<'a>) -> (Option<&'a TactileBlock>, Freshness) {
-        let block = pane.state.hand().readings.sample.tactile[self.finger].as_ref();
+        let block = pane.hand().readings.sample.tactile[self.finger].as_ref();
         let freshness = pane.tip_freshness(self.finger);
         (block.map(|block| &block.value), freshness)
     }
@@ -106,31 +106,18 @@ impl TipDetail {
         let palette = look.palette;
         let (center, radius) = (rect.center(), rect.width() / 2.0 - theme::STEP);
         let painter = ui.painter();
-        painter.circle(
-            center,
-            radius,
-            palette.sunken,
-            Stroke::new(1.0, palette.edge),
-        );
+        let (edge, grid) = ((1.0, palette.edge), (1.0, palette.grid));
+        painter.circle(center, radius, palette.sunken, edge);
         for turn in 0..4u8 {
             let way = Vec2::angled(f32::from(turn) * std::f32::consts::FRAC_PI_2);
-            painter.line_segment(
-                [center, center + way * radius],
-                Stroke::new(1.0, palette.grid),
-            );
+            painter.line_segment([center, center + way * radius], grid);
         }
         let ring = radius / COMPASS_END_RATIO;
-        painter.circle(
-            center,
-            ring,
-            palette.wash(palette.ok),
-            Stroke::new(theme::FOCUS_LINE, palette.ok),
-        );
-        painter.circle_stroke(center, ring * (1.0 - NEAR), Stroke::new(1.0, palette.grid));
-        let up = Rect::from_center_size(
-            center - vec2(0.0, radius - theme::GAP),
-            egui::vec2(40.0, 12.0),
-        );
+        let firm = (theme::FOCUS_LINE, palette.ok);
+        painter.circle(center, ring, palette.wash(palette.ok), firm);
+        painter.circle_stroke(center, ring * (1.0 - NEAR), grid);
+        let up = center - vec2(0.0, radius - theme::GAP);
+        let up = Rect::from_center_size(up, vec2(40.0, 12.0));
         let text = look.say(panels::TIP_UP);
         let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
@@ -192,16 +179,13 @@ impl TipDetail {
     fn friction_ui(&mut self, ui: &mut Ui, look: Look) {
         let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
         Label::new(&caption, look.palette.muted).small().ui(ui);
+        let name = look.say(panels::TIP_FRICTION_NAME);
         let track = SlideTrack {
             tip: look.tip(panels::TIP_FRICTION),
             step: 1,
             target: Some(self.friction_percent),
             tick: Some(FRICTION_PERCENT),
-            ..SlideTrack::new(
-                look.say(panels::TIP_FRICTION_NAME),
-                FRICTION_MAX,
-                look.palette.accent,
-            )
+            ..SlideTrack::new(name, FRICTION_MAX, look.palette.accent)
         };
         let place = ui.allocate_space(ui.available_size()).1;
         if let Some(percent) = track.put(ui, look, place, Id::unique("tip friction")) {
@@ -211,7 +195,7 @@ impl TipDetail {
 
     fn forces_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let history = &pane.state.hand().measured.history;
+        let history = &pane.hand().measured.history;
         let own = look.palette.dof[self.finger.bend()];
         let lines = [
             (Touch::Normal, panels::TIP_NORMAL, own),
@@ -224,14 +208,10 @@ impl TipDetail {
         };
         legend_ui(ui, look, &lines.map(key));
         let now = pane.state.now.secs();
-        let first = history.first_secs().unwrap_or(now);
-        self.chart.time.advance((first.min(now), now), 10.0);
-        let curve = |(touch, _, color): (Touch, Text, Color32)| {
-            let points = Points::Measured(history, Series::Tip(touch, self.finger));
-            ChartCurve {
-                told: Some(2),
-                ..ChartCurve::new(points, Stroke::new(theme::LINE, color))
-            }
+        self.chart.advance(history, now, 10.0);
+        let curve = |(touch, _, color): (Touch, Text, Color32)| ChartCurve {
+            told: Some(2),
+            ..ChartCurve::measured(history, Series::Tip(touch, self.finger), color)
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),

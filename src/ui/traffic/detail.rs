@@ -55,9 +55,8 @@ fn verdict_ui(ui: &mut Ui, look: Look, frame: &Frame) {
     };
     ui.horizontal(|ui| {
         kit::warning_ui(ui, color);
-        Label::new(&traffic::wrong(look, wrong), color)
-            .wrap()
-            .ui(ui);
+        let words = traffic::wrong(look, wrong);
+        Label::new(&words, color).wrap().ui(ui);
     });
 }
 
@@ -100,9 +99,9 @@ fn field_ui(row: &mut TableRow<'_, '_>, look: Look, frame: &Frame, field: &Field
     if bytes.len() > HEX_MAX {
         shown.push_str(" ..");
     }
-    row.col(|ui| drop(Label::new(&place, palette.muted).number().ui(ui)));
-    row.col(|ui| drop(Label::new(name, palette.muted).ui(ui)));
-    row.col(|ui| drop(Label::new(&shown, color).number().ui(ui)));
+    Label::new(&place, palette.muted).number().column_ui(row);
+    Label::new(name, palette.muted).column_ui(row);
+    Label::new(&shown, color).number().column_ui(row);
     row.col(|ui| {
         if field.wrong.is_some() {
             kit::warning_ui(ui, color);

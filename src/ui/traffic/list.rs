@@ -51,57 +51,67 @@ impl ChosenFrames {
     }
 }
 
-/// Draws the head and the rows, with the newest in sight if it `follows`. True if the user scrolls away from it.
-pub(crate) fn list_ui(
-    ui: &mut Ui,
-    pane: &Pane<'_>,
-    frames: &VecDeque<Arc<Frame>>,
-    (choice, follows): (&mut ChosenFrames, bool),
-) -> bool {
-    let look = pane.look;
-    keys(ui, frames, choice);
-    let modifiers = ui.input(|input| input.modifiers);
-    let scrolls = scrolls(ui, ui.available_rect_before_wrap());
-    ui.spacing_mut().item_spacing.y = 0.0;
-    let mut table = TableBuilder::new(ui)
-        .id_salt("traffic rows")
-        .auto_shrink(false)
-        .animate_scrolling(false);
-    for width in WIDTHS {
-        table = table.column(Column::exact(width));
-    }
-    if follows && !scrolls {
-        table = table.scroll_to_row(frames.len().saturating_sub(1), Some(Align::BOTTOM));
-    }
-    let rest = Column::remainder().clip(true);
-    let heads = [
-        Some(traffic::HEAD_TIME),
-        None,
-        Some(traffic::HEAD_KIND),
-        None,
-        Some(traffic::HEAD_MEANING),
-        Some(traffic::HEAD_BYTES),
-    ];
-    let table = table.columns(rest, 2).header(theme::CONTROL, |mut row| {
-        for head in heads {
-            row.col(|ui| {
-                let text = head.map_or("", |head| look.say(head));
-                paint(ui, text, theme::small(), look.palette.muted);
-            });
+/// The list of frames.
+pub(crate) struct FrameList<'a> {
+    pub(crate) frames: &'a VecDeque<Arc<Frame>>,
+    pub(crate) choice: &'a mut ChosenFrames,
+    /// The newest is kept in sight.
+    pub(crate) follows: bool,
+}
+
+impl FrameList<'_> {
+    /// Draws the head and the rows. True if the user scrolls away from the newest.
+    pub(crate) fn ui(self, ui: &mut Ui, pane: &Pane<'_>) -> bool {
+        let look = pane.look;
+        let Self {
+            frames,
+            choice,
+            follows,
+        } = self;
+        keys(ui, frames, choice);
+        let modifiers = ui.input(|input| input.modifiers);
+        let scrolls = scrolls(ui, ui.available_rect_before_wrap());
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut table = TableBuilder::new(ui)
+            .id_salt("traffic rows")
+            .auto_shrink(false)
+            .animate_scrolling(false);
+        for width in WIDTHS {
+            table = table.column(Column::exact(width));
         }
-    });
-    table.body(|body| {
-        body.rows(19.0, frames.len(), |mut row| {
-            let Some(frame) = frames.get(row.index()) else {
-                return;
-            };
-            let chosen = choice.numbers.contains(&frame.number);
-            if row_ui(&mut row, pane, frame, chosen) {
-                choice.press(frame.number, modifiers, frames);
+        if follows && !scrolls {
+            table = table.scroll_to_row(frames.len().saturating_sub(1), Some(Align::BOTTOM));
+        }
+        let rest = Column::remainder().clip(true);
+        let heads = [
+            Some(traffic::HEAD_TIME),
+            None,
+            Some(traffic::HEAD_KIND),
+            None,
+            Some(traffic::HEAD_MEANING),
+            Some(traffic::HEAD_BYTES),
+        ];
+        let table = table.columns(rest, 2).header(theme::CONTROL, |mut row| {
+            for head in heads {
+                row.col(|ui| {
+                    let text = head.map_or("", |head| look.say(head));
+                    paint(ui, text, theme::small(), look.palette.muted);
+                });
             }
         });
-    });
-    scrolls
+        table.body(|body| {
+            body.rows(19.0, frames.len(), |mut row| {
+                let Some(frame) = frames.get(row.index()) else {
+                    return;
+                };
+                let chosen = choice.numbers.contains(&frame.number);
+                if row_ui(&mut row, pane, frame, chosen) {
+                    choice.press(frame.number, modifiers, frames);
+                }
+            });
+        });
+        scrolls
+    }
 }
 
 /// The user turns the wheel back, or takes the scroll bar.
@@ -186,7 +196,7 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 /// Copies one frame, also as lines of a program.
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
     ui.label(pane.look.say(traffic::COPY_AS));
-    let endpoint = pane.state.hand().connection.endpoint.as_ref();
+    let endpoint = pane.hand().connection.endpoint.as_ref();
     for form in SnippetFormat::ALL {
         if let Some(text) = form.text(&frame.bytes, endpoint)
             && ui.button(form.name()).clicked()

@@ -7,11 +7,11 @@ use crate::app::action::Action;
 use crate::app::files::export::{Export, TrafficForm};
 use crate::link::traffic::frame::Frame;
 use crate::record::Direction;
-use crate::ui::kit::{self, Button, Label, Pane};
+use crate::ui::kit::{self, Button, Label, Pane, Pick};
 use crate::ui::text::{Text, main, traffic};
 use crate::ui::theme;
 use crate::ui::traffic::filter::Filter;
-use crate::ui::traffic::list::ChosenFrames;
+use crate::ui::traffic::list::{ChosenFrames, FrameList};
 use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ impl TrafficView {
     }
 
     fn update(&mut self, pane: &Pane<'_>) {
-        let live = &pane.state.hand().connection.traffic;
+        let live = &pane.hand().connection.traffic;
         // Another link counts its frames from the beginning.
         if live.newest() < self.filter.cleared {
             self.filter.cleared = 0;
@@ -94,17 +94,18 @@ impl TrafficView {
             ui.vertical_centered(|ui| text.wrap().ui(ui));
             return;
         }
-        let follows = !self.scrolls && self.paused.is_none();
-        let frames = &self.passed;
-        if list::list_ui(ui, pane, frames, (&mut self.choice, follows)) {
-            self.scrolls = true;
-        }
+        let list = FrameList {
+            frames: &self.passed,
+            choice: &mut self.choice,
+            follows: !self.scrolls && self.paused.is_none(),
+        };
+        self.scrolls |= list.ui(ui, pane);
     }
 
     fn why_empty(&self, pane: &Pane<'_>) -> Text {
-        if pane.state.hand().connection.endpoint.is_none() {
+        if pane.hand().connection.endpoint.is_none() {
             traffic::EMPTY_LINK
-        } else if pane.state.hand().connection.traffic.frames().is_empty() {
+        } else if pane.hand().connection.traffic.frames().is_empty() {
             traffic::EMPTY
         } else {
             traffic::EMPTY_FILTER
@@ -113,7 +114,7 @@ impl TrafficView {
 
     fn count(&self, pane: &Pane<'_>) -> String {
         let look = pane.look;
-        let live = &pane.state.hand().connection.traffic;
+        let live = &pane.hand().connection.traffic;
         let (shown, all) = (self.passed.len(), live.frames().len());
         let of = look.say(traffic::SHOWN_OF);
         let text = format!("{shown} {of} {all} {}", look.say(traffic::FRAMES));
@@ -135,7 +136,7 @@ impl TrafficView {
         let pause = Button::said(look, text);
         let pause = pause.named(look.say(traffic::PAUSE_NAME)).switch(is_paused);
         if pause.ui(ui, look).clicked() {
-            let live = &pane.state.hand().connection.traffic;
+            let live = &pane.hand().connection.traffic;
             self.paused = (!is_paused).then(|| Paused {
                 frames: live.frames().clone(),
                 changes: live.changes(),
@@ -144,19 +145,15 @@ impl TrafficView {
             // What is shown from now on has a history of its own.
             self.update(pane);
         }
-        let follow = Button::said(look, traffic::FOLLOW);
-        let follow = follow
-            .named(look.say(traffic::FOLLOW_NAME))
-            .switch(!self.scrolls);
-        if follow.ui(ui, look).clicked() {
-            self.scrolls = !self.scrolls;
-        }
+        let follow = Button::said(look, traffic::FOLLOW).switch(!self.scrolls);
+        let follow = follow.named(look.say(traffic::FOLLOW_NAME));
+        follow.flips(ui, look, &mut self.scrolls);
         let nothing = self.passed.is_empty();
         let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
         let clear = Button::said(look, traffic::CLEAR);
         let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
         if clear.ui(ui, look).clicked() {
-            let newest = pane.state.hand().connection.traffic.newest();
+            let newest = pane.hand().connection.traffic.newest();
             self.filter.cleared = self.paused.as_ref().map_or(newest, |paused| paused.newest);
             self.choice = ChosenFrames::default();
         }
@@ -183,22 +180,19 @@ impl TrafficView {
         let look = pane.look;
         let filter = &mut self.filter;
         ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
-            kit::edit_ui(ui, look.both(traffic::FILTER), &mut filter.text);
+            kit::edit_said_ui(ui, look, traffic::FILTER, &mut filter.text);
         });
         let ways = [
             (None, traffic::WAY_ALL),
             (Some(Direction::ToHand), traffic::WAY_OUT),
             (Some(Direction::FromHand), traffic::WAY_IN),
         ];
-        kit::pick_ui(ui, look, (&mut filter.direction, traffic::WAY_TIP), ways);
+        Pick::new(look, traffic::WAY_TIP).ui(ui, &mut filter.direction, ways);
         for (text, on) in [
             (traffic::WRONG_ONLY, &mut filter.wrong_only),
             (traffic::HIDE_POLLING, &mut filter.hide_polling),
         ] {
-            let button = Button::said(look, text).switch(*on);
-            if button.ui(ui, look).clicked() {
-                *on = !*on;
-            }
+            Button::said(look, text).switch(*on).flips(ui, look, on);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{
-    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, TextField, Weight,
+    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, Pick, TextField, Weight,
 };
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
@@ -16,9 +16,9 @@ use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::{self, TableView};
-use crate::ui::trials::overshoot::OvershootView;
+use crate::ui::trials::overshoot::{OvershootView, no_trials_ui};
 use crate::ui::trials::tune_live::{self, LiveChart};
-use egui::{Align2, Panel, ScrollArea, Sense, Ui, vec2};
+use egui::{Panel, ScrollArea, Ui, vec2};
 
 const NOTE_CHARS: usize = 300;
 /// From this width on the best stands beside curves and table, and from that one on beside the curves.
@@ -66,7 +66,7 @@ impl ResultsView {
                     }
                     kit::left_ui(ui, |ui| {
                         let all = [(false, tune::MAP_TRIALS), (true, tune::MAP_SHOW)];
-                        kit::pick_ui(ui, look, (&mut self.is_of_hand, tune::MAP_WHICH), all);
+                        Pick::new(look, tune::MAP_WHICH).ui(ui, &mut self.is_of_hand, all);
                     });
                 });
             });
@@ -106,7 +106,7 @@ impl ResultsView {
         let mut comparison = self.comparison(pane, focus.id);
         comparison.judge(self.best.criterion());
         let room = ui.available_size();
-        let run = pane.state.hand().series.as_ref();
+        let run = pane.hand().series.as_ref();
         let runs = run.is_some_and(|run| run.session == focus.id);
         let is_empty = comparison.rows.is_empty();
         if runs && is_empty {
@@ -259,17 +259,9 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
 
 /// Nothing to show yet: why, and what to do.
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, palette) = (pane.look, pane.look.palette);
+    let look = pane.look;
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.24);
-        let size = vec2(ui.available_width(), 64.0);
-        let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-        let (font, center) = (theme::icon_high(place.height()), Align2::CENTER_CENTER);
-        ui.painter()
-            .text(place.center(), center, theme::TUNE, font, palette.faint);
-        let title = Label::said(look, tune::IDLE_TITLE);
-        title.font(theme::title()).ui(ui);
-        Label::muted(look, tune::IDLE_BODY).wrap().ui(ui);
+        no_trials_ui(ui, look, tune::IDLE_TITLE, tune::IDLE_BODY);
         ui.add_space(theme::GAP);
         let open = Button::said(look, tune::OPEN_EARLIER).large();
         open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
@@ -280,12 +272,10 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
-    let back = Choice::new(tune::FORGET_NOT, ButtonRole::Safe);
-    let forget = Choice::new(tune::FORGET_SURE, ButtonRole::Danger);
-    let card = Card::new(look, tune::FORGET_TITLE)
-        .words(compare_list::name(look, session.id))
-        .warning(loses)
-        .choice(back.does(Action::Trial(TrialAction::CancelForget)))
-        .choice(forget.does(Action::Trial(TrialAction::ConfirmForget)));
-    Some(card)
+    let keep = Action::Trial(TrialAction::CancelForget);
+    let back = Choice::new(tune::FORGET_NOT, ButtonRole::Safe, keep);
+    let forget = Action::Trial(TrialAction::ConfirmForget);
+    let forget = Choice::new(tune::FORGET_SURE, ButtonRole::Danger, forget);
+    let card = Card::new(look, tune::FORGET_TITLE).words(compare_list::name(look, session.id));
+    Some(card.warning(loses).choice(back).choice(forget))
 }

@@ -4,7 +4,7 @@
 use crate::app::trials::{Comparison, TrialSession};
 use crate::trials::Criterion;
 use crate::trials::best::{MetricSpread, Score};
-use crate::ui::kit::{self, Label, NumberField, Pane};
+use crate::ui::kit::{self, Label, NumberField, Pane, Pick};
 use crate::ui::text::tune;
 use crate::ui::theme::{self, Palette};
 use crate::ui::trials::compare_columns::setting_words;
@@ -63,7 +63,7 @@ impl BestView {
         let look = pane.look;
         self.choice_ui(ui, pane);
         best_ui(ui, pane, comparison);
-        let own = pane.state.hand().connection.name();
+        let own = pane.hand().connection.name();
         if focus.head.hand != own {
             let words = look.fill(tune::TRIED_ON, &[&focus.head.hand]);
             kit::say_ui(ui, &words, look.palette.warn);
@@ -84,7 +84,7 @@ impl BestView {
                 (Wanted::LeastOvershoot, tune::LEAST_OVER),
                 (Wanted::Fastest, tune::FASTEST),
             ];
-            kit::pick_ui(ui, look, (&mut self.wanted, tune::BEST.tip()), all);
+            Pick::new(look, tune::BEST.tip()).ui(ui, &mut self.wanted, all);
         });
         ui.horizontal(|ui| {
             let name = look.say(tune::HOLD_AT_LEAST);
@@ -115,7 +115,7 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
             star.named(look.say(tune::BEST_SIGN)).ui(ui);
         }
         let label = Label::new(&text, color).named(look.say(tune::BEST));
-        label.font(theme::title()).ui(ui);
+        label.title().ui(ui);
         promotion.button_ui(ui, pane, tune::PROMOTE);
     });
     if let Some(over) = best.and_then(|best| best.overshoot_g) {
@@ -159,6 +159,12 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     let count = f32::from(u8::try_from(forces.len().max(1)).unwrap_or(u8::MAX));
     let width = (ui.available_width() - HEAD.x) / count - GAP;
     let size = vec2(width.clamp(44.0, 84.0), 24.0);
+    let map = OvershootMap {
+        pane,
+        comparison,
+        size,
+        span,
+    };
     let head_ui = |ui: &mut Ui, size: Vec2, text: String| {
         let (_, place) = ui.allocate_space(size);
         let (middle, font) = (Align2::CENTER_CENTER, theme::number());
@@ -180,11 +186,9 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
                         let setting = score.setting;
                         setting.speed.get() == *speed && setting.force.get() == *force
                     };
-                    if let Some(score) = scores.iter().find(is_own) {
-                        let is_best = comparison.is_best(score.setting);
-                        cell_ui(ui, pane, (score, size, span), is_best);
-                    } else {
-                        ui.allocate_space(size);
+                    match scores.iter().find(is_own) {
+                        Some(score) => map.cell_ui(ui, score),
+                        None => drop(ui.allocate_space(size)),
                     }
                 }
                 ui.end_row();
@@ -206,39 +210,45 @@ fn part(value: f64, span: MetricSpread) -> f64 {
     }
 }
 
-fn cell_ui(
-    ui: &mut Ui,
-    pane: &Pane<'_>,
-    (score, size, span): (&Score, Vec2, Option<MetricSpread>),
-    is_best: bool,
-) {
-    let palette = pane.look.palette;
-    let over = score.overshoot_g.map(|spread| spread.max);
-    let text = over.map_or_else(|| "-".to_owned(), |over| format!("{over:.0}"));
-    let name = format!("{}: {text} g", setting_words(score.setting));
-    let (cell, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
-    response.on_hover_text(&name);
-    let level = over.zip(span).map(|(over, span)| part(over, span));
-    let (ground, ink) = match level {
-        _ if is_best => (palette.ok, Palette::ink_on(palette.ok)),
-        Some(level) => {
-            let ground = palette.scale(level);
-            (ground, Palette::ink_on(ground))
+/// What the cells of the map are drawn from.
+struct OvershootMap<'a, 'p> {
+    pane: &'a Pane<'p>,
+    comparison: &'a Comparison,
+    /// Of a cell.
+    size: Vec2,
+    /// What was measured in all of them.
+    span: Option<MetricSpread>,
+}
+
+impl OvershootMap<'_, '_> {
+    fn cell_ui(&self, ui: &mut Ui, score: &Score) {
+        let palette = self.pane.look.palette;
+        let is_best = self.comparison.is_best(score.setting);
+        let over = score.overshoot_g.map(|spread| spread.max);
+        let text = over.map_or_else(|| "-".to_owned(), |over| format!("{over:.0}"));
+        let name = format!("{}: {text} g", setting_words(score.setting));
+        let (cell, response) = ui.allocate_exact_size(self.size, Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &name));
+        response.on_hover_text(&name);
+        let level = over.zip(self.span).map(|(over, span)| part(over, span));
+        let (ground, ink) = match level {
+            _ if is_best => (palette.ok, Palette::ink_on(palette.ok)),
+            Some(level) => {
+                let ground = palette.scale(level);
+                (ground, Palette::ink_on(ground))
+            }
+            None => (palette.sunken, palette.muted),
+        };
+        ui.painter()
+            .rect_filled(cell, CornerRadius::same(theme::ROUND_TINY), ground);
+        let (middle, font) = (Align2::CENTER_CENTER, theme::number());
+        ui.painter().text(cell.center(), middle, text, font, ink);
+        if is_best {
+            let at = cell.left_center() + vec2(theme::STEP, 0.0);
+            let left = Align2::LEFT_CENTER;
+            let font = theme::icon_high(theme::SIGN_SMALL);
+            ui.painter().text(at, left, theme::BEST, font, ink);
         }
-        None => (palette.sunken, palette.muted),
-    };
-    ui.painter()
-        .rect_filled(cell, CornerRadius::same(theme::ROUND_TINY), ground);
-    let (middle, font) = (Align2::CENTER_CENTER, theme::number());
-    ui.painter().text(cell.center(), middle, text, font, ink);
-    if is_best {
-        let (at, left) = (
-            cell.left_center() + vec2(theme::STEP, 0.0),
-            Align2::LEFT_CENTER,
-        );
-        let font = theme::icon_high(theme::SIGN_SMALL);
-        ui.painter().text(at, left, theme::BEST, font, ink);
     }
 }
 

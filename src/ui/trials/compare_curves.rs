@@ -4,12 +4,12 @@
 use crate::app::trials::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, TrialQuantity,
 };
-use crate::ui::kit::{Button, Label, Pane, dash};
+use crate::ui::kit::{Button, Label, Pane, Pick, dash};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartResponse, ChartView, Points};
 use crate::ui::plots::legend::{LegendKey, legend_ui};
 use crate::ui::plots::scales;
 use crate::ui::plots::times::Times;
-use crate::ui::text::{Text, tune, words};
+use crate::ui::text::{tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::setting_words;
@@ -140,35 +140,28 @@ impl CurvesView {
 
     fn choices_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let choice = |ui: &mut Ui, (text, tip): (Text, Text), is_chosen: bool| {
-            let button = Button::new(look.say(text), look.say(tip)).choice(is_chosen);
-            button.ui(ui, look).clicked()
-        };
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
-            for shown in TrialQuantity::ALL {
-                if choice(
-                    ui,
-                    (tune::quantity(shown), tune::SHOWN_TIP),
-                    self.shown == shown,
-                ) {
-                    self.shown = shown;
-                }
-            }
+            let all = TrialQuantity::ALL.map(|shown| (shown, tune::quantity(shown)));
+            Pick::new(look, tune::SHOWN_TIP).ui(ui, &mut self.shown, all);
             ui.add_space(theme::PAD);
             for (align, text) in [
                 (Align::Command, tune::ON_COMMAND),
                 (Align::Contact, tune::ON_CONTACT),
             ] {
-                if choice(ui, (text, tune::ALIGN_TIP), self.align == align) {
+                let button = Button::new(look.say(text), look.say(tune::ALIGN_TIP));
+                if button.choice(self.align == align).ui(ui, look).clicked() {
                     self.align = align;
                     self.chart.time.follow();
                 }
             }
             let picture = self.picture.as_ref().map(|(_, picture)| picture);
+            let warn = |ui: &mut Ui, text: &str| {
+                Label::new(text, look.palette.warn).small().ui(ui);
+            };
             if let Some(few) = picture.filter(|picture| picture.lines.len() < picture.all) {
-                let text = format!("{} {} {}", few.lines.len(), look.say(tune::OF_ALL), few.all);
-                Label::new(&text, look.palette.warn).small().ui(ui);
+                let of = look.say(tune::OF_ALL);
+                warn(ui, &format!("{} {of} {}", few.lines.len(), few.all));
             }
             let missed = picture.map_or(0, |picture| {
                 let lines = picture.lines.iter();
@@ -176,8 +169,7 @@ impl CurvesView {
             });
             let has_contact = picture.is_some_and(|picture| missed < picture.lines.len());
             if self.align == Align::Contact && missed > 0 && has_contact {
-                let text = look.fill(tune::NO_CONTACT_DRAWN, &[&missed]);
-                Label::new(&text, look.palette.warn).small().ui(ui);
+                warn(ui, &look.fill(tune::NO_CONTACT_DRAWN, &[&missed]));
             }
         });
     }
@@ -258,9 +250,8 @@ impl<'a> DrawnTrials<'a> {
         }
         let mut groups: Vec<LineGroup> = Vec::new();
         for line in &self.picture.lines {
-            let group = self
-                .row(line.key)
-                .map(|seen| self.comparison.group(line.key, seen));
+            let seen = self.row(line.key);
+            let group = seen.map(|seen| self.comparison.group(line.key, seen));
             groups.extend(group.filter(|group| !groups.contains(group)));
         }
         for group in groups {
@@ -284,17 +275,12 @@ impl<'a> DrawnTrials<'a> {
 
 fn group_color(pane: &Pane<'_>, comparison: &Comparison, group: LineGroup) -> Color32 {
     let palette = pane.look.palette;
+    let settings = &comparison.settings;
+    let is_best = |at: usize| settings.get(at).is_some_and(|own| comparison.is_best(*own));
     let (at, count) = match group {
         LineGroup::Joint(dof) => return palette.dof[dof],
-        LineGroup::Setting(at)
-            if comparison
-                .settings
-                .get(at)
-                .is_some_and(|own| comparison.is_best(*own)) =>
-        {
-            return palette.ok;
-        }
-        LineGroup::Setting(at) => (at, comparison.settings.len()),
+        LineGroup::Setting(at) if is_best(at) => return palette.ok,
+        LineGroup::Setting(at) => (at, settings.len()),
         LineGroup::Session(at) => (at, comparison.sessions().len()),
     };
     let number = |count: usize| f64::from(u8::try_from(count).unwrap_or(u8::MAX));

@@ -2,12 +2,12 @@
 
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
-use crate::ui::kit::{Label, Look, dash};
+use crate::ui::kit::{self, Label, Look, dash};
 use crate::ui::text::tune;
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::ShownSessions;
-use egui::{Align, Color32, Layout, Role, Stroke, Ui, WidgetInfo};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, Role, Stroke, Ui, WidgetInfo};
+use egui_extras::{Column, TableRow};
 use egui_plot::LineStyle;
 
 const ROW: f32 = 24.0;
@@ -32,9 +32,7 @@ pub(crate) fn name(look: Look, id: SessionId) -> String {
 pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: SessionId) -> LineStyle {
     let count = shown.len();
     let at = shown.into_iter().position(|own| own == id);
-    at.map_or(LineStyle::Solid, |at| {
-        dash::nth(count.saturating_sub(at + 1))
-    })
+    dash::nth(at.map_or(0, |at| count.saturating_sub(at + 1)))
 }
 
 /// Draws the list, the newest first.
@@ -42,9 +40,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSe
     let sessions = &sheet.trials.sessions;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let mut table = TableBuilder::new(ui)
-            .id_salt("sessions")
-            .cell_layout(Layout::left_to_right(Align::Center))
+        let mut table = kit::table(ui, "sessions")
             .auto_shrink([false, true])
             .max_scroll_height(3.4 * ROW);
         for width in LEFT {
@@ -64,8 +60,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSe
     });
     if sessions.iter().any(|session| session.lost > 0) {
         let look = sheet.look;
-        let why = Label::new(look.say(tune::LOST_WHY), look.palette.warn);
-        why.small().wrap().ui(ui);
+        kit::say_ui(ui, look.say(tune::LOST_WHY), look.palette.warn);
     }
 }
 
@@ -91,19 +86,14 @@ fn row_ui(
             chosen.choose(id);
         }
     });
-    row.col(|ui| {
-        let about = about(session);
-        Label::new(&about, palette.muted).small().ui(ui);
-    });
     let trials = look.fill(tune::TRIALS, &[&session.trials.len()]);
-    row.col(|ui| {
-        Label::new(&trials, palette.muted).small().ui(ui);
-    });
-    row.col(|ui| {
-        let (state, color) = state(sheet, session);
-        let label = look.fill(tune::STATE, &[&name]);
-        Label::new(&state, color).small().named(&label).ui(ui);
-    });
+    for words in [about(session), trials] {
+        Label::new(&words, palette.muted).small().column_ui(row);
+    }
+    let (state, color) = state(sheet, session);
+    let label = look.fill(tune::STATE, &[&name]);
+    let state = Label::new(&state, color).small();
+    state.named(&label).column_ui(row);
 }
 
 fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut ShownSessions) {
@@ -131,14 +121,10 @@ fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut Sho
 /// The day, the hand, the words. What was tried on the built-in hand belongs to no day.
 fn about(session: &TrialSession) -> String {
     let head = &session.head;
-    let day = (!head.simulated).then(|| head.day.clone());
-    let parts = [
-        day.unwrap_or_default(),
-        head.hand.clone(),
-        head.note.clone(),
-    ];
-    let parts = parts.into_iter().chain([head.tags.join(", ")]);
-    let parts: Vec<String> = parts.filter(|part| !part.is_empty()).collect();
+    let day = if head.simulated { "" } else { &head.day };
+    let tags = head.tags.join(", ");
+    let mut parts = vec![day, &head.hand, &head.note, &tags];
+    parts.retain(|part| !part.is_empty());
     parts.join("  ")
 }
 

@@ -12,10 +12,8 @@ use crate::ui::trials::compare_choice::TrialKey;
 use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
-use egui::{
-    Align, Color32, Layout, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2,
-};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui_extras::{Column, TableRow};
 
 /// Height of a row, and of the heads.
 const ROW: f32 = 20.0;
@@ -107,10 +105,8 @@ impl TableView {
             replay: None,
         };
         ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-            let table = TableBuilder::new(ui)
-                .id_salt(("trials", several))
+            let table = kit::table(ui, ("trials", several))
                 .sense(Sense::click())
-                .cell_layout(Layout::left_to_right(Align::Center))
                 .min_scrolled_height(0.0)
                 .auto_shrink(false)
                 .column(Column::exact(first))
@@ -170,10 +166,8 @@ impl<'a> TrialSheet<'a, '_> {
                 By::End => (None, seen.map(|seen| self.end(seen))),
                 By::Number(metric) => {
                     let own = COLUMNS.iter().find(|column| column.metric == metric);
-                    let value = own
-                        .zip(seen)
-                        .and_then(|(own, seen)| (own.value)(seen.joint));
-                    (value, None)
+                    let cell = own.zip(seen);
+                    (cell.and_then(|(own, seen)| (own.value)(seen.joint)), None)
                 }
             }
         };

@@ -6,12 +6,12 @@ use crate::app::trials::TrialAction;
 use crate::hand::Dof;
 use crate::hand::impact::overshoot_g;
 use crate::hand::overshoot::{MeasuredCloses, Stages, Stiffness};
-use crate::ui::kit::{self, Button, Label, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Pick, Weight};
 use crate::ui::plots::scales;
-use crate::ui::text::{tune, words};
+use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
-use egui::{Align, Align2, Color32, Layout, Role, Sense, Ui, WidgetInfo, vec2};
-use egui_extras::{Column, TableBuilder, TableRow};
+use egui::{Color32, Role, Sense, Ui, WidgetInfo, vec2};
+use egui_extras::{Column, TableRow};
 use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 
 const ROW: f32 = 20.0;
@@ -21,7 +21,7 @@ const TABLE_SHARE: f32 = 0.45;
 const LEAST: [f64; 2] = [50.0, 50.0];
 /// Points of the line of the other hand.
 const STEPS: u32 = 60;
-const COLUMNS: [(crate::ui::text::Text, f32); 7] = [
+const COLUMNS: [(Text, f32); 7] = [
     (tune::MAP_SPEED, 72.0),
     (tune::MAP_THRESHOLD, 88.0),
     (tune::MAP_OBJECT, 88.0),
@@ -43,7 +43,7 @@ pub(crate) struct OvershootView {
 impl OvershootView {
     /// Draws it over all of `ui`.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let map = &pane.state.hand().overshoot.map;
+        let map = &pane.hand().overshoot.map;
         if map.is_empty() {
             self.asks = false;
             return empty_ui(ui, pane);
@@ -56,13 +56,8 @@ impl OvershootView {
         kinds.retain(|own| dof.is_none_or(|dof| own.kind.dof == dof));
         kinds.sort_by_key(|own| {
             let kind = own.kind;
-            (
-                kind.dof,
-                kind.stages,
-                kind.threshold,
-                kind.speed,
-                kind.stiffness,
-            )
+            let what = (kind.dof, kind.stages);
+            (what, kind.threshold, kind.speed, kind.stiffness)
         });
         let rows = f32::from(u16::try_from(kinds.len() + 1).unwrap_or(u16::MAX));
         let height = (rows * ROW + theme::GAP).min(ui.available_height() * TABLE_SHARE);
@@ -78,7 +73,7 @@ impl OvershootView {
         let all = all.map(|dof| (Some(dof), words::dof(dof)));
         let all: Vec<_> = std::iter::once((None, tune::MAP_ALL)).chain(all).collect();
         ui.horizontal(|ui| {
-            kit::pick_ui(ui, look, (&mut self.dof, tune::MAP_PICK), all);
+            Pick::new(look, tune::MAP_PICK).ui(ui, &mut self.dof, all);
             kit::right_ui(ui, |ui| self.use_ui(ui, pane));
         });
     }
@@ -102,17 +97,21 @@ impl OvershootView {
 
 /// Nothing was measured: what that means, and how it comes.
 fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
-        ui.add_space(ui.available_height() * 0.24);
-        let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), 64.0), Sense::hover());
-        let (font, center) = (theme::icon_high(place.height()), Align2::CENTER_CENTER);
-        let painter = ui.painter();
-        painter.text(place.center(), center, theme::TUNE, font, palette.faint);
-        let title = Label::said(look, tune::MAP_EMPTY);
-        title.font(theme::title()).ui(ui);
-        Label::muted(look, tune::MAP_EMPTY_BODY).wrap().ui(ui);
+        no_trials_ui(ui, pane.look, tune::MAP_EMPTY, tune::MAP_EMPTY_BODY);
     });
+}
+
+/// A sign, and in words that nothing was tried yet.
+pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
+    ui.add_space(ui.available_height() * 0.24);
+    let size = vec2(ui.available_width(), 64.0);
+    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let sign = Label::new(theme::TUNE, look.palette.faint);
+    let sign = sign.font(theme::icon_high(size.y)).center();
+    sign.paint(ui, place);
+    Label::said(look, title).title().ui(ui);
+    Label::muted(look, body).wrap().ui(ui);
 }
 
 /// Overshoot over speed, a point for each kind of close; the other hand's as a line.
@@ -139,17 +138,13 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     ui.horizontal_wrapped(|ui| {
         for stiffness in Stiffness::ALL {
             if kinds.iter().any(|own| own.kind.stiffness == stiffness) {
-                let text = format!(
-                    "{} {}",
-                    sign(stiffness),
-                    look.say(tune::stiffness(stiffness))
-                );
+                let name = look.say(tune::stiffness(stiffness));
+                let text = format!("{} {name}", sign(stiffness));
                 Label::new(&text, palette.text).small().ui(ui);
             }
         }
-        Label::new(&format!("- - {caption}"), palette.muted)
-            .small()
-            .ui(ui);
+        let caption = format!("- - {caption}");
+        Label::new(&caption, palette.muted).small().ui(ui);
         Label::note(look, tune::MAP_AXES).ui(ui);
     });
     let mut pointed = None;
@@ -175,7 +170,7 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false);
-    let response = plot.show(ui, |plot| {
+    let shown = plot.show(ui, |plot| {
         let line = Line::new("", PlotPoints::from_iter(other)).color(palette.muted);
         plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
         let pointer = plot.pointer_coordinate();
@@ -192,7 +187,7 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
             }
         }
     });
-    let response = response.response;
+    let response = shown.response;
     let name = look.say(tune::MAP_NAME);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
     if let Some(own) = pointed {
@@ -236,9 +231,7 @@ const fn sign(stiffness: Stiffness) -> &'static str {
 fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
-    let mut table = TableBuilder::new(ui)
-        .id_salt("kinds of closes")
-        .cell_layout(Layout::left_to_right(Align::Center))
+    let mut table = kit::table(ui, "kinds of closes")
         .min_scrolled_height(0.0)
         .auto_shrink(false)
         .column(Column::remainder().at_least(96.0).clip(true));
@@ -270,10 +263,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, own: &MeasuredCloses) {
         Stages::One => name.to_owned(),
         Stages::Two => format!("{name}, {}", look.say(tune::MAP_TWO)),
     };
-    row.col(|ui| {
-        let color = palette.dof[kind.dof];
-        Label::new(&name, color).ui(ui);
-    });
+    Label::new(&name, palette.dof[kind.dof]).column_ui(row);
     let figures = [
         kind.speed.get().to_string(),
         format!("{} g", kind.threshold.get()),
@@ -284,8 +274,6 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, own: &MeasuredCloses) {
         own.last.clone(),
     ];
     for figure in figures {
-        row.col(|ui| {
-            Label::new(&figure, palette.text).small().number().ui(ui);
-        });
+        Label::new(&figure, palette.text).number().column_ui(row);
     }
 }

@@ -2,13 +2,13 @@
 //! card asks first.
 
 use crate::app::action::Action;
-use crate::app::params::state::Doing;
 use crate::app::params::{ParamAction, ParamRefusal};
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::trials::TrialSetting;
 use crate::ui::kit::{self, Button, Pane, Weight};
+use crate::ui::params::flash;
 use crate::ui::text::{Text, device};
 use egui::Ui;
 
@@ -32,7 +32,7 @@ impl<'a> Promotion<'a> {
         for (id, value) in settings.flat_map(|(dof, setting)| defaults(dof, setting)) {
             values.put(id, value);
         }
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let refusal = hand
             .params
             .save_refusal_with(&values, &hand.connection.status);
@@ -57,19 +57,14 @@ impl<'a> Promotion<'a> {
 
     /// Whether they are kept, and why they cannot be.
     pub(crate) fn end_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
-        let (look, palette) = (pane.look, pane.look.palette);
-        let book = &pane.state.hand().params;
+        let palette = pane.look.palette;
+        let book = &pane.hand().params;
         let is_held =
             !self.values.is_empty() && book.live_params().with(&self.values) == book.live_params();
-        if let Some(doing) = device::doing(book.doing).filter(|_| book.doing != Doing::Reading) {
-            kit::say_ui(ui, look.say(doing), palette.accent);
-        } else if let Some((end, _)) = book.save.as_ref().filter(|_| is_held) {
-            let color = if device::is_saved(end) {
-                palette.ok
-            } else {
-                palette.bad
-            };
-            kit::say_ui(ui, &device::save_end(look, end), color);
+        if let Some(doing) = flash::doing(pane) {
+            kit::say_ui(ui, doing, palette.accent);
+        } else if let Some((words, color)) = flash::save_end(pane).filter(|_| is_held) {
+            kit::say_ui(ui, &words, color);
         } else if let Some(refusal) = self
             .refusal
             .filter(|_| !self.passes && !self.values.is_empty())

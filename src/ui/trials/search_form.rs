@@ -19,18 +19,16 @@ use std::ops::RangeInclusive;
 
 /// Draws it over all of `ui`.
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let runs = hand.runs_series() || hand.series_asked.is_some();
-    ScrollArea::vertical()
-        .id_salt("search")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
-            if let Some(search) = &pane.state.trials.search {
-                ui.add_space(theme::GAP);
-                search_ui(ui, pane, search);
-            }
-        });
+    let area = ScrollArea::vertical().id_salt("search");
+    area.auto_shrink(false).show(ui, |ui| {
+        ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
+        if let Some(search) = &pane.state.trials.search {
+            ui.add_space(theme::GAP);
+            search_ui(ui, pane, search);
+        }
+    });
 }
 
 fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
@@ -44,29 +42,22 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
         goal.close[dof] = (!takes_part[dof]).then_some(Angle::MIN);
     }
     let limits = LIMIT_MIN_G..=Force::RATED.get();
-    if let Some(limit) = number_ui(ui, pane, search::LIMIT, (limits, goal.limit_g)) {
+    if let Some(limit) = GoalNumber::new(search::LIMIT, limits).ui(ui, pane, goal.limit_g) {
         let was_usual = goal.hold_g == SearchGoal::usual_hold_g(goal.limit_g);
         goal.limit_g = limit;
         if was_usual {
             goal.hold_g = SearchGoal::usual_hold_g(limit);
         }
     }
-    if let Some(hold) = number_ui(
-        ui,
-        pane,
-        search::HOLD,
-        (0..=Force::RATED.get(), goal.hold_g),
-    ) {
-        goal.hold_g = hold;
-    }
+    let holds = GoalNumber::new(search::HOLD, 0..=Force::RATED.get());
+    goal.hold_g = holds.ui(ui, pane, goal.hold_g).unwrap_or(goal.hold_g);
     let whole = |closes: usize| i16::try_from(closes).unwrap_or(i16::MAX);
-    let closes = whole(CLOSES_MIN)..=whole(CLOSES_MAX);
-    if let Some(closes) = number_ui(ui, pane, search::CLOSES, (closes, whole(goal.closes))) {
+    let closes = GoalNumber::new(search::CLOSES, whole(CLOSES_MIN)..=whole(CLOSES_MAX));
+    if let Some(closes) = closes.ui(ui, pane, whole(goal.closes)) {
         goal.closes = usize::try_from(closes).unwrap_or(goal.closes);
     }
     captioned_ui(ui, look, "", |ui| {
-        let tick = ui.checkbox(&mut goal.distribution_free, look.say(search::FREE));
-        tick.on_hover_text(look.tip(search::FREE));
+        kit::tick_ui(ui, look, search::FREE, &mut goal.distribution_free)
     });
     if let Err(wrong) = goal.check() {
         kit::say_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
@@ -77,20 +68,27 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     }
 }
 
-/// A number in a row of its own; it, once one that can be taken was typed.
-fn number_ui(
-    ui: &mut Ui,
-    pane: &mut Pane<'_>,
+/// A number of the goal, in a row of its own.
+struct GoalNumber {
     name: Text,
-    (range, value): (RangeInclusive<i16>, i16),
-) -> Option<i16> {
-    let look = pane.look;
-    let (least, most) = range.into_inner();
-    let field = NumberField::new(look.say(name), look.tip(name), least.into()..=most.into());
-    let typed = captioned_ui(ui, look, look.say(name), |ui| {
-        field.whole_ui(ui, pane, Some(value))
-    });
-    typed.and_then(|typed| i16::try_from(typed).ok())
+    range: RangeInclusive<i16>,
+}
+
+impl GoalNumber {
+    const fn new(name: Text, range: RangeInclusive<i16>) -> Self {
+        Self { name, range }
+    }
+
+    /// Draws it; another, once one that can be taken was typed.
+    fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: i16) -> Option<i16> {
+        let look = pane.look;
+        let (name, (least, most)) = (self.name, self.range.into_inner());
+        let field = NumberField::new(look.say(name), look.tip(name), least.into()..=most.into());
+        let typed = captioned_ui(ui, look, look.say(name), |ui| {
+            field.whole_ui(ui, pane, Some(value))
+        });
+        typed.and_then(|typed| i16::try_from(typed).ok())
+    }
 }
 
 /// How far it is, or what it came to.
@@ -106,21 +104,17 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
                 }
             }
             if !finding.untold.is_empty() {
-                let untold = finding
-                    .untold
-                    .iter()
-                    .map(|what| search::untold(look, *what));
+                let untold = finding.untold.iter();
+                let untold = untold.map(|what| search::untold(look, *what));
                 let untold: Vec<String> = untold.collect();
-                let untold: Vec<&str> = untold.iter().map(String::as_str).collect();
                 let words = look.fill(search::UNTOLD, &[&look.list(&untold)]);
                 kit::say_ui(ui, &words, palette.muted);
             }
         }
         (None, Some(progress)) if runs => {
             kit::say_ui(ui, &search::stage(look, progress.stage), palette.text);
-            let counts: [&dyn std::fmt::Display; 2] =
-                [&progress.tried.len(), &progress.closes_left];
-            let left = look.fill(search::LEFT, &counts);
+            let tried = progress.tried.len();
+            let left = look.fill(search::LEFT, &[&tried, &progress.closes_left]);
             let time = look.fill(tune::LEFT, &[&format::duration(progress.left)]);
             kit::say_ui(ui, &format!("{left} {time}"), palette.muted);
         }

@@ -5,11 +5,11 @@ use crate::app::trials::{SeriesKind, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::{
-    self, Button, Pane, StartButton, StartWish, ViewRequest, Weight, format, start_refused,
+    self, Button, Pane, Pick, StartButton, StartWish, ViewRequest, Weight, format, start_refused,
 };
+use crate::ui::text::tune;
 use crate::ui::text::tune::search;
-use crate::ui::text::{Text, tune};
-use crate::ui::theme::{self, Icon};
+use crate::ui::theme;
 use crate::ui::trials::compare::ResultsView;
 use crate::ui::trials::search_form;
 use crate::ui::trials::tune_form::TuneForm;
@@ -31,18 +31,18 @@ impl TuneView {
         let look = pane.look;
         let width = (ui.available_width() * 0.34).clamp(348.0, 424.0);
         kit::bare(Panel::left("plan"), width, theme::GAP_RIGHT).show(ui, |ui| {
-            kit::card_ui(ui, look, |ui| {
-                ui.set_min_height(ui.available_height());
+            kit::full_card_ui(ui, look, |ui| {
                 kit::head_ui(ui, look, look.say(tune::PLAN), |ui| {
-                    let fold = (theme::TO_LEFT, tune::HIDE_PLAN);
-                    fold_ui(ui, pane, fold, View::Compare);
+                    let fold = Button::said(look, tune::HIDE_PLAN).icon(theme::TO_LEFT);
+                    let fold = fold.weight(Weight::Quiet);
+                    fold.opens(ui, pane, ViewRequest::View(View::Compare));
                 });
                 ui.horizontal(|ui| {
                     let all = [
                         (SeriesKind::Search, search::FIND),
                         (SeriesKind::Grid, search::GRID),
                     ];
-                    kit::pick_ui(ui, look, (&mut self.kind, search::WAY), all);
+                    Pick::new(look, search::WAY).ui(ui, &mut self.kind, all);
                 });
                 let start = Panel::bottom("start").resizable(false);
                 let start = start.show_separator_line(false).frame(Frame::NONE);
@@ -65,7 +65,9 @@ impl TuneView {
     /// Draws the results over all of `ui`, with the plan folded away.
     pub(crate) fn results_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.results.ui(ui, pane, |ui, pane| {
-            fold_ui(ui, pane, (theme::TO_RIGHT, tune::SHOW_PLAN), View::Tune);
+            let unfold = Button::said(pane.look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
+            let unfold = unfold.weight(Weight::Quiet);
+            unfold.opens(ui, pane, ViewRequest::View(View::Tune));
         });
     }
 }
@@ -74,22 +76,13 @@ impl TuneView {
 fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     let wanted = pane.state.trials.planned(kind);
     let unsound = (!wanted.is_sound()).then_some(tune::PLAN_WRONG);
-    let refusal = pane.state.hand().series_refusal(Some(&wanted.trials()));
+    let refusal = pane.hand().series_refusal(Some(&wanted.trials()));
+    let [start, arm] =
+        [TrialAction::Start(kind), TrialAction::ArmAndStart(kind)].map(Action::Trial);
     StartWish {
         refused: start_refused(pane, unsound, refusal),
-        start: (tune::START_BUTTON, Action::Trial(TrialAction::Start(kind))),
-        arm_and_start: (
-            tune::ARM_AND_START,
-            Action::Trial(TrialAction::ArmAndStart(kind)),
-        ),
-    }
-}
-
-/// Folds the plan away, or shows it again.
-fn fold_ui(ui: &mut Ui, pane: &mut Pane<'_>, (icon, text): (Icon, Text), view: View) {
-    let button = Button::said(pane.look, text).icon(icon);
-    if button.weight(Weight::Quiet).ui(ui, pane.look).clicked() {
-        pane.open(ViewRequest::View(view));
+        start: (tune::START_BUTTON, start),
+        arm_and_start: (tune::ARM_AND_START, arm),
     }
 }
 
@@ -106,16 +99,16 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
         words = format!("{words} {}", look.say(tune::WILL_PROBE));
     }
     kit::say_ui(ui, &words, palette.text);
-    if let Some((setting, expected)) = plan.expected(&pane.state.hand().overshoot.map) {
+    if let Some((setting, expected)) = plan.expected(&pane.hand().overshoot.map) {
         let peak = expected.over_g;
         let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
-        let parts: [&dyn std::fmt::Display; 3] = [&peak_g, &setting.speed.get(), &force];
+        let words = look.fill(tune::EXPECT, &[&peak_g, &setting.speed.get(), &force]);
         let color = if peak >= NOTABLE_G {
             palette.warn
         } else {
             palette.muted
         };
-        let label = kit::say_ui(ui, &look.fill(tune::EXPECT, &parts), color);
+        let label = kit::say_ui(ui, &words, color);
         let measured = tune::measured_on(look, &expected.on);
         label.on_hover_text(format!("{}\n{measured}", look.tip(tune::EXPECT)));
     }

@@ -11,6 +11,7 @@ use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, TextField, We
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use egui::{CollapsingHeader, ScrollArea, Ui, vec2};
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
@@ -40,6 +41,30 @@ impl Default for TuneForm {
     }
 }
 
+/// A list of numbers that are tried.
+struct NumberList {
+    field: PlanField,
+    /// The words before it.
+    caption: Text,
+    /// What a screen reader says, with the hint.
+    name: Text,
+    /// The largest number.
+    most: i16,
+}
+
+const SPEEDS: NumberList = NumberList {
+    field: PlanField::Speeds,
+    caption: tune::SPEEDS,
+    name: tune::SPEEDS_NAME,
+    most: Speed::MAX.get(),
+};
+const FORCES: NumberList = NumberList {
+    field: PlanField::Forces,
+    caption: tune::FORCES,
+    name: tune::FORCES_NAME,
+    most: Force::MAX.get(),
+};
+
 /// One pass over the form.
 struct Pass<'a, 'p> {
     pane: &'a mut Pane<'p>,
@@ -57,9 +82,8 @@ pub(crate) fn captioned_ui<R>(
     field: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     let row = ui.horizontal_top(|ui| {
-        kit::cell_ui(ui, vec2(CAPTION, theme::CONTROL), |ui| {
-            Label::new(caption, look.palette.muted).small().ui(ui);
-        });
+        let caption = Label::new(caption, look.palette.muted).small();
+        caption.cell_ui(ui, CAPTION);
         field(ui)
     });
     row.inner
@@ -115,7 +139,7 @@ impl TuneForm {
         self.remember(&plan);
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
-        let hand = pane.state.hand();
+        let hand = pane.hand();
         let runs = hand.runs_series() || hand.series_asked.is_some();
         let mut pass = Pass {
             wrong,
@@ -179,14 +203,10 @@ impl Pass<'_, '_> {
         let (look, plan) = (self.pane.look, &self.plan);
         let limits = plan.limits;
         let [dwell, rest] = [plan.dwell, plan.grid.rest].map(format::duration);
-        let parts: [&dyn std::fmt::Display; 6] = [
-            &look.say(tune::approach(plan.approach)),
-            &dwell,
-            &rest,
-            &limits.ceiling_g,
-            &limits.start_c,
-            &limits.stop_c,
-        ];
+        let approach = look.say(tune::approach(plan.approach));
+        let [start, stop] = [limits.start_c, limits.stop_c];
+        let ceiling = limits.ceiling_g;
+        let parts: [&dyn Display; 6] = [&approach, &dwell, &rest, &ceiling, &start, &stop];
         look.fill(tune::DETAILS_SHORT, &parts)
     }
 
@@ -240,11 +260,10 @@ impl Pass<'_, '_> {
 
     fn way_ui(&mut self, ui: &mut Ui, dof: Dof) {
         let look = self.pane.look;
-        let start = (tune::START_NAME, tune::START.tip());
-        if let Some(angle) = self.angle_ui(ui, (dof, start), self.plan.start[dof]) {
+        if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Start) {
             self.plan.start[dof] = Some(angle);
         }
-        let Some(target) = self.plan.close[dof] else {
+        if self.plan.close[dof].is_none() {
             let name = look.fill(tune::LEAVE, &[&look.say(words::dof(dof))]);
             let button = Button::new(&name, look.tip(tune::LEAVE)).icon(theme::CLOSE);
             let button = button.weight(Weight::Quiet).disabled(self.disabled);
@@ -252,23 +271,22 @@ impl Pass<'_, '_> {
                 self.plan.start[dof] = None;
             }
             return;
-        };
+        }
         Label::note(look, tune::CLOSE).ui(ui);
-        let close = (tune::CLOSE_NAME, tune::CLOSE.tip());
-        if let Some(angle) = self.angle_ui(ui, (dof, close), Some(target)) {
+        if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Close) {
             self.plan.close[dof] = Some(angle);
         }
     }
 
-    fn angle_ui(
-        &mut self,
-        ui: &mut Ui,
-        (dof, (name, tip)): (Dof, (Text, Text)),
-        angle: Option<Angle>,
-    ) -> Option<Angle> {
-        let look = self.pane.look;
+    /// Where a joint begins or ends.
+    fn angle_ui(&mut self, ui: &mut Ui, dof: Dof, side: PlanSide) -> Option<Angle> {
+        let (look, plan) = (self.pane.look, &self.plan);
+        let (name, of, angle) = match side {
+            PlanSide::Start => (tune::START_NAME, tune::START, plan.start[dof]),
+            PlanSide::Close => (tune::CLOSE_NAME, tune::CLOSE, plan.close[dof]),
+        };
         let name = look.fill(name, &[&look.say(words::dof(dof))]);
-        let field = NumberField::new(&name, look.say(tip), 0.0..=1000.0).disabled(self.disabled);
+        let field = NumberField::new(&name, look.tip(of), 0.0..=1000.0).disabled(self.disabled);
         let typed = field.whole_ui(ui, self.pane, angle.map(Angle::get))?;
         Some(Angle::nearest(typed))
     }
@@ -304,46 +322,36 @@ impl Pass<'_, '_> {
 
     fn lists_ui(&mut self, ui: &mut Ui) {
         let grid = &self.plan.grid;
-        let speeds = grid.speeds.iter().map(|own| own.get()).collect();
-        let forces = grid.forces.iter().map(|own| own.get()).collect();
-        let texts = (tune::SPEEDS, tune::SPEEDS_NAME);
-        let speeds = (speeds, Speed::MAX.get());
-        if let Some(speeds) = self.list_ui(ui, PlanField::Speeds, texts, speeds) {
+        let speeds: Vec<i16> = grid.speeds.iter().map(|own| own.get()).collect();
+        let forces: Vec<i16> = grid.forces.iter().map(|own| own.get()).collect();
+        if let Some(speeds) = self.list_ui(ui, &SPEEDS, &speeds) {
             self.plan.grid.speeds = speeds.into_iter().map(Speed::nearest).collect();
         }
-        let texts = (tune::FORCES, tune::FORCES_NAME);
-        let forces = (forces, Force::MAX.get());
-        if let Some(forces) = self.list_ui(ui, PlanField::Forces, texts, forces) {
+        if let Some(forces) = self.list_ui(ui, &FORCES, &forces) {
             self.plan.grid.forces = forces.into_iter().map(Force::nearest).collect();
         }
         let repeats = i32::try_from(self.plan.grid.repeats).unwrap_or(i32::MAX);
-        let at = (PlanField::Repeats, tune::REPEATS);
-        if let Some(repeats) = self.number_ui(ui, at, 1..=1000, repeats) {
+        if let Some(repeats) = self.number_ui(ui, tune::REPEATS, 1..=1000, repeats) {
             self.plan.grid.repeats = usize::try_from(repeats).unwrap_or(1);
         }
+        self.trouble_ui(ui, PlanField::Repeats);
     }
 
     /// A list of numbers; it, once one that can be taken was typed.
-    fn list_ui(
-        &mut self,
-        ui: &mut Ui,
-        field: PlanField,
-        (caption, name): (Text, Text),
-        (numbers, most): (Vec<i16>, i16),
-    ) -> Option<Vec<i16>> {
+    fn list_ui(&mut self, ui: &mut Ui, of: &NumberList, numbers: &[i16]) -> Option<Vec<i16>> {
         let look = self.pane.look;
         let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
-        let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
-        let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
-        let read = self.row_ui(ui, look.say(caption), |pass, ui| {
+        let text = TextField::new(look.say(of.name), LIST_CHARS).hint(look.tip(of.name));
+        let read = |text: &str| list(text, of.most).map_err(|why| tune::list_error(look, why));
+        let read = self.row_ui(ui, look.say(of.caption), |pass, ui| {
             text.read_ui(ui, pass.pane, &numbers.join(", "), read)
         });
-        self.trouble_ui(ui, field);
+        self.trouble_ui(ui, of.field);
         read
     }
 
     /// A line of text in a row of its own.
-    fn text_ui(&mut self, ui: &mut Ui, name: Text, (value, max): (&str, usize)) -> Option<String> {
+    fn text_ui(&mut self, ui: &mut Ui, name: Text, value: &str, max: usize) -> Option<String> {
         let look = self.pane.look;
         let field = TextField::new(look.say(name), max).hint(look.tip(name));
         self.row_ui(ui, look.say(name), |pass, ui| {
@@ -351,11 +359,11 @@ impl Pass<'_, '_> {
         })
     }
 
-    /// A whole number in a row of its own, over what is wrong with it.
+    /// A whole number in a row of its own.
     fn number_ui(
         &mut self,
         ui: &mut Ui,
-        (field, text): (PlanField, Text),
+        text: Text,
         range: RangeInclusive<i32>,
         value: i32,
     ) -> Option<i64> {
@@ -363,11 +371,9 @@ impl Pass<'_, '_> {
         let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
         let number = NumberField::new(look.say(text), look.tip(text), from..=to);
         let number = number.disabled(self.disabled);
-        let typed = self.row_ui(ui, look.say(text), |pass, ui| {
+        self.row_ui(ui, look.say(text), |pass, ui| {
             number.whole_ui(ui, pass.pane, Some(value))
-        });
-        self.trouble_ui(ui, field);
-        typed
+        })
     }
 
     /// A time in a row of its own, over what is wrong with it.
@@ -403,8 +409,8 @@ impl Pass<'_, '_> {
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;
         };
-        let at = (PlanField::Fast, tune::FAST);
-        let typed = self.number_ui(ui, at, 1..=1000, fast.get().into());
+        let typed = self.number_ui(ui, tune::FAST, 1..=1000, fast.get().into());
+        self.trouble_ui(ui, PlanField::Fast);
         let fast = typed.map_or(fast, Speed::nearest);
         let (text, most) = match until {
             Until::Measured { .. } => (tune::UNTIL_MARGIN, 500),
@@ -412,7 +418,8 @@ impl Pass<'_, '_> {
             Until::Proximity(_) => (tune::UNTIL_PROXIMITY, 16_000_000),
             Until::Touch(_) => (tune::UNTIL_TOUCH, 3000),
         };
-        let typed = self.number_ui(ui, (PlanField::Until, text), 0..=most, until.value());
+        let typed = self.number_ui(ui, text, 0..=most, until.value());
+        self.trouble_ui(ui, PlanField::Until);
         let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
         let until = typed.unwrap_or(until);
         self.plan.approach = Approach::TwoStage { fast, until };
@@ -426,28 +433,28 @@ impl Pass<'_, '_> {
 
     fn limits_ui(&mut self, ui: &mut Ui) {
         let limits = self.plan.limits;
-        let at = (PlanField::Ceiling, tune::CEILING_CAPTION);
-        if let Some(ceiling) = self.number_ui(ui, at, 1..=4000, limits.ceiling_g.into()) {
+        let ceiling = limits.ceiling_g.into();
+        if let Some(ceiling) = self.number_ui(ui, tune::CEILING_CAPTION, 1..=4000, ceiling) {
             self.plan.limits.ceiling_g = i16::try_from(ceiling).unwrap_or(i16::MAX);
         }
+        self.trouble_ui(ui, PlanField::Ceiling);
         let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
-        let start = (PlanField::Heat, tune::START_C);
-        if let Some(start) = self.number_ui(ui, start, 1..=100, limits.start_c.into()) {
+        if let Some(start) = self.number_ui(ui, tune::START_C, 1..=100, limits.start_c.into()) {
             self.plan.limits.start_c = celsius(start);
         }
-        let stop = (PlanField::Heat, tune::STOP_C);
-        if let Some(stop) = self.number_ui(ui, stop, 1..=100, limits.stop_c.into()) {
+        self.trouble_ui(ui, PlanField::Heat);
+        if let Some(stop) = self.number_ui(ui, tune::STOP_C, 1..=100, limits.stop_c.into()) {
             self.plan.limits.stop_c = celsius(stop);
         }
     }
 
     fn words_ui(&mut self, ui: &mut Ui) {
         let note = self.plan.note.clone();
-        if let Some(note) = self.text_ui(ui, tune::NOTE, (&note, NOTE_CHARS)) {
+        if let Some(note) = self.text_ui(ui, tune::NOTE, &note, NOTE_CHARS) {
             self.plan.note = note;
         }
         let own = self.plan.tags.join(", ");
-        if let Some(words) = self.text_ui(ui, tune::TAGS, (&own, LIST_CHARS)) {
+        if let Some(words) = self.text_ui(ui, tune::TAGS, &own, LIST_CHARS) {
             self.plan.tags = tags(&words);
         }
     }

@@ -5,12 +5,11 @@ use crate::app::trials::SeriesRun;
 use crate::hand::{Dof, Quantity};
 use crate::history::Series;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, Points};
+use crate::ui::plots::chart::{Chart, ChartCurve, ChartView};
 use crate::ui::plots::times::Times;
 use crate::ui::text::{tune, words};
-use crate::ui::theme;
 use crate::ui::trials::compare_curves::LEAST_S;
-use egui::{Color32, ProgressBar, Role, Stroke, Ui, WidgetInfo};
+use egui::{Color32, Ui};
 
 /// The plot of one trial.
 #[derive(Debug, Default)]
@@ -22,7 +21,7 @@ pub(crate) struct LiveChart {
 /// How far the series is, with what ends it; nothing without one.
 pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
-    let Some(run) = &pane.state.hand().series else {
+    let Some(run) = &pane.hand().series else {
         return;
     };
     let (number, total) = (run.view.number, run.view.total);
@@ -36,7 +35,7 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             pane.actions.push(Action::Stop);
         }
         ui.vertical(|ui| {
-            let label = Label::new(&trial, palette.text).font(theme::title());
+            let label = Label::new(&trial, palette.text).title();
             label.named(name).ui(ui);
             let left = format::duration(run.left(pane.state.now));
             let left = look.fill(tune::LEFT, &[&left]);
@@ -52,26 +51,23 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             });
         });
     });
-    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
-    let share = count(number.saturating_sub(1)) / count(total.max(1));
-    let bar = ProgressBar::new(share).desired_height(6.0);
-    let bar = ui.add(bar.fill(palette.accent));
-    bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
+    let share = kit::share(number.saturating_sub(1), total);
+    kit::progress_ui(ui, look, name, share);
 }
 
 /// The force as it comes.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
     let look = pane.look;
-    let Some(run) = &pane.state.hand().series else {
+    let Some(run) = &pane.hand().series else {
         return;
     };
     if chart.trial != run.view.number {
         chart.view.time.follow();
         chart.trial = run.view.number;
     }
-    let chart = &mut chart.view;
+    let view = &mut chart.view;
     ui.horizontal(|ui| levels_ui(ui, pane, run));
-    let history = &pane.state.hand().measured.history;
+    let history = &pane.hand().measured.history;
     let (from_s, to_s) = (run.since.secs(), pane.state.now.secs());
     let joints = run.plan.joints().filter(|_| run.view.setting.is_some());
     let lines: Vec<(Dof, Series)> = joints
@@ -81,10 +77,9 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
         .iter()
         .filter_map(|(_, series)| history.summary(*series, from_s, to_s));
     let highest = all.map(|all| f64::from(all.max)).fold(0.0, f64::max);
-    let curves = lines.iter().map(|(dof, series)| {
-        let stroke = Stroke::new(theme::LINE, look.palette.dof[*dof]);
-        ChartCurve::new(Points::Measured(history, *series), stroke)
-    });
+    let curves = lines
+        .iter()
+        .map(|(dof, series)| ChartCurve::measured(history, *series, look.palette.dof[*dof]));
     let force = Chart {
         curves: curves.collect(),
         levels: levels(pane, run, highest),
@@ -93,10 +88,9 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
         empty: tune::LIVE_EMPTY,
         ..Chart::new(look, tune::LIVE_FORCE, ui.available_height())
     };
-    chart
-        .time
-        .advance((from_s, to_s), (to_s - from_s).max(LEAST_S));
-    force.ui(ui, chart);
+    let window_s = (to_s - from_s).max(LEAST_S);
+    view.time.advance((from_s, to_s), window_s);
+    force.ui(ui, view);
 }
 
 /// What lines and levels are.

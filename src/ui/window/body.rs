@@ -158,14 +158,13 @@ impl Body {
         }
         let designed = ui.ctx().content_rect().width() * 0.29;
         let size = RoomSize {
+            room: WindowRoom::Joints,
             designed: designed.clamp(JOINTS_LEAST, 520.0) + theme::GAP,
             least: JOINTS_LEAST + theme::GAP,
             rest: PLOTS_LEAST + theme::GAP + STAGE_LEAST,
         };
         let Self { rooms, own, .. } = self;
-        rooms.room_ui(ui, pane, (WindowRoom::Joints, size), |ui, pane| {
-            own.joints.ui(ui, pane);
-        });
+        rooms.room_ui(ui, pane, size, |ui, pane| own.joints.ui(ui, pane));
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
@@ -198,9 +197,7 @@ impl Body {
             for view in Place::Hand.views() {
                 let button = Button::said(pane.look, view.title());
                 let button = button.choice(*view == self.view).large();
-                if button.ui(ui, pane.look).clicked() {
-                    pane.open(ViewRequest::View(*view));
-                }
+                button.opens(ui, pane, ViewRequest::View(*view));
             }
         });
         ui.add_space(theme::STEP);
@@ -210,7 +207,7 @@ impl Body {
     fn all_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let strip = strip_size(ui.available_height());
         let Self { rooms, all, .. } = self;
-        rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
+        rooms.room_ui(ui, pane, strip, pose_tiles::strip_ui);
         all.ui(ui, pane);
     }
 
@@ -225,10 +222,11 @@ impl Body {
         // Under a time line, a small window has room for what was measured only; no pose can be taken there anyway.
         let has_room = pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES;
         if has_room && self.view != View::Poses {
-            rooms.room_ui(ui, pane, (WindowRoom::Strip, strip), pose_tiles::strip_ui);
+            rooms.room_ui(ui, pane, strip, pose_tiles::strip_ui);
         }
         let width = ui.available_width();
         let stage = RoomSize {
+            room: WindowRoom::Stage,
             designed: (width * 0.45).clamp(STAGE_LEAST, 680.0) + theme::GAP,
             least: STAGE_LEAST + theme::GAP,
             rest: match self.view {
@@ -239,9 +237,7 @@ impl Body {
             },
         };
         if width >= stage.least + stage.rest {
-            rooms.room_ui(ui, pane, (WindowRoom::Stage, stage), |ui, pane| {
-                own.touch.small_ui(ui, pane);
-            });
+            rooms.room_ui(ui, pane, stage, |ui, pane| own.touch.small_ui(ui, pane));
         }
         let rect = ui.available_rect_before_wrap();
         match self.view {
@@ -282,9 +278,7 @@ fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let row = Layout::right_to_left(Align::Center);
     ui.allocate_ui_with_layout(size, row, |ui| {
         let back = Button::said(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
-        if back.ui(ui, pane.look).clicked() {
-            pane.open(ViewRequest::View(View::Live));
-        }
+        back.opens(ui, pane, ViewRequest::View(View::Live));
     });
 }
 
@@ -292,6 +286,7 @@ fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn strip_size(view: f32) -> RoomSize {
     let designed = if view < 560.0 { STRIP_LEAST } else { STRIP };
     RoomSize {
+        room: WindowRoom::Strip,
         designed: designed + theme::GAP,
         least: STRIP_LEAST + theme::GAP,
         rest: 300.0,

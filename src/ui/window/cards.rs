@@ -37,7 +37,7 @@ fn leave_card(state: &State, look: Look) -> Option<Card> {
     if question.edits > 0 {
         card = card.warning(look.fill(window::LEAVE_EDITS, &[&question.edits]));
     }
-    let stay = Choice::new(window::STAY, ButtonRole::Safe).does(Action::Stay);
-    let leave = Choice::new(window::LEAVE, ButtonRole::Danger).does(Action::Leave);
+    let stay = Choice::new(window::STAY, ButtonRole::Safe, Action::Stay);
+    let leave = Choice::new(window::LEAVE, ButtonRole::Danger, Action::Leave);
     Some(card.choice(stay).choice(leave))
 }

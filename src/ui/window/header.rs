@@ -1,6 +1,7 @@
 //! The bar that is always there: which hand, how its link is, the five places, faults, arm, and STOP.
 
 use crate::app::action::Action;
+use crate::app::hands::Hand;
 use crate::app::recordings::RecordingAction;
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
@@ -11,7 +12,7 @@ use crate::ui::text::{inputs, main, notices, recordings, words};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
 use crate::ui::window::rooms;
-use egui::{Color32, CornerRadius, Rect, Response, Ui, pos2, vec2};
+use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
 /// Width of STOP.
 const STOP: f32 = 132.0;
@@ -65,8 +66,8 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let armed = pane.state.hand().connection.is_armed();
-    let refusal = pane.state.hand().arm_refusal(pane.state.now);
+    let armed = pane.hand().connection.is_armed();
+    let refusal = pane.hand().arm_refusal(pane.state.now);
     let (text, name, weight) = if armed {
         (main::DISARM, main::DISARM_NAME, Weight::Armed)
     } else {
@@ -110,13 +111,13 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
 
 /// Whether this hand is recorded, and the switch for it.
 fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
-    if pane.state.timeline.is_some() || pane.state.hand().connection.endpoint.is_none() {
+    if pane.state.timeline.is_some() || pane.hand().connection.endpoint.is_none() {
         return;
     }
     let look = pane.look;
     let palette = look.palette;
-    let simulated = pane.state.hand().connection.is_simulated();
-    let (text, color, tip) = match &pane.state.hand().recording {
+    let hand = pane.hand();
+    let (text, color, tip) = match &hand.recording {
         None => (recordings::NOT_RECORDING, palette.faint, String::new()),
         Some(recording) => {
             let status = &recording.status;
@@ -132,14 +133,18 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let words = if is_wide { name } else { "" };
     let button = Button::new(words, &tip).named(name).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
-        let on = pane.state.hand().recording.is_none();
-        let action = if simulated {
-            RecordingAction::RecordSimulated(on)
-        } else {
-            RecordingAction::Record(on)
-        };
-        pane.actions.push(Action::Recording(action));
+        pane.actions.push(record_or_not(hand));
     }
+}
+
+/// Records a hand that is not recorded, and a recorded one no more.
+pub(super) fn record_or_not(hand: &Hand) -> Action {
+    let on = hand.recording.is_none();
+    Action::Recording(if hand.connection.is_simulated() {
+        RecordingAction::RecordSimulated(on)
+    } else {
+        RecordingAction::Record(on)
+    })
 }
 
 /// How a recording goes, a line each.
@@ -180,11 +185,11 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let look = pane.look;
     let pressed = match fault_entry::unseen_color(pane) {
         None => {
-            let button = Button::said(look, main::TAB_FAULTS).weight(Weight::Quiet);
-            button.ui(ui, look)
+            let button = Button::said(look, main::TAB_FAULTS);
+            button.weight(Weight::Quiet).ui(ui, look)
         }
         Some(color) => {
-            let count = pane.state.hand().readings.faults.unseen().count();
+            let count = pane.hand().readings.faults.unseen().count();
             let (before, after) = (look.say(notices::UNSEEN_BEFORE), look.say(notices::UNSEEN));
             let name = format!("{before} {count} {after}");
             let words = if is_wide {
@@ -223,14 +228,14 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// What went wrong on the wire since connecting.
 fn errors(pane: &Pane<'_>) -> u64 {
-    let stats = &pane.state.hand().connection.stats;
+    let stats = &pane.hand().connection.stats;
     stats.timeouts + stats.checksum_errors + stats.resyncs + stats.foreign_replies + stats.refusals
 }
 
 /// How often is read, and what went wrong, a line each.
 fn link_tip(pane: &Pane<'_>) -> String {
     let look = pane.look;
-    let connection = &pane.state.hand().connection;
+    let connection = &pane.hand().connection;
     let live = connection.status.state.is_live();
     let rate = |hz: f64| format::hertz(if live { hz } else { 0.0 });
     let stats = &connection.stats;
@@ -250,9 +255,10 @@ fn link_tip(pane: &Pane<'_>) -> String {
 fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
-    let simulated = pane.state.hand().connection.is_simulated();
+    let connection = &pane.hand().connection;
+    let simulated = connection.is_simulated();
     let recorded = pane.state.timeline.is_some();
-    let (text, fill, color) = match (&pane.state.hand().connection.endpoint, simulated) {
+    let (text, fill, color) = match (&connection.endpoint, simulated) {
         _ if recorded => (recordings::RECORDED, palette.warn, palette.on_accent),
         (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
@@ -268,7 +274,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
     }
-    if let (Some(endpoint), false) = (&pane.state.hand().connection.endpoint, simulated) {
+    if let (Some(endpoint), false) = (&connection.endpoint, simulated) {
         let text = endpoint.to_string();
         let width = kit::text_width(ui, &text, theme::number());
         if width + LINK < ui.available_width() {
@@ -288,12 +294,10 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
     let response = button.selected(is_open).large().ui(ui, look);
     let rect = response.rect;
     if is_open {
-        let under = Rect::from_min_max(
-            rect.left_bottom() + vec2(theme::PAD, 0.0),
-            rect.right_bottom() + vec2(-theme::PAD, 2.0),
-        );
-        let round = CornerRadius::same(1);
-        ui.painter().rect_filled(under, round, look.palette.accent);
+        let xs = rect.x_range().shrink(theme::PAD);
+        let ys = rect.bottom()..=rect.bottom() + 2.0;
+        let under = Rect::from_x_y_ranges(xs, ys);
+        ui.painter().rect_filled(under, 1.0, look.palette.accent);
     }
     if response.clicked() {
         pane.open(ViewRequest::Place(place));
@@ -303,7 +307,7 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
 /// What listens to others or serves them, as long as it does.
 fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let open = &pane.state.hand().inputs;
+    let open = &pane.hand().inputs;
     let parts = [
         (
             open.gateway_at.is_some() || open.foxglove_at.is_some(),

@@ -41,12 +41,10 @@ pub(super) fn key_action(
         Wish::AngleUnit => Some(Action::AngleUnit(state.settings.angle_unit.next())),
         Wish::Tare if !state.hand().connection.status.state.is_live() => None,
         Wish::Tare => Some(Action::Tare(None)),
-        Wish::UndoTare => state
-            .hand()
-            .readings
-            .tare
-            .can_undo()
-            .then_some(Action::UndoTare),
+        Wish::UndoTare => {
+            let tare = &state.hand().readings.tare;
+            tare.can_undo().then_some(Action::UndoTare)
+        }
         Wish::Language => Some(Action::Language(state.settings.language.other())),
         Wish::Theme => Some(Action::Theme(state.settings.theme.other())),
         Wish::Pause => {

@@ -3,7 +3,7 @@
 use crate::ui::kit::{self, Button, Label, Look, Weight};
 use crate::ui::text::{Text, main, window};
 use crate::ui::theme;
-use crate::ui::window::keys::{ROWS, Wish, ZOOM};
+use crate::ui::window::keys::{COMMAND_NAME, ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
 
 /// The list, shown or not.
@@ -73,15 +73,13 @@ fn rows(group: Text) -> Vec<(String, Text)> {
     wishes.dedup();
     // One stands for all.
     wishes.retain(|wish| !matches!(wish, Wish::Hand(1..)));
-    let mut rows: Vec<_> = wishes
-        .into_iter()
-        .map(|wish| (wish.keys(), wish.words()))
-        .collect();
+    let rows = wishes.into_iter().map(|wish| (wish.keys(), wish.words()));
+    let mut rows: Vec<(String, Text)> = rows.collect();
     if group == window::KEY_MOTION {
         rows.push(("Shift+F".to_owned(), window::KEY_ENTRY));
     }
     if group == window::KEY_WINDOW {
-        rows.extend(ZOOM.map(|(key, words)| (key.to_owned(), words)));
+        rows.extend(ZOOM.map(|(key, words)| (format!("{COMMAND_NAME}+{key}"), words)));
     }
     rows
 }
@@ -91,9 +89,8 @@ fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
     let shut = kit::head_ui(ui, look, look.say(window::KEYS), |ui| {
         let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
-        shut.named(look.say(window::KEYS_CLOSE))
-            .ui(ui, look)
-            .clicked()
+        let shut = shut.named(look.say(window::KEYS_CLOSE));
+        shut.ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(COLUMNS) {

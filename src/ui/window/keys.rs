@@ -73,6 +73,10 @@ const fn row(modifiers: Modifiers, key: Key, wish: Wish) -> KeyRow {
     }
 }
 
+const fn opens(modifiers: Modifiers, key: Key, opens: ViewRequest) -> KeyRow {
+    row(modifiers, key, Wish::Opens(opens))
+}
+
 const NONE: Modifiers = Modifiers::NONE;
 /// What may let the hand move wants two keys, so that a book on the keyboard moves nothing.
 const SHIFT: Modifiers = Modifiers::SHIFT;
@@ -90,32 +94,12 @@ pub(crate) static ROWS: [KeyRow; 38] = [
     row(SHIFT, Key::O, Wish::Open),
     row(SHIFT, Key::H, Wish::Half),
     row(SHIFT, Key::C, Wish::Close),
-    row(
-        COMMAND,
-        Key::Num1,
-        Wish::Opens(ViewRequest::Place(Place::Live)),
-    ),
-    row(
-        COMMAND,
-        Key::Num2,
-        Wish::Opens(ViewRequest::Place(Place::Tune)),
-    ),
-    row(
-        COMMAND,
-        Key::Num3,
-        Wish::Opens(ViewRequest::Place(Place::Recordings)),
-    ),
-    row(
-        COMMAND,
-        Key::Num4,
-        Wish::Opens(ViewRequest::Place(Place::Hand)),
-    ),
-    row(
-        COMMAND,
-        Key::Num5,
-        Wish::Opens(ViewRequest::Place(Place::Share)),
-    ),
-    row(COMMAND, Key::Num6, Wish::Opens(ViewRequest::Faults)),
+    opens(COMMAND, Key::Num1, ViewRequest::Place(Place::Live)),
+    opens(COMMAND, Key::Num2, ViewRequest::Place(Place::Tune)),
+    opens(COMMAND, Key::Num3, ViewRequest::Place(Place::Recordings)),
+    opens(COMMAND, Key::Num4, ViewRequest::Place(Place::Hand)),
+    opens(COMMAND, Key::Num5, ViewRequest::Place(Place::Share)),
+    opens(COMMAND, Key::Num6, ViewRequest::Faults),
     row(ALT, Key::Num1, Wish::Hand(0)),
     row(ALT, Key::Num2, Wish::Hand(1)),
     row(ALT, Key::Num3, Wish::Hand(2)),
@@ -135,28 +119,27 @@ pub(crate) static ROWS: [KeyRow; 38] = [
     row(SHIFT, Key::T, Wish::Tare),
     row(COMMAND, Key::T, Wish::UndoTare),
     row(NONE, Key::P, Wish::Pause),
-    row(NONE, Key::N, Wish::Opens(ViewRequest::Note)),
+    opens(NONE, Key::N, ViewRequest::Note),
     row(COMMAND, Key::L, Wish::Language),
     row(COMMAND, Key::D, Wish::Theme),
-    row(NONE, Key::F1, Wish::Opens(ViewRequest::Keys)),
-    row(NONE, Key::Questionmark, Wish::Opens(ViewRequest::Keys)),
-    row(COMMAND, Key::K, Wish::Opens(ViewRequest::Palette)),
+    opens(NONE, Key::F1, ViewRequest::Keys),
+    opens(NONE, Key::Questionmark, ViewRequest::Keys),
+    opens(COMMAND, Key::K, ViewRequest::Palette),
 ];
 
-/// The keys with which egui itself makes everything larger and smaller.
-pub(crate) const ZOOM: [(&str, Text); 3] = if cfg!(target_os = "macos") {
-    [
-        ("Cmd++", window::KEY_ZOOM_IN),
-        ("Cmd+-", window::KEY_ZOOM_OUT),
-        ("Cmd+0", window::KEY_ZOOM_RESET),
-    ]
+/// What stands on the key for commands.
+pub(crate) const COMMAND_NAME: &str = if cfg!(target_os = "macos") {
+    "Cmd"
 } else {
-    [
-        ("Ctrl++", window::KEY_ZOOM_IN),
-        ("Ctrl+-", window::KEY_ZOOM_OUT),
-        ("Ctrl+0", window::KEY_ZOOM_RESET),
-    ]
+    "Ctrl"
 };
+
+/// The keys with which, beside that for commands, egui itself makes everything larger and smaller.
+pub(crate) const ZOOM: [(char, Text); 3] = [
+    ('+', window::KEY_ZOOM_IN),
+    ('-', window::KEY_ZOOM_OUT),
+    ('0', window::KEY_ZOOM_RESET),
+];
 
 impl KeyRow {
     /// As it stands on the keyboard: `Shift+A`.
@@ -169,10 +152,14 @@ impl KeyRow {
         match self.modifiers {
             SHIFT => format!("Shift+{key}"),
             ALT => format!("Alt+{key}"),
-            COMMAND if cfg!(target_os = "macos") => format!("Cmd+{key}"),
-            COMMAND => format!("Ctrl+{key}"),
+            COMMAND => format!("{COMMAND_NAME}+{key}"),
             _ => key.to_owned(),
         }
+    }
+
+    /// A stop is meant whatever else is held down.
+    fn is_stop(self, event: &Event) -> bool {
+        matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
     }
 
     fn is_meant(self, event: &Event) -> bool {
@@ -313,9 +300,8 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
     let mut wishes = Vec::new();
     let mut opens_a_field = false;
     input.events.retain(|event| {
-        let meant = ROWS
-            .iter()
-            .find(|row| row.is_meant(event) || row.is_stop(event));
+        let is_meant = |row: &&KeyRow| row.is_meant(event) || row.is_stop(event);
+        let meant = ROWS.iter().find(is_meant);
         let Some(row) = meant.filter(|row| !typing || row.key == Key::Escape) else {
             let key = entry_key(event).filter(|_| !typing && meant.is_none());
             wishes.extend(key.map(Wish::Entry));
@@ -360,13 +346,6 @@ fn entry_key(event: &Event) -> Option<EntryKey> {
     let names = [Some(*key), *physical_key].into_iter().flatten();
     let mut keys = names.filter_map(|key| EntryKey::try_from(key.name().to_owned()).ok());
     keys.next().filter(|_| alone)
-}
-
-impl KeyRow {
-    /// A stop is meant whatever else is held down.
-    fn is_stop(self, event: &Event) -> bool {
-        matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
-    }
 }
 
 #[cfg(test)]

@@ -290,11 +290,11 @@ impl Window {
             .fill(palette.card)
             .stroke(Stroke::new(1.0, palette.edge))
             .inner_margin(Margin::symmetric(12, 4));
-        bar_ui(ui, ("header", theme::TOP_BAR), header, |ui| {
+        top_bar("header", theme::TOP_BAR, header).show(ui, |ui| {
             header::header_ui(ui, pane, self.body.view, is_free);
         });
         let status = Frame::new().fill(palette.card);
-        bar_ui(ui, ("status", status::HEIGHT), status, |ui| {
+        top_bar("status", status::HEIGHT, status).show(ui, |ui| {
             if !is_free {
                 ui.disable();
             }
@@ -304,7 +304,7 @@ impl Window {
             let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
             let room = ui.available_width() - STRIPS_MARGIN.sum().x;
             let height = strips::height(room, pane.state.hands.count());
-            bar_ui(ui, ("hands", height), frame, |ui| {
+            top_bar("hands", height, frame).show(ui, |ui| {
                 let is_on = self.body.shows_all();
                 if strips::strips_ui(ui, pane, is_free, is_on) {
                     self.body.show_all(!is_on);
@@ -328,14 +328,8 @@ const MARGIN: Margin = Margin::same(8);
 const STRIPS_MARGIN: Margin = Margin::symmetric(12, 4);
 
 /// A row of the window of this name and height, over its whole width.
-fn bar_ui(
-    ui: &mut Ui,
-    (name, height): (&'static str, f32),
-    frame: Frame,
-    add: impl FnOnce(&mut Ui),
-) {
-    let bar = kit::bare(Panel::top(name), height, Margin::ZERO);
-    bar.frame(frame).show(ui, add);
+fn top_bar(name: &'static str, height: f32, frame: Frame) -> Panel {
+    kit::bare(Panel::top(name), height, Margin::ZERO).frame(frame)
 }
 
 /// A recording whose file was dropped onto the window is to be replayed.

@@ -5,7 +5,6 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::hands::action::HandsAction;
 use crate::app::layout::RoomLayouts;
-use crate::app::recordings::RecordingAction;
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
 use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
@@ -13,6 +12,7 @@ use crate::ui::plots::head::span_text;
 use crate::ui::text::{Text, exhibit, inputs, panels, window};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
+use crate::ui::window::header::record_or_not;
 use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
 use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
@@ -84,17 +84,13 @@ impl CommandPalette {
     pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<Command> {
         let query = self.query.as_mut()?;
         let (look, unready) = (pane.look, pane.unready());
-        let steps = ui.input_mut(|input| {
+        let [down, up, enters] = ui.input_mut(|input| {
             let mut taken = |key| input.count_and_consume_key(Modifiers::NONE, key);
-            (
-                taken(Key::ArrowDown),
-                taken(Key::ArrowUp),
-                taken(Key::Enter),
-            )
+            [Key::ArrowDown, Key::ArrowUp, Key::Enter].map(&mut taken)
         });
         let found = found(ui, pane, &query.text);
         let last = found.len().saturating_sub(1);
-        query.chosen = (query.chosen + steps.0).saturating_sub(steps.1).min(last);
+        query.chosen = (query.chosen + down).saturating_sub(up).min(last);
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let window = Window::new(look.say(window::COMMANDS))
             .id(Id::unique("command palette"))
@@ -106,14 +102,12 @@ impl CommandPalette {
             .constrain_to(place);
         let shown = window.show(ui.ctx(), |ui| {
             ui.set_width((place.width() - 4.0 * theme::PAD).min(WIDTH));
-            query.ui(ui, (look, unready), &found)
+            query.ui(ui, look, unready, &found)
         })?;
-        let entered = (steps.2 > 0).then(|| found.get(query.chosen)).flatten();
+        let entered = (enters > 0).then(|| found.get(query.chosen)).flatten();
         let entered = entered.filter(|listed| unready.is_none() || !listed.command.needs_arming());
-        let chosen = shown
-            .inner
-            .flatten()
-            .or(entered.map(|listed| listed.command.clone()));
+        let entered = entered.map(|listed| listed.command.clone());
+        let chosen = shown.inner.flatten().or(entered);
         let beside = query.drawn && shown.response.clicked_elsewhere();
         query.drawn = true;
         if chosen.is_some() || beside {
@@ -128,11 +122,11 @@ impl Query {
     fn ui(
         &mut self,
         ui: &mut Ui,
-        (look, unready): (Look, Option<&str>),
+        look: Look,
+        unready: Option<&str>,
         found: &[Listed],
     ) -> Option<Command> {
-        let (name, hint) = look.both(window::COMMANDS);
-        let field = kit::edit_ui(ui, (name, hint), &mut self.text);
+        let field = kit::edit_said_ui(ui, look, window::COMMANDS, &mut self.text);
         field.request_focus();
         if field.changed() {
             self.chosen = 0;
@@ -192,41 +186,28 @@ const fn name(wish: Wish) -> Text {
 /// What has no key: settings of the window, recording, exhibitions. None of it moves a hand.
 fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
     let settings = &pane.state.settings;
-    let hand = pane.state.hand();
+    let hand = pane.hand();
     let lay_out = |rooms| Action::Layout(pane.layout(ui, rooms));
-    let record = hand.recording.is_none();
-    let record = if hand.connection.is_simulated() {
-        RecordingAction::RecordSimulated(record)
-    } else {
-        RecordingAction::Record(record)
-    };
     let hold_to_run = Action::HoldToRun(!settings.hold_to_run);
     let disarm_idle = Action::DisarmIdle(!settings.disarm_idle);
+    let enter_file = Action::Exhibit(ExhibitAction::EnterFile);
     let mut acts = vec![
         (window::RESET, "", lay_out(RoomLayouts::default())),
         (inputs::HOLD_TO_RUN, "", hold_to_run),
         (inputs::DISARM_IDLE, "", disarm_idle),
         (exhibit::ENTER, "", Action::Exhibit(ExhibitAction::Enter)),
-        (
-            exhibit::ENTER_FILE,
-            "",
-            Action::Exhibit(ExhibitAction::EnterFile),
-        ),
+        (exhibit::ENTER_FILE, "", enter_file),
     ];
     let is_new = |span: &PlotWindow| *span != settings.plot_window;
-    let spans = PlotWindow::ALL.into_iter().filter(is_new);
-    acts.extend(spans.map(|span| {
-        (
-            panels::WINDOW_NAME,
-            span_text(span),
-            Action::PlotWindow(span),
-        )
-    }));
+    for span in PlotWindow::ALL.into_iter().filter(is_new) {
+        let action = Action::PlotWindow(span);
+        acts.push((panels::WINDOW_NAME, span_text(span), action));
+    }
     if pane.state.hands.has_room() {
         acts.push((window::ADD_HAND, "", Action::Hands(HandsAction::Add)));
     }
     if pane.recorded().is_none() {
-        acts.push((window::RECORD, "", Action::Recording(record)));
+        acts.push((window::RECORD, "", record_or_not(hand)));
         if hand.readings.faults.nothing_to_clear().is_none() {
             acts.push((panels::CLEAR, "", Action::ClearErrors));
         }
@@ -265,11 +246,11 @@ const fn view_words(view: View) -> Text {
 
 const fn place_words(place: Place) -> Text {
     match place {
-        Place::Live => window::LIVE_WORDS,
-        Place::Tune => window::TUNE_WORDS,
-        Place::Recordings => window::RECORDINGS_WORDS,
+        Place::Live => view_words(View::Live),
+        Place::Tune => view_words(View::Tune),
+        Place::Recordings => view_words(View::Recordings),
         Place::Hand => window::HAND_WORDS,
-        Place::Share => window::INPUTS_WORDS,
+        Place::Share => view_words(View::Inputs),
     }
 }
 
@@ -291,9 +272,8 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     let views = View::ALL.into_iter();
     // The faults have a key, and their place the name of its first view.
     let views = views.filter(|view| *view != View::Faults && view.place().title() != view.title());
-    let views: Vec<Wish> = views
-        .map(|view| Wish::Opens(ViewRequest::View(view)))
-        .collect();
+    let views = views.map(|view| Wish::Opens(ViewRequest::View(view)));
+    let views: Vec<Wish> = views.collect();
     // What is held, what stands for many, and what the keyboard goes to has a key only.
     let is_act = |wish: &Wish| {
         !matches!(

@@ -5,7 +5,7 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::layout::{RoomLayouts, WindowRoom};
 use crate::app::settings::Language;
-use crate::ui::kit::{Button, Pane, ViewRequest, Weight};
+use crate::ui::kit::{self, Button, Pane, ViewRequest, Weight};
 use crate::ui::text::{Text, exhibit, main, window};
 use crate::ui::theme;
 use egui::{Frame, Panel, Popup, Ui};
@@ -13,6 +13,7 @@ use egui::{Frame, Panel, Popup, Ui};
 /// How large a room is, points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RoomSize {
+    pub(crate) room: WindowRoom,
     /// As it first opens.
     pub(crate) designed: f32,
     /// What it needs.
@@ -58,9 +59,10 @@ impl Rooms {
         &self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        (room, size): (WindowRoom, RoomSize),
+        size: RoomSize,
         add: impl FnOnce(&mut Ui, &mut Pane<'_>),
     ) {
+        let room = size.room;
         let is_upright = room != WindowRoom::Strip;
         let extent = along(ui.available_size(), is_upright);
         let standing = self.layouts.room(room);
@@ -91,12 +93,10 @@ impl Rooms {
             let now = along(shown.response.rect.size(), is_upright);
             let place = shown.response.rect.expand(2.0 * theme::GAP);
             let let_go = ui.input(|input| {
-                let is_drag = input.pointer.any_released() && !input.pointer.any_click();
-                is_drag
-                    && input
-                        .pointer
-                        .interact_pos()
-                        .is_some_and(|at| place.contains(at))
+                let pointer = &input.pointer;
+                let is_drag = pointer.any_released() && !pointer.any_click();
+                let at = pointer.interact_pos().filter(|_| is_drag);
+                at.is_some_and(|at| place.contains(at))
             });
             if let_go && (now - begun).abs() > 1.0 {
                 let standing = standing.with_share(now / extent);
@@ -126,11 +126,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 after = before.toggled(room);
             }
         }
-        let entry = |ui: &mut Ui, text: Text| {
-            let button = ui.button(look.say(text));
-            button.on_hover_text(look.tip(text)).clicked()
-        };
-        if entry(ui, window::RESET) {
+        if kit::entry_ui(ui, look, window::RESET) {
             after = RoomLayouts::default();
         }
         if after != before {
@@ -138,7 +134,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         ui.separator();
         let (theme, language) = (pane.state.settings.theme, pane.state.settings.language);
-        if entry(ui, main::THEME) {
+        if kit::entry_ui(ui, look, main::THEME) {
             pane.actions.push(Action::Theme(theme.other()));
         }
         let other = match language {
@@ -155,7 +151,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             (window::COMMANDS, ViewRequest::Palette),
             (window::KEYS, ViewRequest::Keys),
         ] {
-            if entry(ui, text) {
+            if kit::entry_ui(ui, look, text) {
                 pane.open(opens);
             }
         }
@@ -164,7 +160,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             (exhibit::ENTER, ExhibitAction::Enter),
             (exhibit::ENTER_FILE, ExhibitAction::EnterFile),
         ] {
-            if entry(ui, text) {
+            if kit::entry_ui(ui, look, text) {
                 pane.actions.push(Action::Exhibit(action));
             }
         }

@@ -64,15 +64,17 @@ impl Warning {
         self
     }
 
-    /// Says first which hand it is about.
-    fn of(mut self, pane: &Pane<'_>, hand: &str) -> Self {
-        self.body = pane.look.pair(hand, &self.body);
+    /// Says first which hand it is about, if that is to be said.
+    fn of(mut self, pane: &Pane<'_>, hand: Option<&str>) -> Self {
+        if let Some(hand) = hand {
+            self.body = pane.look.pair(hand, &self.body);
+        }
         self
     }
 
     /// Tells when the link is tried again.
     fn retried(mut self, pane: &Pane<'_>) -> Self {
-        self.aside = match pane.state.hand().connection.status.dialling {
+        self.aside = match pane.hand().connection.status.dialling {
             Dialling::Idle => String::new(),
             Dialling::Trying { attempt } => pane.look.told(main::LOST_TRYING, attempt),
             Dialling::Waiting { until, .. } => {
@@ -112,16 +114,14 @@ fn unsent(pane: &Pane<'_>) -> Option<Warning> {
     let mut all = pane.state.notices.iter();
     let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
     let unsent = Warning::new(pane, window::STOP_NOT_SENT, pane.look.palette.bad);
-    let unsent = match &notice.hand {
-        Some(hand) => unsent.of(pane, &hand.name),
-        None => unsent,
-    };
-    Some(unsent.help(Help::Dismiss(notice.id)))
+    let hand = notice.hand.as_ref().map(|hand| &*hand.name);
+    let help = Help::Dismiss(notice.id);
+    Some(unsent.of(pane, hand).help(help))
 }
 
 /// The shown hand, or another, that does not stop.
 fn alarm(pane: &Pane<'_>) -> Option<Warning> {
-    let shown = pane.state.hand();
+    let shown = pane.hand();
     let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
     let hand = hands.find(|hand| matches!(hand.connection.status.hold, Hold::Alarm { .. }))?;
     let title = if hand.connection.status.feedback_in_doubt {
@@ -130,16 +130,13 @@ fn alarm(pane: &Pane<'_>) -> Option<Warning> {
         main::ALARM_TITLE
     };
     let alarm = Warning::new(pane, title, pane.look.palette.bad);
-    Some(if pane.state.hands.is_several() {
-        alarm.of(pane, &hand.label.name)
-    } else {
-        alarm
-    })
+    let names = pane.state.hands.is_several();
+    Some(alarm.of(pane, names.then_some(&hand.label.name)))
 }
 
 /// Another hand than the shown one, lost while it may have been moving.
 fn lost_elsewhere(pane: &Pane<'_>) -> Option<Warning> {
-    let shown = pane.state.hand().label.slot;
+    let shown = pane.hand().label.slot;
     let mut others = pane.state.hands.iter();
     let lost = others.find(|hand| {
         let is_lost =
@@ -147,17 +144,17 @@ fn lost_elsewhere(pane: &Pane<'_>) -> Option<Warning> {
         hand.label.slot != shown && hand.connection.status.state == LinkState::Offline && is_lost
     })?;
     let warning = Warning::new(pane, main::LOST_TITLE, pane.look.palette.bad);
-    Some(warning.of(pane, &lost.label.name))
+    Some(warning.of(pane, Some(&lost.label.name)))
 }
 
 fn lost(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().connection.status;
+    let link = &pane.hand().connection.status;
     if link.state != LinkState::Offline && link.state != LinkState::Identifying {
         return None;
     }
     let cause = errors::trouble(pane.look, link.trouble.as_ref()?);
     // A hand that has answered may be moving; one that never did is only not reached.
-    let (title, color) = match pane.state.hand().readings.sample.angle {
+    let (title, color) = match pane.hand().readings.sample.angle {
         Some(_) => (main::LOST_TITLE, pane.look.palette.bad),
         None => (main::UNREACHABLE_TITLE, pane.look.palette.warn),
     };
@@ -165,16 +162,15 @@ fn lost(pane: &Pane<'_>) -> Option<Warning> {
 }
 
 fn faults(pane: &Pane<'_>) -> Option<Warning> {
-    let (look, sample) = (pane.look, &pane.state.hand().readings.sample);
+    let (look, sample) = (pane.look, &pane.hand().readings.sample);
     let faults = sample.faults.filter(|_| sample.has_fault())?;
-    let all = Dof::ALL
-        .into_iter()
-        .flat_map(|dof| faults.value[dof].iter().map(move |fault| (dof, fault)));
-    let said = all.map(|(dof, fault)| {
-        let title = words::fault(fault, look.language).title;
-        format!("{}: {title}", look.say(words::dof(dof)))
-    });
-    let list: Vec<String> = said.collect();
+    let mut list = Vec::new();
+    for dof in Dof::ALL {
+        let name = look.say(words::dof(dof));
+        let titles = faults.value[dof].iter();
+        let titles = titles.map(|fault| words::fault(fault, look.language).title);
+        list.extend(titles.map(|title| format!("{name}: {title}")));
+    }
     let (list, end) = (list.join(" · "), look.say(main::LIST_END));
     let color = look.value(pane.freshness(Some(faults.asked)), look.palette.bad);
     let warning = Warning::new(pane, main::FAULT_TITLE, color);
@@ -186,7 +182,7 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
 }
 
 fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().connection.status;
+    let link = &pane.hand().connection.status;
     let other = || Warning::new(pane, main::OTHER_CONTROLLER_TITLE, pane.look.palette.warn);
     let warning = (link.state.is_live() && link.other_controller).then(other)?;
     Some(match &link.foreign_setpoint {
@@ -203,15 +199,15 @@ fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
 
 /// A setpoint that the armed hand ignores or limits.
 fn not_taken(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().connection.status;
+    let link = &pane.hand().connection.status;
     let conflict = link.setpoint_not_taken.filter(|_| link.armed.is_some())?;
     let warning = Warning::new(pane, main::NOT_TAKEN_TITLE, pane.look.palette.warn);
     Some(warning.more(words::setpoint(pane.look, &conflict)))
 }
 
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
-    let asked = pane.state.hand().readings.sample.angle?.asked;
-    let link = &pane.state.hand().connection.status;
+    let asked = pane.hand().readings.sample.angle?.asked;
+    let link = &pane.hand().connection.status;
     // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
     let expected = link.state.is_live() && !link.line_left;
     let is_stale = expected && pane.freshness(Some(asked)) == Freshness::Stale;
@@ -222,8 +218,8 @@ fn stale(pane: &Pane<'_>) -> Option<Warning> {
 
 /// A hand that is asked for the first time, and has not said no yet.
 fn connecting(pane: &Pane<'_>) -> Option<Warning> {
-    let link = &pane.state.hand().connection.status;
-    let hand = pane.state.hand().connection.endpoint.as_ref()?;
+    let link = &pane.hand().connection.status;
+    let hand = pane.hand().connection.endpoint.as_ref()?;
     let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
     // One that answers at once is not announced.
     let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
@@ -236,13 +232,13 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
 fn empty(pane: &Pane<'_>) -> Option<Warning> {
     let warning = || Warning::new(pane, main::EMPTY_TITLE, pane.look.palette.accent);
     let help = Help::View(View::Connection, main::EMPTY_OPEN);
-    let is_none = pane.state.hand().connection.endpoint.is_none();
+    let is_none = pane.hand().connection.endpoint.is_none();
     is_none.then(|| warning().help(help))
 }
 
 /// An armed hand that is asked nothing any more.
 fn idle(pane: &Pane<'_>) -> Option<Warning> {
-    let idle = pane.state.hand().connection.idle(pane.state.now)?;
+    let idle = pane.hand().connection.idle(pane.state.now)?;
     let warning = Warning::new(pane, main::IDLE_TITLE, pane.look.palette.warn);
     Some(warning.more(format::duration(idle)))
 }
@@ -251,7 +247,7 @@ fn idle(pane: &Pane<'_>) -> Option<Warning> {
 fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
     let say = |text: Text| look.say(text).to_owned();
-    Some(match Mover::of(pane.state.hand(), pane.state.now)? {
+    Some(match Mover::of(pane.hand(), pane.state.now)? {
         Mover::Stop => (say(window::MOVES_STOP), None),
         Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
@@ -271,11 +267,8 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             });
             let mut words = format!("{title} {name}");
             if let EntryId::Sequence(id) = entry {
-                let steps = pane
-                    .state
-                    .poses
-                    .sequence(id)
-                    .map_or(0, |own| own.steps.len());
+                let sequence = pane.state.poses.sequence(id);
+                let steps = sequence.map_or(0, |own| own.steps.len());
                 let (of, step) = (look.say(window::MOVES_STEP), step + 1);
                 words = look.pair(&words, &format!("{of} {step} / {steps}"));
             }
@@ -363,7 +356,7 @@ impl StatusLine {
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
         let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
-        let hint = if rests(pane.state.hand(), pane.state.now) {
+        let hint = if rests(pane.hand(), pane.state.now) {
             panels::NOTE_HINT
         } else {
             panels::NOTE_HINT_MOVING
@@ -416,7 +409,7 @@ fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });
     let why = new.next().filter(|why| is_rest && why.level > newest.level);
     let shown = why.unwrap_or(newest);
-    let moves = Mover::of(pane.state.hand(), pane.state.now).is_some();
+    let moves = Mover::of(pane.hand(), pane.state.now).is_some();
     (shown.level > Level::Info || !moves).then_some(shown)
 }
 
@@ -431,7 +424,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
-            let words = if pane.state.hand().connection.status.state.is_live() {
+            let words = if pane.hand().connection.status.state.is_live() {
                 window::AT_REST
             } else {
                 window::NO_HAND
@@ -472,23 +465,19 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
     let title = Label::new(look.say(warning.title), warning.color);
-    title.font(theme::title()).ui(ui);
+    title.title().ui(ui);
     let width = kit::text_width(ui, &warning.body, theme::body());
     let words = Label::new(&warning.body, look.palette.text);
-    let words = if width > ui.available_width() {
-        words.small()
-    } else {
-        words
-    };
+    let is_long = width > ui.available_width();
+    let words = if is_long { words.small() } else { words };
     words.ui(ui).on_hover_text(&warning.body);
 }
 
 fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
     match help {
         Help::View(view, text) => {
-            if Button::said(pane.look, *text).ui(ui, pane.look).clicked() {
-                pane.open(ViewRequest::View(*view));
-            }
+            let button = Button::said(pane.look, *text);
+            button.opens(ui, pane, ViewRequest::View(*view));
         }
         Help::Dismiss(id) => {
             let button = Button::said(pane.look, window::UNDERSTOOD);

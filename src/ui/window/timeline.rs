@@ -7,7 +7,7 @@ use crate::record::EventKind;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
 use crate::ui::recordings::marks::{clock, shown};
 use crate::ui::recordings::{beside, strip};
-use crate::ui::text::{Text, panels, recordings};
+use crate::ui::text::{panels, recordings};
 use crate::ui::theme;
 use egui::{
     Color32, Event, PointerButton, Popup, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
@@ -52,21 +52,27 @@ fn recording(pane: &mut Pane<'_>, action: RecordingAction) {
 
 fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
-    let icon = |text: Text, icon| Button::said(look, text).icon(icon);
-    let back = icon(recordings::STEP_BACK, theme::TO_LEFT);
-    back.on_click(ui, pane, Action::Recording(RecordingAction::Step(false)));
-    let run = if line.runs {
-        icon(recordings::PAUSE, theme::PAUSE)
+    let (run, run_icon) = if line.runs {
+        (recordings::PAUSE, theme::PAUSE)
     } else {
-        icon(recordings::RUN, theme::PLAY)
+        (recordings::RUN, theme::PLAY)
     };
-    run.on_click(
-        ui,
-        pane,
-        Action::Recording(RecordingAction::Run(!line.runs)),
-    );
-    let on = icon(recordings::STEP_ON, theme::TO_RIGHT);
-    on.on_click(ui, pane, Action::Recording(RecordingAction::Step(true)));
+    for (text, icon, action) in [
+        (
+            recordings::STEP_BACK,
+            theme::TO_LEFT,
+            RecordingAction::Step(false),
+        ),
+        (run, run_icon, RecordingAction::Run(!line.runs)),
+        (
+            recordings::STEP_ON,
+            theme::TO_RIGHT,
+            RecordingAction::Step(true),
+        ),
+    ] {
+        let button = Button::said(look, text).icon(icon);
+        button.on_click(ui, pane, Action::Recording(action));
+    }
     let mut pace = line.pace;
     let name = look.say(recordings::PACE);
     ui.scope(|ui| {
@@ -91,9 +97,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     marks_ui(ui, pane, line);
     beside::beside_ui(ui, pane, line);
     let note = Button::said(look, recordings::NOTE_HERE);
-    if note.ui(ui, look).clicked() {
-        pane.open(kit::ViewRequest::Note);
-    }
+    note.opens(ui, pane, kit::ViewRequest::Note);
     if line.damaged {
         kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(recordings::DAMAGED));
     }
@@ -224,9 +228,11 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let length = line.last.since(line.first);
     if let Some(pointer) = dragged_to(ui, &response) {
         let here = moment(line, length, share(place, pointer.x));
-        let (shift, pressed_at) =
-            ui.input(|input| (input.modifiers.shift, input.pointer.press_origin()));
-        match pressed_at.filter(|_| shift) {
+        let begun = ui.input(|input| {
+            let origin = input.pointer.press_origin();
+            origin.filter(|_| input.modifiers.shift)
+        });
+        match begun {
             Some(origin) => {
                 let from = moment(line, length, share(place, origin.x));
                 recording(pane, RecordingAction::Loop(Some((from, here))));
@@ -241,10 +247,8 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         let near = entries(look, line).filter(|entry| away(entry) < theme::STEP);
         let near = near.min_by(|one, other| away(one).total_cmp(&away(other)));
         let clock = clock(here.since(line.first));
-        let words = near.map_or_else(
-            || look.tip(recordings::LINE).to_owned(),
-            |entry| entry.say(look),
-        );
+        let words = near.map(|entry| entry.say(look));
+        let words = words.unwrap_or_else(|| look.tip(recordings::LINE).to_owned());
         response.on_hover_text(format!("{clock}\n{words}"));
     }
 }
@@ -270,18 +274,12 @@ fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {
     let (painter, palette) = (ui.painter_at(place.expand(theme::STEP)), look.palette);
     painter.rect_filled(place, theme::ROUND_SMALL, palette.sunken);
     if let Some((from, to)) = line.looped {
-        let stretch = Rect::from_x_y_ranges(
-            x_of(place, line, from)..=x_of(place, line, to),
-            place.y_range(),
-        );
+        let xs = x_of(place, line, from)..=x_of(place, line, to);
+        let stretch = Rect::from_x_y_ranges(xs, place.y_range());
         painter.rect_filled(stretch, 0.0, palette.accent.gamma_multiply(0.2));
     }
-    strip::strip(
-        &painter,
-        look,
-        place.shrink2(vec2(0.0, theme::STEP)),
-        &line.strip,
-    );
+    let inner = place.shrink2(vec2(0.0, theme::STEP));
+    strip::strip(&painter, look, inner, &line.strip);
     for (column, (_, color)) in columns(look, place, line) {
         #[expect(clippy::cast_precision_loss, reason = "a column of a screen")]
         let x = column as f32;

@@ -84,11 +84,8 @@ pub(crate) fn fork(
 ) {
     for side in [base.matrix3.x_axis, -base.matrix3.x_axis] {
         let at = |along: f32| {
-            frame(
-                base.transform_point3(Vec3::new(0.0, along, rise)),
-                side,
-                base.matrix3.z_axis,
-            )
+            let origin = base.transform_point3(Vec3::new(0.0, along, rise));
+            frame(origin, side, base.matrix3.z_axis)
         };
         plate(soup, &at(along), [long, high], [inner, outer]);
         pin(soup, &at(along + long - high), outer);
@@ -113,11 +110,8 @@ pub(crate) fn pin(soup: &mut Soup, base: &Affine3, at: f32) {
     if soup.is_small {
         return;
     }
-    for shard in soup.loft(
-        base,
-        10,
-        &[(Skin::Hinge, &[disc(at, 3.2), disc(at + 0.3, 3.2)])],
-    ) {
+    let head = [disc(at, 3.2), disc(at + 0.3, 3.2)];
+    for shard in soup.loft(base, 10, &[(Skin::Hinge, &head)]) {
         shard.aside = base.matrix3.y_axis * 24.0;
         if shard.area().normalize_or_zero().dot(base.matrix3.y_axis) < 0.9 {
             shard.at = [Vec3::ZERO; 3];

@@ -31,11 +31,8 @@ pub(crate) fn held(held: Held) -> &'static Solid {
         let cup = CUP.map(|[along, radius]| disc(along, radius));
         let tube = |rings: &[LoftRing], middle: [f32; 3], around: u8| {
             let mut soup = Soup::new(false);
-            soup.loft(
-                &frame(middle.into(), Vec3::X, Vec3::Y),
-                around,
-                &[(Skin::Plain, rings)],
-            );
+            let base = frame(middle.into(), Vec3::X, Vec3::Y);
+            soup.loft(&base, around, &[(Skin::Plain, rings)]);
             soup.solid()
         };
         [

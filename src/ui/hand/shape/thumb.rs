@@ -68,25 +68,19 @@ pub(crate) fn foot(soup: &mut Soup) {
     let drum = [disc(-11.4, 13.2), disc(-9.9, 13.2)];
     let collar = [disc(-9.6, 12.0), disc(-7.8, 12.0), disc(-7.2, 11.2)];
     let neck = [[-6.0, 3.0, 9.0, 9.0, 9.0, 2.0]];
-    soup.loft(
-        &frame(Vec3::ZERO, Vec3::Z, Vec3::NEG_X),
-        16,
-        &[
-            (Skin::Hinge, &drum),
-            (Skin::Metal, &collar),
-            (Skin::Hinge, &neck),
-        ],
-    );
+    let base = frame(Vec3::ZERO, Vec3::Z, Vec3::NEG_X);
+    let bands: [(Skin, &[LoftRing]); 3] = [
+        (Skin::Hinge, &drum),
+        (Skin::Metal, &collar),
+        (Skin::Hinge, &neck),
+    ];
+    soup.loft(&base, 16, &bands);
     let axis = Vec3::new(0.2588, 0.9659, 0.0);
     let middle = Vec3::new(-7.925, 9.06, 5.2) + axis * MIDDLE_MM;
     for side in [axis, -axis] {
         let up = axis.cross(Vec3::Z);
-        plate(
-            soup,
-            &frame(middle - Vec3::Z * 2.6, side, up),
-            [11.6, 8.2],
-            [9.1, 11.3],
-        );
+        let low = frame(middle - Vec3::Z * 2.6, side, up);
+        plate(soup, &low, [11.6, 8.2], [9.1, 11.3]);
         pin(soup, &frame(middle, side, up), 11.3);
     }
 }
