@@ -92,7 +92,7 @@ pub enum PadNews {
 pub enum PadTrouble {
     /// This system's gamepads are not read.
     #[error(
-        "gamepads are read on Linux only: another program can move the hand here through 'handscope follow --udp'"
+        "gamepads are read on Linux only: here another program can read one, and send what 'handscope help stream' describes"
     )]
     LinuxOnly,
     /// The folder of the devices cannot be listed.
