@@ -38,12 +38,12 @@ int main(int count, char **words) {
   PROCESS_INFORMATION program;
   if (!CreateProcessA(0, command, 0, 0, TRUE, 0, 0, 0, &start, &program)) return 1;
   SetConsoleCtrlHandler(stay, TRUE);
-  Sleep(1000 * atoi(words[2]));
+  DWORD early = WaitForSingleObject(program.hProcess, 1000 * atoi(words[2]));
   FILE *file = fopen(words[3], "w");
   fprintf(file, "%s: ", words[1]);
   fflush(file);
-  BOOL done = end(words[1], program.hProcess);
-  fprintf(file, done ? "told" : "failed");
+  BOOL done = early == WAIT_TIMEOUT && end(words[1], program.hProcess);
+  fprintf(file, done ? "told" : early == WAIT_TIMEOUT ? "could not be told" : "ended by itself");
   fflush(file);
   DWORD status = 0;
   WaitForSingleObject(program.hProcess, 10000);
