@@ -194,8 +194,10 @@ fn serve_can(hands: &SimHands, interface: &str) -> anyhow::Result<ServedWire> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn serve_can(_hands: &SimHands, _interface: &str) -> anyhow::Result<ServedWire> {
-    Err(anyhow!(crate::transport::TransportError::LinuxOnly))
+fn serve_can(_hands: &SimHands, interface: &str) -> anyhow::Result<ServedWire> {
+    Err(anyhow!(
+        "cannot serve on {interface}: CAN interfaces need Linux; use --tcp here"
+    ))
 }
 
 #[cfg(not(unix))]

@@ -19,8 +19,15 @@ pub(crate) enum NoConsent {
     )]
     NoTerminal,
     /// Lines come whether anything is asked or not.
+    #[cfg(unix)]
     #[error("standard input does not pause, so none of its lines is an answer")]
     NeverQuiet,
+    /// What was typed before cannot be told from an answer on this system.
+    #[cfg(not(unix))]
+    #[error(
+        "nobody can be asked here: only Linux and macOS tell an answer from what was typed before; follow in the window, where a person lets it move the hand"
+    )]
+    NotHere,
     /// There is no further line.
     #[error("standard input ended without an answer")]
     Ended,
@@ -140,15 +147,15 @@ mod input {
 mod input {
     use super::NoConsent;
 
-    pub(super) fn is_ours() -> bool {
-        false
+    pub(super) const fn is_ours() -> bool {
+        true
     }
 
     pub(super) fn forget() -> Result<(), NoConsent> {
-        Err(NoConsent::NoTerminal)
+        Err(NoConsent::NotHere)
     }
 
     pub(super) fn line() -> Result<(), NoConsent> {
-        Err(NoConsent::NoTerminal)
+        Err(NoConsent::NotHere)
     }
 }

@@ -11,6 +11,7 @@ use crate::inputs::dds::ctrl;
 use crate::inputs::dds::source::{DdsSource, DdsSourceConfig, DdsView};
 use crate::inputs::mirror::{MirrorScale, MirrorSource};
 use crate::inputs::pad::device::{FOLDER, PadReader};
+use crate::inputs::pad::report::PadTrouble;
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
@@ -340,6 +341,9 @@ fn followed(other: &FleetCard) -> String {
 
 /// Where gamepads come and go; they are waited for there, but not for the folder.
 pub(super) fn is_folder(devices: &Path) -> anyhow::Result<()> {
+    if !cfg!(target_os = "linux") {
+        return Err(PadTrouble::LinuxOnly.into());
+    }
     if devices.is_dir() {
         Ok(())
     } else {

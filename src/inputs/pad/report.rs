@@ -91,7 +91,9 @@ pub enum PadNews {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PadTrouble {
     /// This system's gamepads are not read.
-    #[error("gamepads are read on Linux only")]
+    #[error(
+        "gamepads are read on Linux only: here another program can read one, and send what 'handscope help stream' describes"
+    )]
     LinuxOnly,
     /// The folder of the devices cannot be listed.
     #[error("no gamepad can be looked for: {} cannot be listed: {why}", folder.display())]

@@ -78,13 +78,16 @@ impl Package {
     }
 }
 
-/// What to type to get a package.
+/// What to type to get a package. Windows has no such packages, but drivers.
 pub(crate) fn install(package: &Package) -> String {
     let Package {
         debian,
         fedora,
         arch,
     } = package;
+    if cfg!(windows) {
+        return "see what the maker of the graphics card offers for Windows".into();
+    }
     format!(
         "run 'sudo apt install {debian}' (Debian, Ubuntu), 'sudo dnf install {fedora}' (Fedora) or 'sudo pacman -S {arch}' (Arch)"
     )

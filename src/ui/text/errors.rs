@@ -218,7 +218,7 @@ chinese! {
 
     /// Why there is no gamepad.
     fn pad_zh(&PadTrouble) as pad {
-        PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄。";
+        PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄：在此可由其他程序读取，并按 'handscope help stream' 所述发送。";
         PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_error_zh(why);
         PadTrouble::MayNotOpen { path, remedy, .. } => "没有打开 {} 的权限：{}。", path.display(), remedy_zh(remedy);
         PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_error_zh(why);

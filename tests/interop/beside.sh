@@ -1,0 +1,45 @@
+#!/bin/sh
+# Tries the program of another system beside this system's of the same version: the same pictures, hands and recordings.
+# Usage: beside.sh HANDSCOPE COMMAND, where COMMAND runs the other one: qemu-aarch64 /whole/path, or wine /whole/path.exe
+# The system that .ci/package --all leaves has what aarch64 needs: chroot target/unstable sh /root/source/tests/interop/beside.sh
+set -eu
+here=$(realpath "$1")
+shift
+work=$(mktemp -d)
+cd "$work"
+served=
+# Also where it does not answer any more: qemu and wine are other processes than their programs.
+trap 'kill $served 2>/dev/null || true; rm -rf "$work"' EXIT
+fail() { echo "$*" >&2; exit 1; }
+# Where a command of the other program serves a hand.
+serve() {
+  "$@" >ready.txt 2>serve.txt &
+  served=$!
+  for _ in $(seq 300); do
+    hand=$(sed -n 's/\r$//; s/^ready tcp //p' ready.txt)
+    [ -z "$hand" ] || return 0
+    sleep 0.1
+  done
+  cat ready.txt serve.txt
+  fail "it serves nothing: $*"
+}
+
+[ "$("$@" --version | tr -d '\r')" = "$("$here" --version)" ] || fail "another version"
+"$here" snapshot --view all --out here >here.txt
+"$@" snapshot --view all --out there >there.txt
+diff -r here there || fail "other pictures"
+echo "pictures of the same bytes: $(find there -name '*.png' | wc -l)"
+
+"$@" watch --hand sim: --for 3 | grep ' states (' || fail "it reads no built-in hand"
+
+serve "$@" share --hand sim: --tcp 127.0.0.1:0
+"$here" watch --hand "tcp:$hand" --for 3 | grep ' states (' || fail "it shares no hand"
+kill $served
+
+"$@" record --hand sim: --for 3 --out grasp.mcap
+"$here" info grasp.mcap | grep '^states' || fail "it records what cannot be read here"
+serve "$@" replay grasp.mcap --loop --tcp 127.0.0.1:0
+"$here" read ANGLE_ACT FORCE_ACT --hand "tcp:$hand" || fail "it replays nothing"
+kill $served
+"$here" record --hand sim: --for 3 --out own.mcap
+"$@" info own.mcap | grep '^states' || fail "it reads no recording from here"
