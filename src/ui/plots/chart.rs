@@ -356,20 +356,25 @@ impl<'a> Chart<'a> {
         ui.allocate_ui_with_layout(place, right, |ui| {
             ui.set_min_height(theme::PLOT_CAPTION);
             ui.add_space(self.end - theme::PLOT_END);
-            let title = Label::new(look.say(self.title), look.palette.muted).small();
+            let (fixed, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
             let is_fixed = view.scales.chosen(self.title).is_some();
+            let taken = is_fixed
+                .then(|| kit::text_width(ui, look.say(fixed), theme::small()) + theme::GAP)
+                .unwrap_or_default();
             if let Some(at_s) = view.pointed_s() {
                 // Whoever points there wants the values: the title is cut before they are.
-                let room = ui.available_width() - theme::PLOT_AXIS - TITLE_LEAST;
+                let room = ui.available_width() - theme::PLOT_AXIS - TITLE_LEAST - taken;
                 self.readings_ui(ui, at_s, room);
             }
             kit::left_ui(ui, |ui| {
                 ui.add_space(theme::PLOT_AXIS);
-                title.ui(ui);
-                let (text, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
-                let width = kit::text_width(ui, look.say(text), theme::small());
-                if is_fixed && width <= ui.available_width() {
-                    let label = Label::muted(look, text);
+                ui.scope(|ui| {
+                    ui.set_max_width(ui.available_width() - taken);
+                    let title = Label::new(look.say(self.title), look.palette.muted);
+                    title.small().ui(ui);
+                });
+                if is_fixed {
+                    let label = Label::muted(look, fixed);
                     label.small().ui(ui).on_hover_text(look.say(tip));
                 }
             });

@@ -339,14 +339,16 @@ fn nothing_is_cut_or_covered_on_a_fine_display() {
     }
 }
 
-/// How bright the name of a view is painted: 1 in full.
-fn brightness(harness: &Harness<'static, Shown>) -> f32 {
-    let mut shapes = harness.output().shapes.iter();
-    let title = shapes.find_map(|clipped| match &clipped.shape {
-        Shape::Text(text) if text.galley.text() == "Connection" => Some(text.opacity_factor),
+/// How much of what is below is hidden by the cards of the open place: 1 is all.
+fn cover(harness: &Harness<'static, Shown>) -> f32 {
+    let shapes = harness.output().shapes.iter();
+    let cards = shapes.filter_map(|clipped| match &clipped.shape {
+        Shape::Rect(card) if card.rect.left() > 200.0 && card.rect.top() > 110.0 => {
+            Some(card.fill.a())
+        }
         _ => None,
     });
-    title.expect("the name of the view")
+    f32::from(cards.max().expect("a card")) / 255.0
 }
 
 #[test]
@@ -358,10 +360,10 @@ fn a_place_fades_in_and_is_there_at_once_where_nothing_is_to_move_by_itself() {
         .all_styles_mut(|style| style.animation_time = 0.12);
     harness.state_mut().window.set_view(View::Connection);
     harness.run_steps(3);
-    let begun = brightness(&harness);
+    let begun = cover(&harness);
     assert!((0.1..0.9).contains(&begun), "{begun}");
     harness.run_steps(5);
-    assert!((brightness(&harness) - 1.0).abs() < 1e-6);
+    assert!((cover(&harness) - 1.0).abs() < 1e-6);
 
     harness
         .ctx
@@ -370,5 +372,5 @@ fn a_place_fades_in_and_is_there_at_once_where_nothing_is_to_move_by_itself() {
         harness.state_mut().window.set_view(view);
         harness.step();
     }
-    assert!((brightness(&harness) - 1.0).abs() < 1e-6);
+    assert!((cover(&harness) - 1.0).abs() < 1e-6);
 }

@@ -171,11 +171,18 @@ fn the_values_under_the_pointer_are_read_out_while_live() {
 fn a_long_title_leaves_room_for_all_values_under_the_pointer() {
     let mut harness = open();
     hover(&mut harness, 0.5);
-    let [short, long] = ["Force, g", "Angle, 0 bent to 1000 open"].map(|title| {
-        let name = format!("{title} under the pointer");
-        rect(&harness, Role::Label, &name).width()
+    let values = harness.query_all_by_role(Role::Label);
+    let values = values.filter_map(|node| {
+        let name = node.accesskit_node().label()?;
+        let title = name.strip_suffix(" under the pointer")?;
+        Some((title.to_owned(), node.rect().width()))
     });
-    near(f64::from(long), f64::from(short), 0.1);
+    let values: Vec<(String, f32)> = values.collect();
+    let [(short, narrow), (long, wide)] = values.as_slice() else {
+        panic!("{values:?}")
+    };
+    assert!(short.len() < 10 && long.len() > 20, "{short} {long}");
+    near(f64::from(*wide), f64::from(*narrow), 0.1);
 }
 
 #[test]
