@@ -358,9 +358,11 @@ impl<'a> Chart<'a> {
             ui.add_space(self.end - theme::PLOT_END);
             let (fixed, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
             let is_fixed = view.scales.chosen(self.title).is_some();
-            let taken = is_fixed
-                .then(|| kit::text_width(ui, look.say(fixed), theme::small()) + theme::GAP)
-                .unwrap_or_default();
+            let taken = if is_fixed {
+                kit::text_width(ui, look.say(fixed), theme::small()) + theme::GAP
+            } else {
+                0.0
+            };
             if let Some(at_s) = view.pointed_s() {
                 // Whoever points there wants the values: the title is cut before they are.
                 let room = ui.available_width() - theme::PLOT_AXIS - TITLE_LEAST - taken;

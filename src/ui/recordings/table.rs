@@ -36,7 +36,7 @@ const HAND: Vec2 = vec2(120.0, 112.0);
 const COLUMNS: [(Text, f32); 9] = [
     (recordings::STAR, 36.0),
     (recordings::NAME, 0.0),
-    (recordings::LENGTH, 84.0),
+    (recordings::LENGTH, 100.0),
     (recordings::FORCE, STRIP.0),
     (recordings::FAULTS, 52.0),
     (recordings::TRIALS, 52.0),

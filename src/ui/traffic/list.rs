@@ -76,8 +76,9 @@ impl FrameList<'_> {
             .id_salt("traffic rows")
             .auto_shrink(false)
             .animate_scrolling(false);
-        for width in WIDTHS {
-            table = table.column(Column::exact(width));
+        // What is pressed of a row lies under all of its cells, and is drawn with the first.
+        for (nth, width) in WIDTHS.into_iter().enumerate() {
+            table = table.column(Column::exact(width).clip(nth > 0));
         }
         if follows && !scrolls {
             table = table.scroll_to_row(frames.len().saturating_sub(1), Some(Align::BOTTOM));

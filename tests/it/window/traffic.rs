@@ -140,6 +140,20 @@ fn a_chosen_frame_is_explained_byte_by_byte_and_copied_as_hex() {
 }
 
 #[test]
+fn a_frame_is_chosen_wherever_its_row_is_pressed() {
+    let mut bench = looking();
+    bench.click("Pause the list");
+    bench.run(60);
+    let rows = bench.all(Role::Row);
+    let (name, place) = rows.into_iter().nth(3).unwrap();
+    assert!(place.width() > 500.0, "{name} at {place}");
+    bench.press_at(place.center());
+    bench.release_at(place.center());
+    bench.run(60);
+    assert!(!bench.is_disabled(Role::Button, "Copy hex"), "{name}");
+}
+
+#[test]
 fn what_the_list_shows_is_written_to_the_chosen_file() {
     let mut bench = looking();
     bench.type_into("Filter", "finger");
