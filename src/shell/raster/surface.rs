@@ -111,23 +111,25 @@ impl Raster {
         let pixels = self.pixels.chunks_mut(width * tile_rows * TILE);
         let strips = pixels.zip(self.tiles.strips(tile_rows, begun));
         let textures = &self.textures;
+        let mut draws = strips.enumerate().map(|(number, (pixels, tiles))| {
+            let strip = Strip {
+                first_row: coordinate(number * tile_rows * TILE),
+                width,
+                pixels,
+            };
+            move || {
+                let meshes = meshes(primitives, pixels_per_point, textures);
+                draw_strip(strip, tiles, &meshes, background)
+            }
+        });
         let changed = std::thread::scope(|scope| {
-            let strips = strips.enumerate().map(|(number, (pixels, tiles))| {
-                let strip = Strip {
-                    first_row: coordinate(number * tile_rows * TILE),
-                    width,
-                    pixels,
-                };
-                scope.spawn(move || {
-                    let meshes = meshes(primitives, pixels_per_point, textures);
-                    draw_strip(strip, tiles, &meshes, background)
-                })
-            });
-            let strips: Vec<_> = strips.collect();
-            let changed = strips.into_iter().map(|strip| strip.join());
-            let changed =
-                changed.map(|changed| changed.unwrap_or_else(|panic| resume_unwind(panic)));
-            changed.collect::<Vec<_>>()
+            // The first by this thread: each other one costs a heap of its own.
+            let first = draws.next();
+            let others: Vec<_> = draws.map(|draw| scope.spawn(draw)).collect();
+            let first = first.map(|draw| draw());
+            let others = others.into_iter().map(|other| other.join());
+            let others = others.map(|other| other.unwrap_or_else(|panic| resume_unwind(panic)));
+            first.into_iter().chain(others).collect::<Vec<_>>()
         });
         let (right, bottom) = (length(self.width), length(self.height));
         self.changed = changed.concat();
