@@ -1,17 +1,17 @@
 #!/bin/sh
-# Tries the program of another system beside this system's of the same version: the same pictures, hands and recordings.
+# Compares the program for another system with this system's of the same version: pictures, hands, recordings.
 # Usage: beside.sh HANDSCOPE COMMAND, where COMMAND runs the other one: qemu-aarch64 /whole/path, or wine /whole/path.exe
-# The system that .ci/package --all leaves has what aarch64 needs: chroot target/unstable sh /root/source/tests/interop/beside.sh
+# For aarch64, the root file system that .ci/package --all leaves in target/unstable has what this needs:
+# chroot target/unstable sh /root/source/tests/interop/beside.sh HANDSCOPE qemu-aarch64 /whole/path
 set -eu
 here=$(realpath "$1")
 shift
 work=$(mktemp -d)
 cd "$work"
 served=
-# Also where it does not answer any more: qemu and wine are other processes than their programs.
 trap 'kill $served 2>/dev/null || true; rm -rf "$work"' EXIT
 fail() { echo "$*" >&2; exit 1; }
-# Where a command of the other program serves a hand.
+# Starts a command that serves a hand; $hand is where.
 serve() {
   "$@" >ready.txt 2>serve.txt &
   served=$!

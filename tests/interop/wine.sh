@@ -1,9 +1,9 @@
 #!/bin/sh
-# Tries the Windows program under wine 10, beside the Linux program of the same version: as beside.sh does, a serial port, the words
-# of what Windows cannot do, the folders of settings and recordings, the window, and that a hand rests however the program ends.
+# Tries the Windows program under wine 10: what beside.sh compares, a serial port, what Windows cannot do, the folder of
+# recordings, the window, and that a hand stops however the program ends. HANDSCOPE is the Linux program of the same version.
 # Usage: wine.sh FILE.zip HANDSCOPE
-# It needs wine, gcc-mingw-w64-x86-64-win32, imagemagick, unzip and xvfb. The system that .ci/package --all leaves can take them:
-# chroot target/unstable sh /root/source/tests/interop/wine.sh
+# It needs wine, gcc-mingw-w64-x86-64-win32, imagemagick, unzip and xvfb, installed in target/unstable, which .ci/package --all
+# leaves, with /proc and /dev mounted there: chroot target/unstable sh /root/source/tests/interop/wine.sh FILE.zip HANDSCOPE
 set -eu
 zip=$(realpath "$1")
 linux=$(realpath "$2")
@@ -15,7 +15,7 @@ started=
 trap 'kill $started 2>/dev/null || true; rm -rf "$work"' EXIT
 fail() { echo "$*" >&2; exit 1; }
 there() { timeout 60 wine "$work/handscope/handscope.exe" "$@"; }
-# The hand of the Linux program, which tells what it received.
+# Served by the Linux program, so that what the hand received is not told by the program under trial.
 port=6087
 angle() { "$linux" read ANGLE_ACT --hand tcp:127.0.0.1:$port --json; }
 wait_for() { for _ in $(seq 200); do [ ! -s "$1" ] || return 0; sleep 0.05; done; fail "$1 did not come"; }
@@ -25,7 +25,7 @@ x86_64-w64-mingw32-gcc-win32 -O1 -o console.exe "$tests/console.c"
 Xvfb $DISPLAY -screen 0 1600x1000x24 >xvfb.txt 2>&1 &
 started=$!
 wineboot -i >wineboot.txt 2>&1
-# As long as any program runs, so does wine's server, which lists what it held on the standard error of the first one.
+# Keeps wine's server running: where it ends, it writes to the standard error of the program that started it.
 wine ping -n 600 127.0.0.1 >ping.txt 2>&1 &
 started="$started $!"
 
@@ -59,8 +59,8 @@ refuses follow --hand sim: --gamepad
 there record --hand sim: --for 1
 find -L wine/drive_c/users -maxdepth 7 -path '*/Documents/Handscope/*.mcap' | grep . || fail "no recording in the documents"
 
-# However it ends, the hand stands still a moment later. A program that was told ends with its own words; wine kills what is in a
-# window that is closed, and then the process that holds the hand is all there is.
+# However the program ends, the hand stands still 300 ms later. Where a console's window is closed, wine kills the program, and
+# what stops the hand is its holder process.
 ends() {
   rm -f told.txt
   timeout 60 wineconsole console.exe "$1" 3 told.txt handscope/handscope.exe trial --hand tcp:127.0.0.1:$port \
