@@ -83,8 +83,8 @@ impl Beginning {
     }
 }
 
-/// Lets nothing move by itself where the system asks for reduced motion, and else fade.
-fn fade_as_wished(ctx: &egui::Context) -> Subscription {
+/// Lets places, menus and cards fade, unless the system asks for reduced motion; followed while the subscription is kept.
+fn follow_reduced_motion(ctx: &egui::Context) -> Subscription {
     let ctx = ctx.clone();
     Preferences::subscribe(Interest::ReducedMotion, move |wished| {
         let fade_s = if wished.reduced_motion.is_reduce() {
@@ -112,8 +112,7 @@ pub(crate) struct Program {
     fills: Option<Filling>,
     closing: bool,
     ending: Arc<Ending>,
-    /// What the system says of motion is heard for as long as this is kept.
-    _motion: Subscription,
+    _reduced_motion: Subscription,
 }
 
 impl Drop for Program {
@@ -183,7 +182,7 @@ impl Program {
             fills: None,
             closing: false,
             ending,
-            _motion: fade_as_wished(ctx),
+            _reduced_motion: follow_reduced_motion(ctx),
         }
     }
 

@@ -123,7 +123,7 @@ impl Raster {
             }
         });
         let changed = std::thread::scope(|scope| {
-            // The first by this thread: each other one costs a heap of its own.
+            // This thread draws the first part: for each further thread the allocator keeps a heap.
             let first = draws.next();
             let others: Vec<_> = draws.map(|draw| scope.spawn(draw)).collect();
             let first = first.map(|draw| draw());
