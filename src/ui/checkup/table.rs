@@ -123,9 +123,8 @@ fn trend_ui(ui: &mut Ui, pane: &Pane<'_>, check: &Check) -> Option<Response> {
     let (least, most) = check.trend.range().filter(|_| points.len() >= 2)?;
     let (rect, response) = ui.allocate_exact_size(vec2(TREND - theme::GAP, ROW), Sense::hover());
     let place = rect.shrink2(vec2(1.0, theme::STEP));
-    let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
     let places = points.iter().enumerate().map(|(nth, point)| {
-        let x = egui::lerp(place.x_range(), count(nth) / count(points.len() - 1));
+        let x = egui::lerp(place.x_range(), kit::share(nth, points.len() - 1));
         // What does not change lies in the middle.
         let part = if most > least {
             (point.value - least) / (most - least)

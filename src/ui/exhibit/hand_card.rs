@@ -1,13 +1,12 @@
 //! The drawn hand, large, and what its five fingertips feel.
 
 use crate::hand::{Finger, PerFinger};
-use crate::ui::exhibit::large::PageLook;
+use crate::ui::exhibit::large::Page;
 use crate::ui::exhibit::places::above;
 use crate::ui::hand::fingertip::{self, Tip};
 use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::kit::{self, Label, Pane};
 use crate::ui::text::{Text, exhibit, main, words};
-use crate::ui::theme::Palette;
 use crate::ui::touch::heat;
 use egui::{Align2, Color32, Rect, Ui, vec2};
 
@@ -17,8 +16,8 @@ pub(crate) struct HandCard(StillHand);
 
 impl HandCard {
     /// Draws the card.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, page: PageLook<'_>) {
-        let (unit, rect) = (page.unit, page.places.hand);
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
+        let (unit, rect) = (page.places.unit, page.places.hand);
         let tips = heat::tips(pane);
         page.card(ui, rect);
         let inner = rect.shrink(20.0 * unit);
@@ -30,54 +29,52 @@ impl HandCard {
         self.0.ui(ui, hand, page.look, &shown);
         feels_ui(ui, page, feels, &tips);
         let row = inner.with_max_y(inner.top() + 48.0 * unit);
+        let palette = page.look.palette;
         if pane.hand().connection.is_simulated() {
-            Badge::SIMULATED.ui(ui, page, row);
+            let simulated = Badge {
+                text: main::SIMULATED,
+                fill: palette.simulated,
+                side: Align2::LEFT_CENTER,
+            };
+            simulated.ui(ui, page, row);
         }
         if page.exhibit.view.is_slow {
-            Badge::SLOW.ui(ui, page, row);
+            let slow = Badge {
+                text: exhibit::SLOW,
+                fill: palette.warn,
+                side: Align2::RIGHT_CENTER,
+            };
+            slow.ui(ui, page, row);
         }
     }
 }
 
-/// What is to be known of this hand, in words on a coloured ground.
+/// A word about the hand on a coloured ground.
 struct Badge {
     text: Text,
-    fill: fn(&Palette) -> Color32,
+    fill: Color32,
     /// Where in its row it stands.
     side: Align2,
 }
 
 impl Badge {
-    /// It is none of metal.
-    const SIMULATED: Self = Self {
-        text: main::SIMULATED,
-        fill: |palette| palette.simulated,
-        side: Align2::LEFT_CENTER,
-    };
-    /// It goes slowly.
-    const SLOW: Self = Self {
-        text: exhibit::SLOW,
-        fill: |palette| palette.warn,
-        side: Align2::RIGHT_CENTER,
-    };
-
     /// Draws it as high as a row and no wider than it.
-    fn ui(&self, ui: &mut Ui, page: PageLook<'_>, row: Rect) {
+    fn ui(&self, ui: &mut Ui, page: Page<'_>, row: Rect) {
         let (text, palette) = (page.look.say(self.text), page.look.palette);
         let font = page.font(28.0);
-        let wide = kit::text_width(ui, text, font.clone()) + 36.0 * page.unit;
+        let wide = kit::text_width(ui, text, font.clone()) + 36.0 * page.places.unit;
         let size = vec2(wide.min(row.width()), row.height());
         let place = self.side.align_size_within_rect(size, row);
-        let fill = (self.fill)(palette);
-        ui.painter().rect_filled(place, place.height() / 2.0, fill);
+        ui.painter()
+            .rect_filled(place, place.height() / 2.0, self.fill);
         let label = Label::new(text, palette.on_accent).font(font);
         label.center().put(ui, place);
     }
 }
 
 /// The five fingertips beside each other, under what they are.
-fn feels_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect, tips: &PerFinger<Option<Tip>>) {
-    let (look, unit) = (page.look, page.unit);
+fn feels_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, tips: &PerFinger<Option<Tip>>) {
+    let (look, unit) = (page.look, page.places.unit);
     let (caption, row) = rect.split_top_bottom_at_y(rect.top() + 40.0 * unit);
     let said = look.say(exhibit::FEELS);
     let label = Label::new(said, look.palette.muted).font(page.font(28.0));

@@ -1,7 +1,7 @@
 //! The pad on which a PIN is typed. It never shows a digit of it.
 
 use crate::exhibit::pin::DIGITS;
-use crate::ui::exhibit::large::{LargeButton, PageLook};
+use crate::ui::exhibit::large::{LargeButton, Page};
 use crate::ui::kit::Weight;
 use crate::ui::text::exhibit;
 use crate::ui::theme;
@@ -51,13 +51,13 @@ impl Keypad {
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
-        page: PageLook<'_>,
+        page: Page<'_>,
         rect: Rect,
         locked: Option<&str>,
     ) -> Option<String> {
         let (dots, keys) = rect.split_top_bottom_at_y(rect.top() + rect.height() / 5.0);
         self.dots_ui(ui, page, dots);
-        let gap = 14.0 * page.unit;
+        let gap = 14.0 * page.places.unit;
         let size = (keys.size() + Vec2::splat(gap)) / vec2(3.0, 4.0) - Vec2::splat(gap);
         let place = |column: u8, row: u8| {
             let step = vec2(column.into(), row.into()) * (size + Vec2::splat(gap));
@@ -87,7 +87,7 @@ impl Keypad {
         enter.ui(ui, page, place(2, 3)).then(|| self.enter())?
     }
 
-    fn digit_ui(&mut self, ui: &Ui, page: PageLook<'_>, place: Rect, digit: char) {
+    fn digit_ui(&mut self, ui: &Ui, page: Page<'_>, place: Rect, digit: char) {
         let mut bytes = [0; 4];
         let words: &str = digit.encode_utf8(&mut bytes);
         let button = LargeButton {
@@ -100,8 +100,8 @@ impl Keypad {
     }
 
     /// A dot for each digit, and the places that a PIN has at least.
-    fn dots_ui(&self, ui: &mut Ui, page: PageLook<'_>, rect: Rect) {
-        let (palette, unit) = (page.look.palette, page.unit);
+    fn dots_ui(&self, ui: &mut Ui, page: Page<'_>, rect: Rect) {
+        let (palette, unit) = (page.look.palette, page.places.unit);
         let response = ui.allocate_rect(rect, Sense::hover());
         let count = u8::try_from(self.typed.len()).unwrap_or(u8::MAX);
         response.widget_info(|| {

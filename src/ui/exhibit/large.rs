@@ -18,13 +18,11 @@ const NOTE: f32 = 28.0;
 /// Height of a line, in sizes of its font.
 const LINE: f32 = 1.22;
 
-/// What everything on the page is drawn from: colours, language, scale, places, and what goes on.
+/// One frame of the exhibition's page: how it looks, where its parts stand, and the state that it shows.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PageLook<'a> {
+pub(crate) struct Page<'a> {
     /// Colours and language.
     pub(crate) look: Look,
-    /// Points of a unit.
-    pub(crate) unit: f32,
     pub(crate) places: PagePlaces,
     pub(crate) exhibit: &'a ExhibitState,
 }
@@ -43,10 +41,10 @@ impl<'a> LargeText<'a> {
     }
 }
 
-impl PageLook<'_> {
+impl Page<'_> {
     /// A font of this size in units.
     pub(crate) fn font(self, size: f32) -> FontId {
-        FontId::proportional((size * self.unit).max(FONT_LEAST))
+        FontId::proportional((size * self.places.unit).max(FONT_LEAST))
     }
 
     /// The largest font up to this size in which a text fits.
@@ -84,7 +82,7 @@ impl PageLook<'_> {
     pub(crate) fn card(self, ui: &Ui, rect: Rect) {
         let palette = self.look.palette;
         let edge = Stroke::new(1.0, palette.edge);
-        let round = 16.0 * self.unit;
+        let round = 16.0 * self.places.unit;
         ui.painter()
             .rect(rect, round, palette.card, edge, StrokeKind::Inside);
     }
@@ -120,7 +118,7 @@ impl<'a> LargeButton<'a> {
     }
 
     /// Draws it; true in the frame in which it is pressed.
-    pub(crate) fn ui(self, ui: &Ui, page: PageLook<'_>, rect: Rect) -> bool {
+    pub(crate) fn ui(self, ui: &Ui, page: Page<'_>, rect: Rect) -> bool {
         let enabled = self.disabled.is_none() && ui.is_enabled();
         let id = Id::unique(("large", self.words));
         let response = ui.interact(rect, id, kit::click_if(enabled));
@@ -130,14 +128,14 @@ impl<'a> LargeButton<'a> {
                 .accesskit_node_builder(response.id, |node| node.set_description(reason));
         }
         let (fill, edge, color) = self.colors(page.look, response.is_pointer_button_down_on());
-        let round = 12.0 * page.unit;
-        let edge = Stroke::new((2.0 * page.unit).max(1.0), edge);
+        let round = 12.0 * page.places.unit;
+        let edge = Stroke::new((2.0 * page.places.unit).max(1.0), edge);
         ui.painter()
             .rect(rect, round, fill, edge, StrokeKind::Inside);
-        let inner = rect.shrink(8.0 * page.unit);
+        let inner = rect.shrink(8.0 * page.places.unit);
         match (self.icon, self.note) {
             (Some(icon), _) => {
-                let font = theme::icon_high(self.size * page.unit);
+                let font = theme::icon_high(self.size * page.places.unit);
                 let center = Align2::CENTER_CENTER;
                 ui.painter().text(rect.center(), center, icon, font, color);
             }

@@ -15,7 +15,7 @@ use crate::app::settings::{Language, Zoom};
 use crate::app::state::State;
 use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::hand_card::HandCard;
-use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
+use crate::ui::exhibit::large::{LargeButton, LargeText, Page};
 use crate::ui::exhibit::places::PagePlaces;
 use crate::ui::exhibit::staff::StaffView;
 use crate::ui::kit::{Look, Pane, Typing, Weight};
@@ -70,9 +70,8 @@ impl ExhibitPage {
             opens: &mut None,
         };
         let places = PagePlaces::of(ui.max_rect());
-        let page = PageLook {
+        let page = Page {
             look: pane.look,
-            unit: places.unit,
             places,
             exhibit,
         };
@@ -104,7 +103,7 @@ impl ExhibitPage {
     }
 
     /// What visitors see. True if a tile was pressed, or the way of staff.
-    fn page_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) -> bool {
+    fn page_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) -> bool {
         self.title_ui(ui, page);
         let lock = LargeButton {
             icon: Some(theme::LOCKED),
@@ -121,7 +120,7 @@ impl ExhibitPage {
         tiles::tiles_ui(ui, pane, page) || asks
     }
 
-    fn title_ui(&self, ui: &mut Ui, page: PageLook<'_>) {
+    fn title_ui(&self, ui: &mut Ui, page: Page<'_>) {
         let place = page.places.title;
         let mut rest = place;
         if let Some(logo) = &self.logo {
@@ -131,7 +130,7 @@ impl ExhibitPage {
             let (left, right) = place.split_left_right_at_x(place.left() + size.x);
             let picture = egui::Align2::LEFT_CENTER.align_size_within_rect(size, left);
             egui::Image::new(logo).paint_at(ui, picture);
-            rest = right.with_min_x(right.left() + 24.0 * page.unit);
+            rest = right.with_min_x(right.left() + 24.0 * page.places.unit);
         }
         let own = tiles::words_of(&page.exhibit.plan.title, page.look.language);
         let title = match own {
@@ -179,7 +178,7 @@ const fn wish(wish: ExhibitWish) -> Action {
 }
 
 /// STOP, over all else.
-fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
+fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let stop = LargeButton {
         note: page.look.say(exhibit::STOP_NOTE),
         size: 60.0,
@@ -192,7 +191,7 @@ fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
 }
 
 /// The other language, in its own words.
-fn language_ui(ui: &Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
+fn language_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let words = match page.look.language {
         Language::En => "中文",
         Language::Zh => "English",

@@ -5,7 +5,7 @@ use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
 use crate::exhibit::pin::PinAnswer;
 use crate::exhibit::run::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::keypad::Keypad;
-use crate::ui::exhibit::large::{LargeButton, LargeText, PageLook};
+use crate::ui::exhibit::large::{LargeButton, LargeText, Page};
 use crate::ui::exhibit::places::above;
 use crate::ui::kit::{Label, Pane, Weight};
 use crate::ui::text::{Text, exhibit, notices};
@@ -37,13 +37,7 @@ struct PadWords {
 
 impl StaffView {
     /// Draws what is open; `keys` are those of a real keyboard.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        page: PageLook<'_>,
-        keys: &[Key],
-    ) {
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>, keys: &[Key]) {
         let (exhibit, places) = (page.exhibit, page.places);
         let kind = std::mem::discriminant(&exhibit.staff);
         let is_new = self.shown.replace(kind) != Some(kind);
@@ -91,10 +85,10 @@ impl StaffView {
         &mut self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
-        page: PageLook<'_>,
+        page: Page<'_>,
         words: &PadWords,
     ) -> Option<String> {
-        let (look, unit) = (page.look, page.unit);
+        let (look, unit) = (page.look, page.places.unit);
         let inner = card_ui(ui, page, vec2(620.0, 860.0), words.title);
         let (title, rest) = above(inner, 56.0 * unit, 4.0 * unit);
         title_ui(ui, page, title, words.title);
@@ -119,17 +113,17 @@ impl StaffView {
 }
 
 /// The ground of a card of this size in units in the middle, as far as there is room; the place in it.
-fn card_ui(ui: &mut Ui, page: PageLook<'_>, size: Vec2, title: Text) -> Rect {
+fn card_ui(ui: &mut Ui, page: Page<'_>, size: Vec2, title: Text) -> Rect {
     let room = page.places.staff();
-    let rect = Rect::from_center_size(room.center(), (size * page.unit).min(room.size()));
+    let rect = Rect::from_center_size(room.center(), (size * page.places.unit).min(room.size()));
     let response = ui.allocate_rect(rect, Sense::hover());
     let name = page.look.say(title);
     response.widget_info(|| WidgetInfo::labeled(Role::Dialog, true, name));
     page.card(ui, rect);
-    rect.shrink(28.0 * page.unit)
+    rect.shrink(28.0 * page.places.unit)
 }
 
-fn title_ui(ui: &mut Ui, page: PageLook<'_>, place: Rect, title: Text) {
+fn title_ui(ui: &mut Ui, page: Page<'_>, place: Rect, title: Text) {
     let look = page.look;
     let title = LargeText::new(look.say(title), 38.0, look.palette.text);
     page.line(ui, place, title);
@@ -176,8 +170,8 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
 }
 
 /// What staff do once the PIN was right.
-fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) {
-    let (look, unit) = (page.look, page.unit);
+fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) {
+    let (look, unit) = (page.look, page.places.unit);
     let gap = 18.0 * unit;
     let inner = card_ui(ui, page, vec2(1100.0, 760.0), exhibit::STAFF);
     let (title, rest) = above(inner, 56.0 * unit, gap);
@@ -226,7 +220,7 @@ fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
 }
 
 /// What was counted today.
-fn figures_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect) {
+fn figures_ui(ui: &mut Ui, page: Page<'_>, rect: Rect) {
     let (look, report) = (page.look, page.exhibit.report.today());
     let rows: [(Text, u32); 5] = [
         (exhibit::VISITS, report.visits),

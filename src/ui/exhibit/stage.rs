@@ -5,7 +5,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::exhibit::run::{ExhibitStage, HaltReason};
 use crate::record::{Hold, LinkState};
-use crate::ui::exhibit::large::{LargeText, PageLook};
+use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::kit::{Look, Pane};
 use crate::ui::text::{Text, exhibit, main, window};
 use egui::{Color32, CornerRadius, ProgressBar, Rect, Ui, UiBuilder, WidgetInfo};
@@ -45,8 +45,8 @@ pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) ->
 }
 
 /// The words on their card.
-pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: PageLook<'_>) {
-    let (look, unit, rect) = (page.look, page.unit, page.places.words);
+pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
+    let (look, unit, rect) = (page.look, page.places.unit, page.places.words);
     let words = trouble(look, pane.state);
     let words = words.unwrap_or_else(|| stage_words(look, pane.state, page.exhibit));
     page.card(ui, rect);
@@ -71,7 +71,7 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: PageLook<'_>) {
 }
 
 /// The time to play that is left.
-fn left_ui(ui: &mut Ui, page: PageLook<'_>, rect: Rect, left: f32) {
+fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
     let builder = UiBuilder::new().max_rect(rect);
     ui.scope_builder(builder, |ui| {
         let bar = ProgressBar::new(left).fill(page.look.palette.accent);

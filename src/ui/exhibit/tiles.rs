@@ -6,7 +6,7 @@ use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, ExhibitPiece};
 use crate::exhibit::run::{ExhibitWish, HELD_FOR};
 use crate::hand::Angle;
-use crate::ui::exhibit::large::{LargeText, PageLook};
+use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::exhibit::places::NAME;
 use crate::ui::exhibit::stage;
 use crate::ui::hand::tile;
@@ -38,7 +38,7 @@ struct PieceTile<'a> {
 }
 
 /// All tiles. True if one was pressed.
-pub(crate) fn tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: PageLook<'_>) -> bool {
+pub(crate) fn tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) -> bool {
     let exhibit = page.exhibit;
     let refusal = stage::tile_refusal(pane.look, pane.state, exhibit);
     let restarts = stage::restarts(pane.state, exhibit);
@@ -71,9 +71,9 @@ fn press(tile: usize) -> Action {
 
 impl PieceTile<'_> {
     /// Draws it; true in the frame in which it is pressed.
-    fn ui(&self, ui: &mut Ui, page: PageLook<'_>) -> bool {
+    fn ui(&self, ui: &mut Ui, page: Page<'_>) -> bool {
         let Self { rect, .. } = *self;
-        let (palette, unit) = (page.look.palette, page.unit);
+        let (palette, unit) = (page.look.palette, page.places.unit);
         let name = words_of(&self.piece.name, page.look.language);
         let enabled = self.refusal.is_none() && ui.is_enabled();
         let id = Id::unique(("exhibit tile", self.index));
@@ -109,7 +109,7 @@ impl PieceTile<'_> {
         self.refusal.is_none() && kit::pressed(ui, &response)
     }
 
-    fn picture_ui(&self, ui: &Ui, page: PageLook<'_>, place: Rect) {
+    fn picture_ui(&self, ui: &Ui, page: Page<'_>, place: Rect) {
         // What a pose leaves alone is drawn open.
         let share = |to: Option<Angle>| f32::from(to.unwrap_or(Angle::MAX).get()) / 1000.0;
         let shares = self.piece.shown().map(|to| Some(share(to)));
@@ -121,13 +121,13 @@ impl PieceTile<'_> {
     }
 
     /// How long it is held already: it fills from below.
-    fn held_ui(&self, ui: &Ui, page: PageLook<'_>, part: f32) {
-        let (accent, round) = (page.look.palette.accent, 16.0 * page.unit);
+    fn held_ui(&self, ui: &Ui, page: Page<'_>, part: f32) {
+        let (accent, round) = (page.look.palette.accent, 16.0 * page.places.unit);
         let full = self.rect;
         let risen = full.with_min_y(full.bottom() - full.height() * part);
         let painter = ui.painter().with_clip_rect(risen);
         painter.rect_filled(full, round, accent.gamma_multiply(RISEN));
-        let edge = Stroke::new((5.0 * page.unit).max(2.0), accent);
+        let edge = Stroke::new((5.0 * page.places.unit).max(2.0), accent);
         ui.painter()
             .rect_stroke(full, round, edge, StrokeKind::Inside);
     }

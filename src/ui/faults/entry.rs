@@ -17,6 +17,12 @@ const SHOWN: Duration = Duration::from_secs(10);
 /// So much after a fault is replayed, too.
 const AFTER: Duration = Duration::from_secs(2);
 
+/// Indent of what stands below a line.
+const INSET: Margin = Margin {
+    left: 20,
+    ..Margin::ZERO
+};
+
 /// How a fault is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Depth {
@@ -80,11 +86,7 @@ pub(crate) fn entry_ui(
 
 /// What stands below a title with a lamp.
 pub(crate) fn inset_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
-    let left = 20;
-    let frame = Frame::new().inner_margin(Margin {
-        left,
-        ..Margin::ZERO
-    });
+    let frame = Frame::new().inner_margin(INSET);
     frame.show(ui, |ui| ui.vertical(add).inner).inner
 }
 

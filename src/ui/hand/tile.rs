@@ -56,13 +56,13 @@ pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f3
 /// Draws a pose that is to be told from others at the size of a button: from where its fingers are seen best, those that matter
 /// in colour.
 pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
-    let pose = Tile::new(ui, look, rect, shares);
-    let is_sign = true;
-    Tile { is_sign, ..pose }.paint(ui, rect);
+    let mut tile = Tile::new(ui, look, rect, shares);
+    tile.is_sign = true;
+    tile.paint(ui, rect);
 }
 
-/// Where there is no pose yet: an open hand so far as this, and a title.
-pub(crate) fn empty_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
+/// What stands in an empty list: a hand, opened by `share` (0 closed, 1 open), over a title. The caller centres it.
+pub(crate) fn empty_page_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
     ui.add_space(ui.available_height() * 0.2);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
     pose_ui(ui, look, picture, &PerDof::splat(Some(share)));

@@ -330,8 +330,8 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
             clicked = Some(control);
         }
         if shown.chosen == Some(control) || response.has_focus() || response.hovered() {
-            let is_passing = response.hovered();
-            let width = if is_passing { 1.0 } else { theme::STRONG };
+            let is_hovered = response.hovered();
+            let width = if is_hovered { 1.0 } else { theme::STRONG };
             let stroke = Stroke::new(width, look.palette.accent);
             let round = CornerRadius::same(theme::ROUND);
             let outer = place.expand(4.0);

@@ -45,7 +45,10 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
         all.push(before.clone());
     }
     let all = all.into_iter();
-    let choices = all.map(|action| (action.clone(), shown.does(look, &action)));
+    let choices = all.map(|action| {
+        let words = shown.does(look, &action);
+        (action, words)
+    });
     let choices: Vec<(PadAction, String)> = choices.collect();
     let mut action = before.clone();
     let name = look.say(inputs::control(control));

@@ -47,14 +47,8 @@ impl Choice {
         }
     }
 
-    /// Cannot be pressed, for this reason.
+    /// Cannot be pressed, for this reason before one that was given earlier.
     pub(crate) fn disabled(mut self, reason: Option<Text>) -> Self {
-        self.disabled = reason;
-        self
-    }
-
-    /// Cannot be pressed for this reason before any other.
-    pub(crate) fn refused(mut self, reason: Option<Text>) -> Self {
         self.disabled = reason.or(self.disabled);
         self
     }
@@ -308,18 +302,16 @@ impl CardView {
                 }
             });
         }
-        let row = ui.horizontal(|ui| {
-            let right = Layout::right_to_left(Align::Center);
-            ui.with_layout(right, |ui| self.choices_ui(ui, card, is_new))
-        });
-        (row.inner.inner, lines.inner_rect.height())
+        let row =
+            ui.horizontal(|ui| controls::right_ui(ui, |ui| self.choices_ui(ui, card, is_new)));
+        (row.inner, lines.inner_rect.height())
     }
 
     /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.
     fn choices_ui(&self, ui: &mut Ui, card: &Card, is_new: bool) -> Option<usize> {
         let look = card.look;
-        let pressed = |key| ui.input(|input| input.key_pressed(key));
-        let (escaped, entered) = (pressed(Key::Escape), pressed(Key::Enter));
+        let is_pressed = |key| ui.input(|input| input.key_pressed(key));
+        let (escaped, entered) = (is_pressed(Key::Escape), is_pressed(Key::Enter));
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
         let untyped = untyped.map(|word| look.told(cards::TYPE, word));

@@ -111,7 +111,7 @@ impl<'a> Label<'a> {
             label.truncate()
         });
         if let Some(name) = self.name {
-            rename(&response, name);
+            set_accessible_name(&response, name);
         }
         response
     }
@@ -135,7 +135,7 @@ impl<'a> Label<'a> {
         let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
         if let Some(name) = self.name {
-            rename(&response, name);
+            set_accessible_name(&response, name);
         }
         if elided {
             response = response.on_hover_text(self.text);
@@ -156,14 +156,14 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Lets a screen reader call something else than what it says.
-pub(crate) fn rename(response: &Response, name: &str) {
+/// Sets the name by which a screen reader calls a widget, in place of the text in it.
+pub(crate) fn set_accessible_name(response: &Response, name: &str) {
     response
         .ctx
         .accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// What can be clicked if that is so.
+/// Senses clicks if enabled, else only the pointer over it.
 pub(crate) fn click_if(enabled: bool) -> Sense {
     if enabled {
         Sense::click()
@@ -696,8 +696,8 @@ impl Pick {
     }
 }
 
-/// A menu behind a button that stays open while something in it is pressed.
-pub(crate) fn drawer(button: &Response) -> Popup<'_> {
+/// A popup below a button: it is closed by a click outside, not by one in it.
+pub(crate) fn lasting_popup(button: &Response) -> Popup<'_> {
     Popup::menu(button).close_behavior(PopupCloseBehavior::CloseOnClickOutside)
 }
 
@@ -729,7 +729,7 @@ pub(crate) fn choose_ui<T: Clone + PartialEq, S: AsRef<str>>(
                 ui.selectable_value(chosen, value.clone(), text.as_ref());
             }
         });
-    rename(&shown.response, name);
+    set_accessible_name(&shown.response, name);
     *chosen != before
 }
 

@@ -17,9 +17,9 @@ pub(crate) fn close() -> Choice {
     step(cards::CLOSE, ButtonRole::Safe, ProcedureAction::Close)
 }
 
-/// A card that asks whether to begin, unless nothing can begin now.
+/// Adds *Cancel* and `begin` to a card; `begin` is disabled unless a hand is connected, disarmed and at rest.
 pub(crate) fn asking(state: &State, card: Card, begin: Choice) -> Card {
-    let moves = rest_refusal(&state.hand().connection.status).map(device::refusal);
+    let refusal = rest_refusal(&state.hand().connection.status).map(device::refusal);
     let cancel = step(cards::CANCEL, ButtonRole::Safe, ProcedureAction::Close);
-    card.choice(cancel).choice(begin.refused(moves))
+    card.choice(cancel).choice(begin.disabled(refusal))
 }

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::params::action::ParamAction;
 use crate::app::params::compared::Compared;
 use crate::params::rows::ParamId;
-use crate::ui::kit::{Button, Label, Pane, Weight};
+use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::params::flash::moment;
 use crate::ui::params::table::{cell_name, cell_ui, value_text};
 use crate::ui::text::device;
@@ -42,7 +42,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
         });
         if !unknown.is_empty() {
             let words = look.told(device::UNKNOWN_KEYS, unknown.join(", "));
-            Label::new(&words, palette.warn).small().wrap().ui(ui);
+            kit::say_ui(ui, &words, palette.warn);
         }
     });
 }

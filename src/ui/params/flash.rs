@@ -49,7 +49,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let area = ScrollArea::vertical().id_salt("flash").max_height(most);
     area.show(ui, |ui| {
         for (words, color) in lines {
-            Label::new(&words, color).small().wrap().ui(ui);
+            kit::say_ui(ui, &words, color);
         }
     });
 }
@@ -59,7 +59,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     let (look, book) = (pane.look, &pane.hand().params);
     let palette = look.palette;
     let mut lines = Vec::new();
-    lines.extend(doing(pane).map(|doing| (doing.to_owned(), palette.accent)));
+    lines.extend(writing(pane).map(|writing| (writing.to_owned(), palette.accent)));
     lines.extend(save_end(pane));
     if let Some(reason) = reason.filter(|_| !book.is_busy()) {
         lines.push((reason.to_owned(), palette.muted));
@@ -99,14 +99,14 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     lines
 }
 
-/// What is done with the parameters now, but for reading them.
-pub(crate) fn doing(pane: &Pane<'_>) -> Option<&'static str> {
+/// What is written or saved now, in words; `None` also while parameters are only read.
+pub(crate) fn writing(pane: &Pane<'_>) -> Option<&'static str> {
     let doing = pane.hand().params.doing;
-    let doing = device::doing(doing).filter(|_| doing != Doing::Reading);
-    doing.map(|doing| pane.look.say(doing))
+    let words = device::doing(doing).filter(|_| doing != Doing::Reading);
+    words.map(|words| pane.look.say(words))
 }
 
-/// How the last save ended.
+/// How the last save ended, and in which colour; `None` if nothing was saved yet.
 pub(crate) fn save_end(pane: &Pane<'_>) -> Option<(String, Color32)> {
     let (look, palette) = (pane.look, pane.look.palette);
     let (end, _) = pane.hand().params.save.as_ref()?;
@@ -133,7 +133,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
     if let Some(refused) = &pane.hand().params.file_refused {
         let words = notices::notice(look, refused);
-        Label::new(&words, look.palette.warn).small().wrap().ui(ui);
+        kit::say_ui(ui, &words, look.palette.warn);
         if let Some(path) = path_ui(ui, look, "parameters") {
             pane.actions
                 .push(Action::Param(ParamAction::Open(Some(path))));

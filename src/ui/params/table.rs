@@ -10,7 +10,7 @@ use crate::ui::kit::{self, Button, Label, NumberField, Pane, TextField, format};
 use crate::ui::text::{Text, device, panels, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, RichText, Ui, UiBuilder, vec2};
-use egui_extras::{Column, TableBody, TableBuilder, TableRow};
+use egui_extras::{Column, TableBody, TableRow};
 
 /// Characters of an address.
 const ADDRESS_MAX: usize = 15;
@@ -77,9 +77,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     }
     ui.visuals_mut().selection.bg_fill = look.palette.wash(look.palette.accent);
     let width = ui.available_width();
-    let row = Layout::left_to_right(Align::Center);
-    let mut table = TableBuilder::new(ui)
-        .cell_layout(row)
+    let mut table = kit::table(ui, "parameters")
         .auto_shrink(false)
         .min_scrolled_height(SCROLLED_LEAST);
     for column in COLUMNS {

@@ -23,7 +23,7 @@ use std::collections::HashMap;
 const COLUMNS_MOST: f32 = 8192.0;
 /// A box of a smaller part of a chart's height marks time alone.
 const BOX_LEAST: f64 = 0.15;
-/// What is left of a title beside the values under the pointer.
+/// The least width of a title beside the values under the pointer.
 const TITLE_LEAST: f32 = 64.0;
 
 /// Where the points of a curve come from: seconds and values, oldest first.
@@ -265,7 +265,11 @@ impl<'a> Chart<'a> {
             hovered_plot_item: None,
         };
         if !self.is_sparkline {
-            let axis = ScaleAxis::new(self.title, aim, &shown.inner);
+            let axis = ScaleAxis {
+                title: self.title,
+                ends: aim,
+                response: &shown.inner,
+            };
             view.scales.axis_ui(ui, self.look, &axis);
         }
         view.act(ui, &shown, self.title, bounds);
@@ -371,7 +375,7 @@ impl<'a> Chart<'a> {
             kit::left_ui(ui, |ui| {
                 ui.add_space(theme::PLOT_AXIS);
                 ui.scope(|ui| {
-                    ui.set_max_width(ui.available_width() - taken);
+                    ui.set_max_width((ui.available_width() - taken).max(0.0));
                     let title = Label::new(look.say(self.title), look.palette.muted);
                     title.small().ui(ui);
                 });
@@ -410,7 +414,7 @@ impl<'a> Chart<'a> {
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
         let name = look.told(self.title, look.say(panels::UNDER_POINTER));
-        kit::rename(&response, &name);
+        kit::set_accessible_name(&response, &name);
     }
 
     fn plot(&self, is_fixed: bool) -> Plot<'_> {
@@ -523,13 +527,13 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 }
 
 impl ChartView {
-    /// Time went on to `now_s`: it is shown from where a history begins, so many seconds of it while it follows.
+    /// Moves the time window on to `now_s`: never before the history begins, and `window_s` wide while it follows.
     pub(crate) fn advance(&mut self, history: &History, now_s: f64, window_s: f64) {
         let first_s = history.first_secs().unwrap_or(now_s);
         self.time.advance((first_s.min(now_s), now_s), window_s);
     }
 
-    /// How times are told: from now on backwards, unless the chart stands still.
+    /// How times are labelled: as an age, or by the clock while the chart is held.
     pub(crate) fn times(&self, look: Look) -> Times {
         if self.time.is_held() {
             Times::Clock

@@ -41,7 +41,7 @@ pub(crate) fn width(ui: &Ui) -> f32 {
     VALUES + theme::STEP + name
 }
 
-/// The plot beside which ends stand.
+/// A plot whose curves are labelled at their right ends.
 pub(crate) struct PlotEnds<'a> {
     pub(crate) look: Look,
     pub(crate) panel: &'a Panel,

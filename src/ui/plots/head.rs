@@ -48,7 +48,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         .named(look.say(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
-    kit::drawer(&button).show(|ui| {
+    kit::lasting_popup(&button).show(|ui| {
         ui.set_max_width(MENU);
         ui.label(look.say(panels::SHOWN));
         shown_ui(ui, pane);

@@ -280,14 +280,14 @@ impl PlotView {
     ) -> ChartResponse {
         let look = pane.look;
         let hand = pane.hand();
-        let own = |history, line: &PanelLine| {
+        let curve_of = |history, line: &PanelLine| {
             let points = Points::Measured(history, line.series);
             ChartCurve::new(points, self.stroke(look, line))
         };
         let curve = |line: &PanelLine| ChartCurve {
             steps: line.wished,
             told: (!line.wished).then_some(panel.row.decimals),
-            ..own(&hand.measured.history, line)
+            ..curve_of(&hand.measured.history, line)
         };
         let lines = panel.lines(&self.hidden);
         // The second recording stands behind the first.
@@ -297,7 +297,7 @@ impl PlotView {
                 zero: [beside.offset_s(), 0.0],
                 style: dash::nth(1),
                 beside: true,
-                ..own(&beside.history, line)
+                ..curve_of(&beside.history, line)
             })
         });
         let mut levels = Vec::new();

@@ -115,19 +115,9 @@ struct SettledScale {
 
 /// The numbers beside a plot.
 pub(crate) struct ScaleAxis<'a> {
-    title: Text,
-    ends: (f64, f64),
-    response: &'a Response,
-}
-
-impl<'a> ScaleAxis<'a> {
-    pub(crate) const fn new(title: Text, ends: (f64, f64), response: &'a Response) -> Self {
-        Self {
-            title,
-            ends,
-            response,
-        }
-    }
+    pub(crate) title: Text,
+    pub(crate) ends: (f64, f64),
+    pub(crate) response: &'a Response,
 }
 
 /// The scales that the user chose; others follow their values.
@@ -182,26 +172,30 @@ impl Scales {
 
     /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
     pub(crate) fn axis_ui(&mut self, ui: &Ui, look: Look, axis: &ScaleAxis<'_>) {
-        let (title, (low, high), axis) = (axis.title, axis.ends, axis.response);
-        let per_point = (high - low) / f64::from(axis.rect.height().max(1.0));
+        let ScaleAxis {
+            title,
+            ends: (low, high),
+            response,
+        } = *axis;
+        let per_point = (high - low) / f64::from(response.rect.height().max(1.0));
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
-        if axis.double_clicked() {
+        if response.double_clicked() {
             self.forget(title);
-        } else if axis.dragged() && axis.drag_delta().y != 0.0 {
-            let by = f64::from(axis.drag_delta().y) * per_point;
+        } else if response.dragged() && response.drag_delta().y != 0.0 {
+            let by = f64::from(response.drag_delta().y) * per_point;
             self.choose(title, low + by, high + by);
-        } else if let Some(at) = axis.hover_pos().filter(|_| scroll != 0.0) {
+        } else if let Some(at) = response.hover_pos().filter(|_| scroll != 0.0) {
             let factor = f64::from(-scroll / theme::PLOT_WHEEL).exp2();
-            let value = low + f64::from(axis.rect.bottom() - at.y) * per_point;
+            let value = low + f64::from(response.rect.bottom() - at.y) * per_point;
             let end = |end: f64| value + (end - value) * factor;
             self.choose(title, end(low), end(high));
         }
-        if axis.hovered() {
+        if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
         }
         let name = look.pair(look.say(panels::RANGE), look.say(title));
-        axis.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-        ui.ctx().accesskit_node_builder(axis.id, |node| {
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+        ui.ctx().accesskit_node_builder(response.id, |node| {
             node.set_value(format!("{low} to {high}"));
         });
     }

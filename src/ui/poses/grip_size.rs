@@ -1,4 +1,4 @@
-//! Grips by size: a drawer with the kinds, the gap, the size of what is held, and the blocks that make it true.
+//! Grips by size: a popup with the kinds, the gap, the size of what is held, and the blocks that make it true.
 
 use crate::app::action::Action;
 use crate::app::hands::grip;
@@ -12,14 +12,14 @@ use crate::ui::text::{main, poses};
 use crate::ui::theme;
 use egui::{Id, Slider, Ui, vec2};
 
-/// Width of the drawer.
-const DRAWER: f32 = 420.0;
+/// Width of the popup.
+const POPUP: f32 = 420.0;
 
-/// The button in the strip of poses, with its drawer.
+/// The button in the strip of poses, with its popup.
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
-    kit::drawer(&button).width(DRAWER).show(|ui| {
+    kit::lasting_popup(&button).width(POPUP).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         kinds_ui(ui, pane);
         gap_ui(ui, pane);
@@ -66,7 +66,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let id = Id::unique(("gap in the drawer", pane.hand().label.slot));
     let wish: Option<f32> = ui.data(|data| data.get_temp(id)).filter(|_| !is_armed);
     let mut mm = wish.unwrap_or_else(|| gap_now(pane).mm().round());
-    ui.spacing_mut().slider_width = DRAWER / 2.0;
+    ui.spacing_mut().slider_width = POPUP / 2.0;
     let range = Gap::MIN.mm()..=Gap::MAX.mm();
     let text = look.say(poses::GAP);
     let slider = Slider::new(&mut mm, range).fixed_decimals(0).text(text);

@@ -178,7 +178,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        tile::empty_ui(ui, look, 1.0, poses::EMPTY_TITLE);
+        tile::empty_page_ui(ui, look, 1.0, poses::EMPTY_TITLE);
         Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let tip = look.tip(poses::CAPTURE);

@@ -196,16 +196,16 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
     if let StepGoal::Gap { gap, force } = &mut step.goal {
         gap_ui(ui, pane, at, gap);
         let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
-        keep(force, number.whole_ui(ui, pane).map(Force::new));
+        set_if_valid(force, number.whole_ui(ui, pane).map(Force::new));
     }
     let number = StepNumber {
         caption: main::NAME_SPEED,
         ..StepNumber::whole(at, poses::SPEED, step.speed.get(), Speed::MAX.get())
     };
-    keep(&mut step.speed, number.whole_ui(ui, pane).map(Speed::new));
+    set_if_valid(&mut step.speed, number.whole_ui(ui, pane).map(Speed::new));
     let mut millis = |caption: Text, time: &mut Millis| {
         let number = StepNumber::whole(at, caption, time.get(), Millis::MAX);
-        keep(time, number.whole_ui(ui, pane).map(Millis::try_from));
+        set_if_valid(time, number.whole_ui(ui, pane).map(Millis::try_from));
     };
     millis(poses::DWELL, &mut step.dwell);
     millis(poses::LIMIT, &mut step.limit);
@@ -213,14 +213,14 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
         millis(poses::WITHIN, &mut until.within);
         let number = StepNumber::whole(at, poses::RETRIES, until.retries.get(), Retries::MAX);
         let typed = number.whole_ui(ui, pane).map(Retries::try_from);
-        keep(&mut until.retries, typed);
+        set_if_valid(&mut until.retries, typed);
     }
 }
 
-/// Takes what was typed, if it can be taken.
-fn keep<T, E>(own: &mut T, typed: Option<Result<T, E>>) {
+/// Sets a value to what was typed, unless nothing was or it is out of range.
+fn set_if_valid<T, E>(value: &mut T, typed: Option<Result<T, E>>) {
     if let Some(Ok(typed)) = typed {
-        *own = typed;
+        *value = typed;
     }
 }
 
@@ -233,5 +233,5 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, gap: &mut Gap) {
     };
     #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
     let typed = number.ui(ui, pane).map(|typed| Gap::new(typed as f32));
-    keep(gap, typed);
+    set_if_valid(gap, typed);
 }

@@ -19,8 +19,8 @@ use egui::{Id, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 /// An entry on the shelf, and its least height where that is low.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
 const TILE_LEAST: f32 = 56.0;
-/// Width of the drawer of gestures.
-const DRAWER: f32 = 460.0;
+/// Width of the popup of gestures.
+const POPUP: f32 = 460.0;
 /// Height of a tile's name.
 const NAME_HEIGHT: f32 = 20.0;
 
@@ -133,7 +133,7 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// The gestures in the hand that have a name, in a drawer behind a button. The others are in the view of poses.
+/// The gestures in the hand that have a name, in a popup below a button. The others are in the view of poses.
 fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
@@ -142,7 +142,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     }
     let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
-    kit::drawer(&button).width(DRAWER).show(|ui| {
+    kit::lasting_popup(&button).width(POPUP).show(|ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             for gesture in named {

@@ -26,7 +26,7 @@ pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let off = off.named(&name).switch(true);
     off.on_click(ui, pane, Action::Recording(RecordingAction::Beside(None)));
     let align = Button::said(look, recordings::ALIGN).ui(ui, look);
-    kit::drawer(&align).show(|ui| align_ui(ui, pane, line, beside));
+    kit::lasting_popup(&align).show(|ui| align_ui(ui, pane, line, beside));
 }
 
 fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {

@@ -121,7 +121,7 @@ impl RecordingsView {
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
-        tile::empty_ui(ui, look, 0.5, recordings::NONE_TITLE);
+        tile::empty_page_ui(ui, look, 0.5, recordings::NONE_TITLE);
         if pane.state.recordings.folder.is_none() {
             Label::muted(look, recordings::NOWHERE).wrap().ui(ui);
             ui.add_space(theme::GAP);

@@ -233,7 +233,7 @@ impl RecordingTable<'_> {
         let named = look.pair(look.say(recordings::MORE), &title);
         let more = Button::said(look, recordings::MORE).named(&named);
         let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
-        kit::drawer(&more).show(|ui| {
+        kit::lasting_popup(&more).show(|ui| {
             ui.set_width(260.0);
             let field = TextField::new(look.say(recordings::RENAME), NAME_MAX);
             let field = field.hint(look.tip(recordings::RENAME));

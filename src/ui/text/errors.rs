@@ -314,7 +314,6 @@ pub(crate) fn file(look: Look, error: &FileError) -> String {
     told(look, error, |error| file_zh(error) + "。")
 }
 
-/// Why a kind of grip has no gap.
 const fn value_kind_zh(kind: ValueKind) -> &'static str {
     match kind {
         ValueKind::Whole => "此处允许的整数",

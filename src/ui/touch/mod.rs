@@ -85,8 +85,8 @@ impl TouchView {
             if let Some(height) = picture {
                 let size = vec2(ui.available_width(), height);
                 let (place, response) = ui.allocate_exact_size(size, Senses::click());
-                let tip = heat::tip(pane, finger).unwrap_or_default();
-                fingertip::paint(ui.painter(), look, place, &tip);
+                let fingertip = heat::tip(pane, finger).unwrap_or_default();
+                fingertip::paint(ui.painter(), look, place, &fingertip);
                 let name = format!("{}: {name}", look.say(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));

@@ -76,7 +76,7 @@ impl FrameList<'_> {
             .id_salt("traffic rows")
             .auto_shrink(false)
             .animate_scrolling(false);
-        // What is pressed of a row lies under all of its cells, and is drawn with the first.
+        // The first cell draws the background of the whole row and takes its clicks, so it is not clipped.
         for (nth, width) in WIDTHS.into_iter().enumerate() {
             table = table.column(Column::exact(width).clip(nth > 0));
         }

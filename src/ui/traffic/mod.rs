@@ -90,7 +90,7 @@ impl TrafficView {
             self.buttons_ui(ui, pane);
         });
         if self.passed.is_empty() {
-            let text = Label::new(look.say(self.why_empty(pane)), look.palette.muted);
+            let text = Label::muted(look, self.why_empty(pane));
             ui.vertical_centered(|ui| text.wrap().ui(ui));
             return;
         }

@@ -159,7 +159,7 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     let count = f32::from(u8::try_from(forces.len().max(1)).unwrap_or(u8::MAX));
     let width = (ui.available_width() - HEAD.x) / count - GAP;
     let size = vec2(width.clamp(44.0, 84.0), 24.0);
-    let map = OvershootMap {
+    let grid = ScoreGrid {
         pane,
         comparison,
         size,
@@ -172,8 +172,8 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     };
     let area = ScrollArea::horizontal().auto_shrink([false, true]);
     area.id_salt("map").show(ui, |ui| {
-        let grid = Grid::new("overshoot").spacing(Vec2::splat(GAP));
-        grid.min_row_height(HEAD.y).show(ui, |ui| {
+        let cells = Grid::new("overshoot").spacing(Vec2::splat(GAP));
+        cells.min_row_height(HEAD.y).show(ui, |ui| {
             ui.allocate_space(HEAD);
             for force in &forces {
                 head_ui(ui, vec2(size.x, HEAD.y), format!("{force} g"));
@@ -187,7 +187,7 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
                         setting.speed.get() == *speed && setting.force.get() == *force
                     };
                     match scores.iter().find(is_own) {
-                        Some(score) => map.cell_ui(ui, score),
+                        Some(score) => grid.cell_ui(ui, score),
                         None => drop(ui.allocate_space(size)),
                     }
                 }
@@ -210,17 +210,17 @@ fn part(value: f64, span: MetricSpread) -> f64 {
     }
 }
 
-/// What the cells of the map are drawn from.
-struct OvershootMap<'a, 'p> {
+/// Draws the cells: one for each pair of speed and force threshold that was tried.
+struct ScoreGrid<'a, 'p> {
     pane: &'a Pane<'p>,
     comparison: &'a Comparison,
-    /// Of a cell.
+    /// Size of a cell.
     size: Vec2,
-    /// What was measured in all of them.
+    /// Range of the overshoot over all cells, by which they are coloured.
     span: Option<MetricSpread>,
 }
 
-impl OvershootMap<'_, '_> {
+impl ScoreGrid<'_, '_> {
     fn cell_ui(&self, ui: &mut Ui, score: &Score) {
         let palette = self.pane.look.palette;
         let is_best = self.comparison.is_best(score.setting);

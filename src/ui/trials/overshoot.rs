@@ -102,7 +102,7 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     });
 }
 
-/// A sign, and in words that nothing was tried yet.
+/// What stands in a view without trials: the sign of tuning over a title and a body. The caller centres it.
 pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
     ui.add_space(ui.available_height() * 0.24);
     let size = vec2(ui.available_width(), 64.0);
@@ -229,7 +229,7 @@ const fn sign(stiffness: Stiffness) -> &'static str {
 
 /// The same in figures.
 fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
-    let (look, palette) = (pane.look, pane.look.palette);
+    let look = pane.look;
     ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
     let mut table = kit::table(ui, "kinds of closes")
         .min_scrolled_height(0.0)
@@ -242,7 +242,7 @@ fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
         let heads = [tune::MAP_JOINT].into_iter();
         for text in heads.chain(COLUMNS.map(|(text, _)| text)) {
             row.col(|ui| {
-                let label = Label::new(look.say(text), palette.muted).small();
+                let label = Label::note(look, text);
                 label.ui(ui).on_hover_text(look.tip(text));
             });
         }

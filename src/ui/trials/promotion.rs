@@ -61,8 +61,8 @@ impl<'a> Promotion<'a> {
         let book = &pane.hand().params;
         let is_held =
             !self.values.is_empty() && book.live_params().with(&self.values) == book.live_params();
-        if let Some(doing) = flash::doing(pane) {
-            kit::say_ui(ui, doing, palette.accent);
+        if let Some(writing) = flash::writing(pane) {
+            kit::say_ui(ui, writing, palette.accent);
         } else if let Some((words, color)) = flash::save_end(pane).filter(|_| is_held) {
             kit::say_ui(ui, &words, color);
         } else if let Some(refusal) = self

@@ -261,13 +261,13 @@ impl Body {
     }
 }
 
-/// Lets a place come forth that was just opened, as fast as the style says; at once where nothing is to move by itself.
+/// Fades in the place that was just opened, over the animation time of the style; at once where that is zero.
 fn fade_in(ui: &mut Ui, open: Place) {
     for place in Place::ALL {
         let id = ui.scope_id().with(("fade", place));
         let share = ui.ctx().animate_bool(id, place == open);
         if place == open {
-            ui.set_opacity(share);
+            ui.multiply_opacity(share);
         }
     }
 }

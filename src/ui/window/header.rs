@@ -133,12 +133,12 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let words = if is_wide { name } else { "" };
     let button = Button::new(words, &tip).named(name).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
-        pane.actions.push(record_or_not(hand));
+        pane.actions.push(toggle_recording(hand));
     }
 }
 
-/// Records a hand that is not recorded, and a recorded one no more.
-pub(super) fn record_or_not(hand: &Hand) -> Action {
+/// Starts to record a hand that is not recorded, and ends the recording of one that is.
+pub(super) fn toggle_recording(hand: &Hand) -> Action {
     let on = hand.recording.is_none();
     Action::Recording(if hand.connection.is_simulated() {
         RecordingAction::RecordSimulated(on)

@@ -127,14 +127,14 @@ pub(crate) static ROWS: [KeyRow; 38] = [
     opens(COMMAND, Key::K, ViewRequest::Palette),
 ];
 
-/// What stands on the key for commands.
+/// Name of the key that egui takes for commands.
 pub(crate) const COMMAND_NAME: &str = if cfg!(target_os = "macos") {
     "Cmd"
 } else {
     "Ctrl"
 };
 
-/// The keys with which, beside that for commands, egui itself makes everything larger and smaller.
+/// Keys by which, with that for commands held, egui itself zooms the whole window.
 pub(crate) const ZOOM: [(char, Text); 3] = [
     ('+', window::KEY_ZOOM_IN),
     ('-', window::KEY_ZOOM_OUT),

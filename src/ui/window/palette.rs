@@ -12,7 +12,7 @@ use crate::ui::plots::head::span_text;
 use crate::ui::text::{Text, exhibit, inputs, panels, window};
 use crate::ui::theme;
 use crate::ui::view::{Place, View};
-use crate::ui::window::header::record_or_not;
+use crate::ui::window::header::toggle_recording;
 use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
 use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
@@ -207,7 +207,7 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
         acts.push((window::ADD_HAND, "", Action::Hands(HandsAction::Add)));
     }
     if pane.recorded().is_none() {
-        acts.push((window::RECORD, "", record_or_not(hand)));
+        acts.push((window::RECORD, "", toggle_recording(hand)));
         if hand.readings.faults.nothing_to_clear().is_none() {
             acts.push((panels::CLEAR, "", Action::ClearErrors));
         }

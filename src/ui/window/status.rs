@@ -130,8 +130,8 @@ fn alarm(pane: &Pane<'_>) -> Option<Warning> {
         main::ALARM_TITLE
     };
     let alarm = Warning::new(pane, title, pane.look.palette.bad);
-    let names = pane.state.hands.is_several();
-    Some(alarm.of(pane, names.then_some(&hand.label.name)))
+    let is_several = pane.state.hands.is_several();
+    Some(alarm.of(pane, is_several.then_some(&hand.label.name)))
 }
 
 /// Another hand than the shown one, lost while it may have been moving.
