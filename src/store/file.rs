@@ -75,7 +75,8 @@ pub fn append_private(path: &Path, text: &str) -> io::Result<()> {
     options.open(path)?.write_all(text.as_bytes())
 }
 
-/// Writes a file so that at any moment either the old or the new one is there, whole.
+/// Writes a file so that at any moment either the old or the new one is there, whole. Where a link stands for it, the file that it
+/// leads to.
 ///
 /// # Errors
 /// What the system says. Then the old file is as it was.
@@ -83,6 +84,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
     }
+    let path = &std::fs::canonicalize(path).unwrap_or_else(|_none| path.to_owned());
     let end = path.extension().and_then(|end| end.to_str());
     let new = path.with_extension(format!("new.{}", end.unwrap_or_default()));
     let mut file = create_file(&new)?;
@@ -151,6 +153,20 @@ mod tests {
 
     fn mode(path: &Path) -> u32 {
         std::fs::metadata(path).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn a_link_goes_on_leading_to_the_file_that_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let [link, elsewhere] = ["settings.toml", "elsewhere"].map(|name| folder.path().join(name));
+        let file = elsewhere.join("kept.toml");
+        std::fs::create_dir(&elsewhere).unwrap();
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        replace_keeping_last(&link, "new").unwrap();
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
+        assert_eq!(std::fs::read_to_string(last_of(&link)).unwrap(), "old");
     }
 
     #[test]

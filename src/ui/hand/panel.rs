@@ -72,7 +72,7 @@ impl HandPanel {
         }
         let told = used.joint.map(|dof| said(pane, dof));
         let tip = || look.tip(panels::HAND_PICTURE).to_owned();
-        response.on_hover_text(told.unwrap_or_else(tip));
+        response.on_hover_text_at_pointer(told.unwrap_or_else(tip));
         used.joint.map(Dof::finger).filter(|_| clicked)
     }
 }

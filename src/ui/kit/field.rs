@@ -20,7 +20,7 @@ const TYPED_MAX: usize = 8;
 /// What was read, or why it is none, in words.
 type Read<T> = Result<T, String>;
 
-/// Where a field is drawn, and whether what stands in it was refused.
+/// Where a field is drawn, and whether what stands in it was refused or cannot be.
 struct FieldPlace {
     id: Id,
     rect: Rect,
@@ -37,6 +37,8 @@ struct Field<'a> {
     disabled: Option<&'a str>,
     max: usize,
     is_number: bool,
+    /// What is in force cannot be as it is.
+    is_wrong: bool,
     /// What was typed counts when the field is left, not with Enter alone.
     counts_when_left: bool,
 }
@@ -51,6 +53,7 @@ impl<'a> Field<'a> {
             disabled: None,
             max,
             is_number: false,
+            is_wrong: false,
             counts_when_left: true,
         }
     }
@@ -84,7 +87,7 @@ impl<'a> Field<'a> {
         let place = FieldPlace {
             id,
             rect,
-            is_refused: refused.is_some(),
+            is_refused: self.is_wrong || refused.is_some(),
         };
         let response = self.edit_ui(ui, pane.look, &mut text, &place);
         let by_tab = ui.input(|input| input.key_pressed(Key::Tab));
@@ -188,6 +191,12 @@ impl<'a> TextField<'a> {
         self
     }
 
+    /// Shows that what is in force cannot be as it is.
+    pub(crate) const fn wrong(mut self, is_wrong: bool) -> Self {
+        self.0.is_wrong = is_wrong;
+        self
+    }
+
     /// Draws it where `ui` is, over the width that is left, with what is in force. What was typed, once it was left with
     /// something new in it.
     pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: &str) -> Option<String> {
@@ -233,6 +242,12 @@ impl<'a> NumberField<'a> {
     /// Nothing can be typed now, for this reason.
     pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
         self.field.disabled = reason;
+        self
+    }
+
+    /// Shows that what is in force cannot be as it is.
+    pub(crate) const fn wrong(mut self, is_wrong: bool) -> Self {
+        self.field.is_wrong = is_wrong;
         self
     }
 

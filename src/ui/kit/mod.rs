@@ -10,6 +10,7 @@ mod field;
 mod pane;
 pub(crate) mod path_field;
 pub(crate) mod reorder;
+mod sentence;
 mod start;
 
 pub(crate) use crate::ui::style::{Look, format};
@@ -23,4 +24,5 @@ pub(crate) use controls::{
 pub(crate) use drive_words::DriveWords;
 pub(crate) use field::{NumberField, TextField};
 pub(crate) use pane::{Pane, Typing, ViewRequest};
+pub(crate) use sentence::sentence_ui;
 pub(crate) use start::{StartButton, StartWish, start_refused};

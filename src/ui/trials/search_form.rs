@@ -13,7 +13,7 @@ use crate::ui::text::tune::search;
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
 use crate::ui::trials::promotion::Promotion;
-use crate::ui::trials::tune_form::{captioned_ui, joints_ui};
+use crate::ui::trials::tune_form::joints_ui;
 use egui::{ScrollArea, Ui};
 use std::ops::RangeInclusive;
 
@@ -41,24 +41,32 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
         goal.start[dof] = (!takes_part[dof]).then_some(Angle::MAX);
         goal.close[dof] = (!takes_part[dof]).then_some(Angle::MIN);
     }
-    let limits = LIMIT_MIN_G..=Force::RATED.get();
-    if let Some(limit) = GoalNumber::new(search::LIMIT, limits).ui(ui, pane, goal.limit_g) {
-        let was_usual = goal.hold_g == SearchGoal::usual_hold_g(goal.limit_g);
-        goal.limit_g = limit;
-        if was_usual {
-            goal.hold_g = SearchGoal::usual_hold_g(limit);
-        }
-    }
-    let holds = GoalNumber::new(search::HOLD, 0..=Force::RATED.get());
-    goal.hold_g = holds.ui(ui, pane, goal.hold_g).unwrap_or(goal.hold_g);
+    let rated = Force::RATED.get();
     let whole = |closes: usize| i16::try_from(closes).unwrap_or(i16::MAX);
-    let closes = GoalNumber::new(search::CLOSES, whole(CLOSES_MIN)..=whole(CLOSES_MAX));
-    if let Some(closes) = closes.ui(ui, pane, whole(goal.closes)) {
-        goal.closes = usize::try_from(closes).unwrap_or(goal.closes);
-    }
-    captioned_ui(ui, look, "", |ui| {
-        kit::tick_ui(ui, look, search::FREE, &mut goal.distribution_free)
+    let sentence = (look.say(search::GOAL), [theme::FIELD; 3].as_slice());
+    kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+        0 => {
+            let limit = GoalNumber(search::LIMIT, LIMIT_MIN_G..=rated);
+            if let Some(limit) = limit.ui(ui, pane, goal.limit_g) {
+                let was_usual = goal.hold_g == SearchGoal::usual_hold_g(goal.limit_g);
+                goal.limit_g = limit;
+                if was_usual {
+                    goal.hold_g = SearchGoal::usual_hold_g(limit);
+                }
+            }
+        }
+        1 => {
+            let holds = GoalNumber(search::HOLD, 0..=rated);
+            goal.hold_g = holds.ui(ui, pane, goal.hold_g).unwrap_or(goal.hold_g);
+        }
+        _ => {
+            let closes = GoalNumber(search::CLOSES, whole(CLOSES_MIN)..=whole(CLOSES_MAX));
+            if let Some(closes) = closes.ui(ui, pane, whole(goal.closes)) {
+                goal.closes = usize::try_from(closes).unwrap_or(goal.closes);
+            }
+        }
     });
+    kit::tick_ui(ui, look, search::FREE, &mut goal.distribution_free);
     if let Err(wrong) = goal.check() {
         kit::say_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
     }
@@ -68,25 +76,17 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     }
 }
 
-/// A number of the goal, in a row of its own.
-struct GoalNumber {
-    name: Text,
-    range: RangeInclusive<i16>,
-}
+/// A number of the goal.
+struct GoalNumber(Text, RangeInclusive<i16>);
 
 impl GoalNumber {
-    const fn new(name: Text, range: RangeInclusive<i16>) -> Self {
-        Self { name, range }
-    }
-
     /// Draws it; another, once one that can be taken was typed.
     fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: i16) -> Option<i16> {
         let look = pane.look;
-        let (name, (least, most)) = (self.name, self.range.into_inner());
+        let Self(name, range) = self;
+        let (least, most) = range.into_inner();
         let field = NumberField::new(look.say(name), look.tip(name), least.into()..=most.into());
-        let typed = captioned_ui(ui, look, look.say(name), |ui| {
-            field.whole_ui(ui, pane, Some(value))
-        });
+        let typed = field.whole_ui(ui, pane, Some(value));
         typed.and_then(|typed| i16::try_from(typed).ok())
     }
 }

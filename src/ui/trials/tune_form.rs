@@ -1,5 +1,5 @@
-//! The plan of a series as a sentence, line by line, whose figures are fields, each with what is wrong below it. Every
-//! change is one action with the whole plan.
+//! The plan of a series in sentences whose figures are fields, each sentence with what is wrong below it. Every change is one
+//! action with the whole plan.
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
@@ -7,19 +7,18 @@ use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, tak
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, TextField, Weight, format};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, TextField, Weight};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
-use egui::{CollapsingHeader, ScrollArea, Ui, vec2};
-use std::fmt::Display;
+use egui::{ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Characters of a list or all tags, and of a note.
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
-/// Width of the words before a field: all fields begin at one edge.
-const CAPTION: f32 = 112.0;
+/// At most so wide is the field of a list.
+const LIST_WIDTH: f32 = 200.0;
 /// Speed of a fast part unless the user says otherwise: fast, and not rough yet.
 const FAST: i16 = 250;
 
@@ -44,8 +43,6 @@ impl Default for TuneForm {
 /// A list of numbers that are tried.
 struct NumberList {
     field: PlanField,
-    /// The words before it.
-    caption: Text,
     /// What a screen reader says, with the hint.
     name: Text,
     /// The largest number.
@@ -54,16 +51,25 @@ struct NumberList {
 
 const SPEEDS: NumberList = NumberList {
     field: PlanField::Speeds,
-    caption: tune::SPEEDS,
-    name: tune::SPEEDS_NAME,
+    name: tune::SPEEDS,
     most: Speed::MAX.get(),
 };
 const FORCES: NumberList = NumberList {
     field: PlanField::Forces,
-    caption: tune::FORCES,
-    name: tune::FORCES_NAME,
+    name: tune::FORCES,
     most: Force::MAX.get(),
 };
+
+/// A number of the plan, with its name and its range.
+struct Figure(PlanField, Text, RangeInclusive<i32>);
+
+const REPEATS: Figure = Figure(PlanField::Repeats, tune::REPEATS, 1..=1000);
+const FAST_SPEED: Figure = Figure(PlanField::Fast, tune::FAST, 1..=1000);
+const DWELL: Figure = Figure(PlanField::Dwell, tune::DWELL, 0..=600);
+const REST: Figure = Figure(PlanField::Rest, tune::REST, 0..=600);
+const CEILING: Figure = Figure(PlanField::Ceiling, tune::CEILING_CAPTION, 1..=4000);
+const START_C: Figure = Figure(PlanField::Heat, tune::START_C, 1..=100);
+const STOP_C: Figure = Figure(PlanField::Heat, tune::STOP_C, 1..=100);
 
 /// One pass over the form.
 struct Pass<'a, 'p> {
@@ -72,21 +78,6 @@ struct Pass<'a, 'p> {
     plan: TrialPlan,
     wrong: Option<(PlanField, String)>,
     disabled: Option<&'static str>,
-}
-
-/// A field beside the words before it.
-pub(crate) fn captioned_ui<R>(
-    ui: &mut Ui,
-    look: Look,
-    caption: &str,
-    field: impl FnOnce(&mut Ui) -> R,
-) -> R {
-    let row = ui.horizontal_top(|ui| {
-        let caption = Label::new(caption, look.palette.muted).small();
-        caption.cell_ui(ui, CAPTION);
-        field(ui)
-    });
-    row.inner
 }
 
 /// A switch for each joint that can take part; the one that was pressed.
@@ -107,17 +98,14 @@ pub(crate) fn joints_ui(
             pressed = Some(dof);
         }
     };
-    captioned_ui(ui, look, look.say(tune::JOINTS), |ui| {
-        let width = (ui.available_width() - theme::STEP) / 2.0;
-        ui.vertical(|ui| {
-            for pair in Dof::ALL.chunks(2) {
-                ui.horizontal(|ui| {
-                    ui.spacing_mut().item_spacing.x = theme::STEP;
-                    pair.iter().for_each(|dof| joint_ui(ui, *dof, width));
-                });
-            }
+    Label::new(look.say(tune::JOINTS), look.palette.text).ui(ui);
+    let width = (ui.available_width() - 2.0 * theme::STEP) / 3.0;
+    for row in Dof::ALL.chunks(3) {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = theme::STEP;
+            row.iter().for_each(|dof| joint_ui(ui, *dof, width));
         });
-    });
+    }
     pressed
 }
 
@@ -167,64 +155,26 @@ impl Pass<'_, '_> {
     fn all_ui(&mut self, ui: &mut Ui) {
         self.joints_ui(ui);
         self.ways_ui(ui);
-        self.row_ui(ui, "", |pass, ui| {
-            ui.vertical(|ui| pass.poses_ui(ui));
-        });
-        self.lists_ui(ui);
-        let fold = CollapsingHeader::new(self.pane.look.say(tune::DETAILS)).id_salt("details");
-        let is_wrong = matches!(
-            self.wrong,
-            Some((
-                PlanField::Fast
-                    | PlanField::Until
-                    | PlanField::Dwell
-                    | PlanField::Rest
-                    | PlanField::Ceiling
-                    | PlanField::Heat,
-                _
-            ))
-        );
-        let shown = fold
-            .open(is_wrong.then_some(true))
-            .show_unindented(ui, |ui| {
-                self.approach_ui(ui);
-                self.times_ui(ui);
-                self.limits_ui(ui);
-            });
-        if shown.body_response.is_none() {
-            let words = self.details();
-            kit::say_ui(ui, &words, self.pane.look.palette.muted);
-        }
+        ui.horizontal_wrapped(|ui| self.poses_ui(ui));
+        ui.add_space(theme::STEP);
+        self.grid_ui(ui);
+        ui.add_space(theme::STEP);
+        self.approach_ui(ui);
+        ui.add_space(theme::STEP);
+        self.limits_ui(ui);
+        ui.add_space(theme::STEP);
         self.words_ui(ui);
     }
 
-    /// What is folded away, as sentences.
-    fn details(&self) -> String {
-        let (look, plan) = (self.pane.look, &self.plan);
-        let limits = plan.limits;
-        let [dwell, rest] = [plan.dwell, plan.grid.rest].map(format::duration);
-        let approach = look.say(tune::approach(plan.approach));
-        let [start, stop] = [limits.start_c, limits.stop_c];
-        let ceiling = limits.ceiling_g;
-        let parts: [&dyn Display; 6] = [&approach, &dwell, &rest, &ceiling, &start, &stop];
-        look.fill(tune::DETAILS_SHORT, &parts)
+    fn is_wrong(&self, field: PlanField) -> bool {
+        matches!(&self.wrong, Some((at, _)) if *at == field)
     }
 
-    /// What is wrong here, once.
-    fn trouble_ui(&mut self, ui: &mut Ui, field: PlanField) {
-        if let Some((_, why)) = self.wrong.take_if(|(at, _)| *at == field) {
+    /// What is wrong with one of these, once.
+    fn trouble_ui(&mut self, ui: &mut Ui, fields: &[PlanField]) {
+        if let Some((_, why)) = self.wrong.take_if(|(at, _)| fields.contains(at)) {
             kit::say_ui(ui, &why, self.pane.look.palette.bad);
         }
-    }
-
-    /// A field beside the words before it.
-    fn row_ui<R>(
-        &mut self,
-        ui: &mut Ui,
-        caption: &str,
-        field: impl FnOnce(&mut Self, &mut Ui) -> R,
-    ) -> R {
-        captioned_ui(ui, self.pane.look, caption, |ui| field(self, ui))
     }
 
     /// Who closes.
@@ -234,47 +184,53 @@ impl Pass<'_, '_> {
             let angle = (!takes_part[dof]).then_some(self.form.targets[dof]);
             set_target(&mut self.plan, dof, angle);
         }
-        self.trouble_ui(ui, PlanField::Joints);
+        self.trouble_ui(ui, &[PlanField::Joints]);
     }
 
     /// From where to where each of them goes, and where others stand.
     fn ways_ui(&mut self, ui: &mut Ui) {
+        let look = self.pane.look;
         for dof in Dof::ALL {
             let (start, close) = (self.plan.start[dof], self.plan.close[dof]);
-            if start.is_none() && close.is_none() {
-                continue;
+            let joint = look.say(words::dof(dof));
+            let field = theme::FIELD;
+            if close.is_some() {
+                let way = format!("{joint} {}", look.say(tune::WAY));
+                kit::sentence_ui(ui, look, (&way, &[field; 2]), |ui, number| match number {
+                    0 => self.start_ui(ui, dof),
+                    _ => self.close_ui(ui, dof),
+                });
+            } else if start.is_some() {
+                let stays = format!("{joint} {}", look.say(tune::STAYS));
+                let widths = [field, theme::CONTROL];
+                kit::sentence_ui(ui, look, (&stays, &widths), |ui, number| match number {
+                    0 => self.start_ui(ui, dof),
+                    _ => self.leave_ui(ui, dof),
+                });
             }
-            let look = self.pane.look;
-            let caption = if close.is_some() {
-                tune::START_NAME
-            } else {
-                tune::STANDS
-            };
-            let caption = look.fill(caption, &[&look.say(words::dof(dof))]);
-            self.row_ui(ui, &caption, |pass, ui| {
-                ui.horizontal(|ui| pass.way_ui(ui, dof));
-            });
-            self.trouble_ui(ui, PlanField::Way(dof));
+            self.trouble_ui(ui, &[PlanField::Way(dof)]);
         }
     }
 
-    fn way_ui(&mut self, ui: &mut Ui, dof: Dof) {
-        let look = self.pane.look;
+    fn start_ui(&mut self, ui: &mut Ui, dof: Dof) {
         if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Start) {
             self.plan.start[dof] = Some(angle);
         }
-        if self.plan.close[dof].is_none() {
-            let name = look.fill(tune::LEAVE, &[&look.say(words::dof(dof))]);
-            let button = Button::new(&name, look.tip(tune::LEAVE)).icon(theme::CLOSE);
-            let button = button.weight(Weight::Quiet).disabled(self.disabled);
-            if button.ui(ui, look).clicked() {
-                self.plan.start[dof] = None;
-            }
-            return;
-        }
-        Label::note(look, tune::CLOSE).ui(ui);
+    }
+
+    fn close_ui(&mut self, ui: &mut Ui, dof: Dof) {
         if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Close) {
             self.plan.close[dof] = Some(angle);
+        }
+    }
+
+    fn leave_ui(&mut self, ui: &mut Ui, dof: Dof) {
+        let look = self.pane.look;
+        let name = look.fill(tune::LEAVE, &[&look.say(words::dof(dof))]);
+        let button = Button::new(&name, look.tip(tune::LEAVE)).icon(theme::CLOSE);
+        let button = button.weight(Weight::Quiet).disabled(self.disabled);
+        if button.ui(ui, look).clicked() {
+            self.plan.start[dof] = None;
         }
     }
 
@@ -287,6 +243,7 @@ impl Pass<'_, '_> {
         };
         let name = look.fill(name, &[&look.say(words::dof(dof))]);
         let field = NumberField::new(&name, look.tip(of), 0.0..=1000.0).disabled(self.disabled);
+        let field = field.wrong(self.is_wrong(PlanField::Way(dof)));
         let typed = field.whole_ui(ui, self.pane, angle.map(Angle::get))?;
         Some(Angle::nearest(typed))
     }
@@ -320,74 +277,72 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn lists_ui(&mut self, ui: &mut Ui) {
+    /// What is tried, and how often.
+    fn grid_ui(&mut self, ui: &mut Ui) {
+        let look = self.pane.look;
         let grid = &self.plan.grid;
         let speeds: Vec<i16> = grid.speeds.iter().map(|own| own.get()).collect();
         let forces: Vec<i16> = grid.forces.iter().map(|own| own.get()).collect();
-        if let Some(speeds) = self.list_ui(ui, &SPEEDS, &speeds) {
-            self.plan.grid.speeds = speeds.into_iter().map(Speed::nearest).collect();
-        }
-        if let Some(forces) = self.list_ui(ui, &FORCES, &forces) {
-            self.plan.grid.forces = forces.into_iter().map(Force::nearest).collect();
-        }
-        let repeats = i32::try_from(self.plan.grid.repeats).unwrap_or(i32::MAX);
-        if let Some(repeats) = self.number_ui(ui, tune::REPEATS, 1..=1000, repeats) {
-            self.plan.grid.repeats = usize::try_from(repeats).unwrap_or(1);
-        }
-        self.trouble_ui(ui, PlanField::Repeats);
+        let [speeds, forces] = [speeds, forces].map(|numbers| {
+            let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
+            numbers.join(", ")
+        });
+        let repeats = i32::try_from(grid.repeats).unwrap_or(i32::MAX);
+        let width = |list: &str| {
+            let text = kit::text_width(ui, list, theme::body()) + 2.0 * theme::GAP;
+            text.clamp(theme::FIELD, LIST_WIDTH)
+        };
+        let widths = [width(&speeds), width(&forces), theme::FIELD];
+        let sentence = (look.say(tune::GRID), widths.as_slice());
+        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+            0 => {
+                if let Some(speeds) = self.list_ui(ui, &SPEEDS, &speeds) {
+                    self.plan.grid.speeds = speeds.into_iter().map(Speed::nearest).collect();
+                }
+            }
+            1 => {
+                if let Some(forces) = self.list_ui(ui, &FORCES, &forces) {
+                    self.plan.grid.forces = forces.into_iter().map(Force::nearest).collect();
+                }
+            }
+            _ => {
+                if let Some(repeats) = self.figure_ui(ui, &REPEATS, repeats) {
+                    self.plan.grid.repeats = usize::try_from(repeats).unwrap_or(1);
+                }
+            }
+        });
+        let fields = [PlanField::Speeds, PlanField::Forces, PlanField::Repeats];
+        self.trouble_ui(ui, &fields);
     }
 
     /// A list of numbers; it, once one that can be taken was typed.
-    fn list_ui(&mut self, ui: &mut Ui, of: &NumberList, numbers: &[i16]) -> Option<Vec<i16>> {
+    fn list_ui(&mut self, ui: &mut Ui, of: &NumberList, numbers: &str) -> Option<Vec<i16>> {
         let look = self.pane.look;
-        let numbers: Vec<String> = numbers.iter().map(i16::to_string).collect();
         let text = TextField::new(look.say(of.name), LIST_CHARS).hint(look.tip(of.name));
+        let text = text.wrong(self.is_wrong(of.field));
         let read = |text: &str| list(text, of.most).map_err(|why| tune::list_error(look, why));
-        let read = self.row_ui(ui, look.say(of.caption), |pass, ui| {
-            text.read_ui(ui, pass.pane, &numbers.join(", "), read)
-        });
-        self.trouble_ui(ui, of.field);
-        read
+        text.read_ui(ui, self.pane, numbers, read)
     }
 
-    /// A line of text in a row of its own.
-    fn text_ui(&mut self, ui: &mut Ui, name: Text, value: &str, max: usize) -> Option<String> {
-        let look = self.pane.look;
-        let field = TextField::new(look.say(name), max).hint(look.tip(name));
-        self.row_ui(ui, look.say(name), |pass, ui| {
-            field.ui(ui, pass.pane, value)
-        })
+    /// A whole number; it, once one of its range was typed.
+    fn figure_ui(&mut self, ui: &mut Ui, figure: &Figure, value: i32) -> Option<i64> {
+        let number = self.number(figure);
+        number.whole_ui(ui, self.pane, Some(value))
     }
 
-    /// A whole number in a row of its own.
-    fn number_ui(
-        &mut self,
-        ui: &mut Ui,
-        text: Text,
-        range: RangeInclusive<i32>,
-        value: i32,
-    ) -> Option<i64> {
-        let look = self.pane.look;
-        let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
-        let number = NumberField::new(look.say(text), look.tip(text), from..=to);
-        let number = number.disabled(self.disabled);
-        self.row_ui(ui, look.say(text), |pass, ui| {
-            number.whole_ui(ui, pass.pane, Some(value))
-        })
-    }
-
-    /// A time in a row of its own, over what is wrong with it.
-    fn time_ui(&mut self, ui: &mut Ui, field: PlanField, text: Text, time: Duration) -> Duration {
-        let look = self.pane.look;
-        let number = NumberField::new(look.say(text), look.tip(text), 0.0..=600.0);
-        let number = number.decimals(1).disabled(self.disabled);
-        let seconds = Some(time.as_secs_f64());
-        let typed = self.row_ui(ui, look.say(text), |pass, ui| {
-            number.ui(ui, pass.pane, seconds)
-        });
-        self.trouble_ui(ui, field);
+    fn time_ui(&mut self, ui: &mut Ui, figure: &Figure, time: Duration) -> Duration {
+        let number = self.number(figure).decimals(1);
+        let typed = number.ui(ui, self.pane, Some(time.as_secs_f64()));
         let typed = typed.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         typed.unwrap_or(time)
+    }
+
+    fn number(&self, Figure(field, name, range): &Figure) -> NumberField<'static> {
+        let look = self.pane.look;
+        let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
+        let number = NumberField::new(look.say(*name), look.tip(*name), from..=to);
+        let number = number.disabled(self.disabled);
+        number.wrong(self.is_wrong(*field))
     }
 
     fn approach_ui(&mut self, ui: &mut Ui) {
@@ -401,51 +356,68 @@ impl Pass<'_, '_> {
                 (usual, look.say(tune::approach(usual)))
             }
         });
-        let name = look.say(tune::APPROACH);
-        self.row_ui(ui, name, |pass, ui| {
+        ui.scope(|ui| {
             ui.spacing_mut().combo_width = ui.available_width();
-            kit::choose_ui(ui, name, &mut pass.plan.approach, &all);
+            let name = look.say(tune::APPROACH);
+            kit::choose_ui(ui, name, &mut self.plan.approach, &all);
         });
         let Approach::TwoStage { fast, until } = self.plan.approach else {
             return;
         };
-        let typed = self.number_ui(ui, tune::FAST, 1..=1000, fast.get().into());
-        self.trouble_ui(ui, PlanField::Fast);
-        let fast = typed.map_or(fast, Speed::nearest);
-        let (text, most) = match until {
-            Until::Measured { .. } => (tune::UNTIL_MARGIN, 500),
-            Until::Angle(_) => (tune::UNTIL_ANGLE, 1000),
-            Until::Proximity(_) => (tune::UNTIL_PROXIMITY, 16_000_000),
-            Until::Touch(_) => (tune::UNTIL_TOUCH, 3000),
+        let (sentence, name, most) = match until {
+            Until::Measured { .. } => (tune::MARGIN, tune::UNTIL_MARGIN, 500),
+            Until::Angle(_) => (tune::ANGLE, tune::UNTIL_ANGLE, 1000),
+            Until::Proximity(_) => (tune::PROXIMITY, tune::UNTIL_PROXIMITY, 16_000_000),
+            Until::Touch(_) => (tune::TOUCH, tune::UNTIL_TOUCH, 3000),
         };
-        let typed = self.number_ui(ui, text, 0..=most, until.value());
-        self.trouble_ui(ui, PlanField::Until);
-        let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
-        let until = typed.unwrap_or(until);
-        self.plan.approach = Approach::TwoStage { fast, until };
+        let slows = Figure(PlanField::Until, name, 0..=most);
+        let (mut own_fast, mut own_until) = (fast, until);
+        let sentence = (look.say(sentence), [theme::FIELD; 2].as_slice());
+        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+            0 => {
+                let typed = self.figure_ui(ui, &FAST_SPEED, fast.get().into());
+                own_fast = typed.map_or(fast, Speed::nearest);
+            }
+            _ => {
+                let typed = self.figure_ui(ui, &slows, until.value());
+                let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
+                own_until = typed.unwrap_or(until);
+            }
+        });
+        self.trouble_ui(ui, &[PlanField::Fast, PlanField::Until]);
+        self.plan.approach = Approach::TwoStage {
+            fast: own_fast,
+            until: own_until,
+        };
     }
 
-    fn times_ui(&mut self, ui: &mut Ui) {
-        let (dwell, rest) = (self.plan.dwell, self.plan.grid.rest);
-        self.plan.dwell = self.time_ui(ui, PlanField::Dwell, tune::DWELL, dwell);
-        self.plan.grid.rest = self.time_ui(ui, PlanField::Rest, tune::REST, rest);
-    }
-
+    /// How long it holds and rests, and what ends it.
     fn limits_ui(&mut self, ui: &mut Ui) {
-        let limits = self.plan.limits;
-        let ceiling = limits.ceiling_g.into();
-        if let Some(ceiling) = self.number_ui(ui, tune::CEILING_CAPTION, 1..=4000, ceiling) {
-            self.plan.limits.ceiling_g = i16::try_from(ceiling).unwrap_or(i16::MAX);
-        }
-        self.trouble_ui(ui, PlanField::Ceiling);
+        let look = self.pane.look;
+        let (dwell, rest, limits) = (self.plan.dwell, self.plan.grid.rest, self.plan.limits);
         let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
-        if let Some(start) = self.number_ui(ui, tune::START_C, 1..=100, limits.start_c.into()) {
-            self.plan.limits.start_c = celsius(start);
-        }
-        self.trouble_ui(ui, PlanField::Heat);
-        if let Some(stop) = self.number_ui(ui, tune::STOP_C, 1..=100, limits.stop_c.into()) {
-            self.plan.limits.stop_c = celsius(stop);
-        }
+        let sentence = (look.say(tune::TIMES), [theme::FIELD; 5].as_slice());
+        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+            0 => self.plan.dwell = self.time_ui(ui, &DWELL, dwell),
+            1 => self.plan.grid.rest = self.time_ui(ui, &REST, rest),
+            2 => {
+                if let Some(ceiling) = self.figure_ui(ui, &CEILING, limits.ceiling_g.into()) {
+                    self.plan.limits.ceiling_g = i16::try_from(ceiling).unwrap_or(i16::MAX);
+                }
+            }
+            3 => {
+                if let Some(start) = self.figure_ui(ui, &START_C, limits.start_c.into()) {
+                    self.plan.limits.start_c = celsius(start);
+                }
+            }
+            _ => {
+                if let Some(stop) = self.figure_ui(ui, &STOP_C, limits.stop_c.into()) {
+                    self.plan.limits.stop_c = celsius(stop);
+                }
+            }
+        });
+        let [dwell, rest] = [PlanField::Dwell, PlanField::Rest];
+        self.trouble_ui(ui, &[dwell, rest, PlanField::Ceiling, PlanField::Heat]);
     }
 
     fn words_ui(&mut self, ui: &mut Ui) {
@@ -457,5 +429,16 @@ impl Pass<'_, '_> {
         if let Some(words) = self.text_ui(ui, tune::TAGS, &own, LIST_CHARS) {
             self.plan.tags = tags(&words);
         }
+    }
+
+    /// A line of text beside its name.
+    fn text_ui(&mut self, ui: &mut Ui, name: Text, value: &str, max: usize) -> Option<String> {
+        let look = self.pane.look;
+        let field = TextField::new(look.say(name), max).hint(look.tip(name));
+        let row = ui.horizontal(|ui| {
+            Label::note(look, name).cell_ui(ui, theme::FIELD);
+            field.ui(ui, self.pane, value)
+        });
+        row.inner
     }
 }

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
-use std::time::SystemTime;
+use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 
@@ -13,16 +13,17 @@ pub(super) struct Connection {
     pub(super) asked: Vec<u8>,
     /// Bytes from the hand, before the program could have them.
     pub(super) answered: Vec<u8>,
-    /// How many bytes the hand had sent at which time, nanoseconds since 1970.
+    /// How many bytes the hand had sent at which time, in nanoseconds of [`nanos_now`].
     pub(super) times: Vec<(u64, usize)>,
 }
 
 /// One connection after the other.
 pub(super) type Journal = Arc<Mutex<Vec<Connection>>>;
 
-pub(super) fn wall_nanos() -> u64 {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    u64::try_from(since.unwrap().as_nanos()).unwrap()
+/// Nanoseconds of a clock that all programs of this machine share and nobody sets.
+pub(super) fn nanos_now() -> u64 {
+    let now = nix::time::clock_gettime(nix::time::ClockId::CLOCK_MONOTONIC);
+    u64::try_from(Duration::from(now.unwrap()).as_nanos()).unwrap()
 }
 
 /// Passes on what programs and the hand at this address say to each other.
@@ -57,7 +58,7 @@ async fn both_ways(mut program: TcpStream, mut hand: TcpStream, journal: Journal
                     let connection = &mut journal.lock().unwrap()[number];
                     connection.answered.extend(&answered[..len]);
                     let sent = connection.answered.len();
-                    connection.times.push((wall_nanos(), sent));
+                    connection.times.push((nanos_now(), sent));
                 }
                 if program.write_all(&answered[..len]).await.is_err() {
                     return;

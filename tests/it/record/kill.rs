@@ -1,7 +1,7 @@
 //! A program that records at full rate is killed at any moment. What it wrote until then opens, is what the hand sent, and lacks a
 //! quarter of a second at most.
 
-use crate::record::journal::{Connection, Journal, Said, pass_on, wall_nanos};
+use crate::record::journal::{Connection, Journal, Said, nanos_now, pass_on};
 use crate::setup::hand;
 use crate::setup::process::{Running, listen};
 use crate::setup::time::Time;
@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 
@@ -42,7 +42,8 @@ fn child_records_until_it_is_killed() {
     };
     let (endpoint, path) = order.split_once(' ').unwrap();
     let runtime = Time::Real.runtime();
-    let (clock, base_nanos) = runtime.block_on(async { (Clock::start(), wall_nanos()) });
+    let clock = runtime.block_on(async { Clock::start() });
+    let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     let config = LinkConfig {
         endpoint: endpoint.parse().unwrap(),
         rates: PollRates::default(),
@@ -53,7 +54,7 @@ fn child_records_until_it_is_killed() {
     let recorder = Recorder::start(RecordingPlan {
         path: path.into(),
         opening: Opening {
-            base_nanos,
+            base_nanos: u64::try_from(since_1970.unwrap().as_nanos()).unwrap(),
             began: Moment::ZERO,
             hand: endpoint.into(),
             simulated: false,
@@ -69,7 +70,7 @@ fn child_records_until_it_is_killed() {
     let record = handscope::tasks::recording::record(link.observe(), recorder.input(), clock);
     runtime.spawn(record);
     let mut out = std::io::stdout();
-    while writeln!(out, "beat {}", wall_nanos()).is_ok() {
+    while writeln!(out, "beat {}", nanos_now()).is_ok() {
         std::thread::sleep(BEAT);
     }
 }
@@ -126,7 +127,7 @@ impl Recorded {
             assert!(Instant::now() < until, "the hand is not asked");
         }
         std::thread::sleep(full_rate);
-        let killed_at = wall_nanos();
+        let killed_at = nanos_now();
         self.child.signal(nix::sys::signal::Signal::SIGKILL);
         let ended = self.child.end();
         let beats: Vec<u64> = ended.out.lines().filter_map(time_of).collect();
@@ -184,8 +185,9 @@ fn span(group: Group) -> Span {
 /// Bytes from the hand that the file has of each connection, and how many groups of readings, all of which are as the journal has
 /// them.
 fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
-    if !path.exists() {
-        // Nothing of it was on the disk yet.
+    let metadata = path.metadata();
+    if metadata.map_or(true, |metadata| metadata.len() == 0) {
+        // Nothing of it was on the disk yet: it may take long to make a file.
         return (vec![0; journal.len()], 0);
     }
     let file = RecordingFile::open(path).unwrap();

@@ -109,12 +109,6 @@ impl Person {
         self.look();
     }
 
-    fn unfold(&mut self, name: &str) {
-        let fold = Role::DisclosureTriangle;
-        self.harness.get_by_role_and_label(fold, name).click();
-        (0..30).for_each(|_| self.look());
-    }
-
     fn open(&mut self, tab: &str, view: View) {
         self.press(tab);
         assert_eq!(self.harness.state().desktop_app.view(), view);
@@ -152,7 +146,6 @@ impl Person {
 fn plan(person: &mut Person) {
     person.open("Tune", View::Tune);
     person.press("Try a grid");
-    person.unfold("Approach, times and limits");
     for (field, text) in [
         ("Index from", "600"),
         ("Index to", "300"),

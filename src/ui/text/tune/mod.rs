@@ -39,8 +39,14 @@ texts! {
     PLAN: "Plan", "试验计划";
     HIDE_PLAN: "Hide the plan", "收起计划", "Gives the results the whole width.", "让结果占满宽度。";
     SHOW_PLAN: "Show the plan", "显示计划", "Puts the plan beside the results.", "在结果旁显示计划。";
-    DETAILS: "Approach, times and limits", "接近方式、时间与限制";
-    DETAILS_SHORT: "{}. Hold {}, rest {}. Stop at {} g; begin below {} °C, stop at {} °C.", "{}。保持 {}，间隔 {}。达到 {} g 即停；低于 {} °C 开始，达到 {} °C 即停。";
+    WAY: "from {} to {}", "从 {} 到 {}";
+    STAYS: "stays at {} {}", "停在 {} {}";
+    GRID: "At speeds {} with thresholds {} g, {}× each.", "速度 {}，力阈值 {} g，每组 {} 次。";
+    MARGIN: "At speed {}, slow {} before the contact.", "速度 {}，接触前 {} 减速。";
+    ANGLE: "At speed {}, slow at angle {}.", "速度 {}，到角度 {} 减速。";
+    PROXIMITY: "At speed {}, slow at proximity +{}.", "速度 {}，接近值增加 {} 时减速。";
+    TOUCH: "At speed {}, slow at a touch of {} g.", "速度 {}，触碰力 {} g 时减速。";
+    TIMES: "Hold {} s, rest {} s. Stop at {} g; begin below {} °C, stop at {} °C.", "保持 {} s，间隔 {} s。达到 {} g 即停；低于 {} °C 开始，达到 {} °C 即停。";
     RESULTS: "Results", "结果";
     JOINTS: "Close", "闭合";
     JOINT_TIP: "Lets this joint close in each trial, or leaves it where it is. Nothing moves now.", "让该自由度在每次试验中闭合，或保持不动。现在不会运动。";
@@ -50,10 +56,8 @@ texts! {
     TAKE_CLOSE: "Close to a pose", "终点取自姿态";
     TAKE_TIP: "Takes the angles of a pose. Nothing moves.", "采用某个姿态的角度，不会运动。";
     TAKE_NOW: "The pose the hand has now", "灵巧手当前的姿态";
-    SPEEDS: "at speeds", "速度";
-    SPEEDS_NAME: "Speeds to try", "试验速度", "25, 50, 100", "25, 50, 100";
-    FORCES: "with thresholds, g", "力阈值 g";
-    FORCES_NAME: "Force thresholds to try", "试验力阈值", "300, 500", "300, 500";
+    SPEEDS: "Speeds to try", "试验速度", "25, 50, 100", "25, 50, 100";
+    FORCES: "Force thresholds to try", "试验力阈值", "300, 500", "300, 500";
     REPEATS: "times each", "每组次数", "Trials of each speed with each threshold.", "每个速度与力阈值组合的试验次数。";
     APPROACH: "Approach", "接近方式";
     FAST: "Fast speed", "快速段速度", "Speed until the fast part ends.", "快速段的速度。";
@@ -172,7 +176,6 @@ texts! {
     NO_CONTACT_DRAWN: "{} without contact, not drawn", "{} 条无接触，未显示";
     JOINT_NAME: "{} takes part", "{}参与试验";
     START_NAME: "{} from", "{}起点";
-    STANDS: "{} stays at", "{}停在";
     LEAVE: "{}: leave it alone", "{}：不参与", "Takes the joint out of the plan: it stays where it is.", "把该自由度移出计划，保持不动。";
     CLOSE_NAME: "{} to", "{}终点";
     SETTING: "speed {}, threshold {} g", "速度 {}，力阈值 {} g";

@@ -11,6 +11,7 @@ texts! {
     FIND: "Find the settings", "寻找设置", "Searches for the fastest close whose peak stays under a limit.", "寻找峰值不超过上限的最快闭合。";
     GRID: "Try a grid", "遍历试验", "Tries each speed with each threshold.", "逐一试验各速度与各力阈值。";
     OBJECT: "Put the object where the fingers close on it. It closes slowly at first, and faster as long as it stays under the limit.", "请把物体放在手指闭合处。先慢速闭合，只要不超过上限就逐步加快。";
+    GOAL: "Peak at most {} g, hold at least {} g, confirm with {} closes.", "峰值不超过 {} g，至少保持 {} g，确认 {} 次。";
     LIMIT: "peak at most, g", "峰值上限 g", "No close is to press harder than this.", "任何一次闭合都不应超过此力。";
     HOLD: "hold at least, g", "至少保持 g", "What is to be left of the grip once it has settled.", "抓握稳定后至少保留的力。";
     CLOSES: "confirm with", "确认次数", "So often the setting that was found is closed again: the more, the tighter the bound.", "找到的设置将重复闭合这么多次：次数越多，上界越紧。";
