@@ -188,22 +188,16 @@ pub fn stop_words(stop: Option<Stop>) -> String {
     }
 }
 
-/// Holds, and waits for what feedback says of it. While no hand answers, it waits for one as long, and holds that.
+/// Holds, and waits for what feedback says of it.
 pub async fn hold<H: TaskHand>(hand: &H, records: &mut Records) -> Stop {
     hand.stop();
     let begun = Instant::now();
-    let mut until = begun + REST_WITHIN;
-    let mut is_lost = false;
-    while Instant::now() < until {
+    while begun.elapsed() < REST_WITHIN {
         let status = hand.status();
         if !status.state.is_live() {
-            is_lost = true;
-        } else if is_lost {
-            // What was asked for while no hand answered is not kept for one that answers.
-            hand.stop();
-            is_lost = false;
-            until = begun + 2 * REST_WITHIN;
-        } else if let Hold::Confirmed { at, rest } = status.hold
+            return Stop::LinkLost;
+        }
+        if let Hold::Confirmed { at, rest } = status.hold
             && status.armed.is_none()
         {
             let after = rest.since(at);
@@ -211,11 +205,7 @@ pub async fn hold<H: TaskHand>(hand: &H, records: &mut Records) -> Stop {
         }
         let _record = timeout(TICK, records.next()).await;
     }
-    if is_lost {
-        Stop::LinkLost
-    } else {
-        Stop::NotConfirmed
-    }
+    Stop::NotConfirmed
 }
 
 /// The limits that a hand is armed with for a plan: gentle, and no stronger than its smallest threshold.

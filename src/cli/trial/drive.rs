@@ -65,14 +65,11 @@ impl ArmedHand {
             ready = make_ready(&link, &mut records, endpoint, limits) => Some(ready?),
         };
         let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
-            // Arming may have been under way, unless no hand answers.
-            let mut stop = None;
-            if link.status().state.is_live() {
-                stop = Some(series::hold(&link, &mut records).await);
-            }
+            // Arming may have been under way.
+            let stop = series::hold(&link, &mut records).await;
             bail!(
                 "ended by a person before anything moved{}",
-                stop_words(stop)
+                stop_words(Some(stop))
             );
         };
         Ok(Self {

@@ -288,30 +288,6 @@ async fn a_lost_link_and_another_arming_end_it() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_link_that_comes_back_in_time_is_told_to_stop_once_more() {
-    let bench = Bench::running().await;
-    let hand = bench.hand.clone();
-    hand.facts().status.state = LinkState::Offline;
-    let answers = hand.clone();
-    tokio::spawn(async move {
-        tokio::time::sleep(Duration::from_secs(2)).await;
-        answers.facts().status.state = LinkState::Monitoring;
-    });
-    let end = bench.end().await;
-    assert_eq!(end.aborted, Some(Abort::LinkLost));
-    assert!(
-        matches!(end.stop, Some(Stop::Confirmed { .. })),
-        "{:?}",
-        end.stop
-    );
-    let stops = hand
-        .asked()
-        .into_iter()
-        .filter(|asked| *asked == Asked::Stop);
-    assert_eq!(stops.count(), 2);
-}
-
-#[tokio::test(start_paused = true)]
 async fn readings_that_stay_away_end_it() {
     let bench = Bench::running().await;
     let end = bench.end().await;

@@ -18,38 +18,16 @@ use crate::seams::window::Window;
 use crate::setup::body::Protocol;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Condvar, Mutex};
 use std::time::{Duration, Instant};
 
 /// Cells at a time, unless `HANDSCOPE_SEAMS_AT_A_TIME` says otherwise: nearly all of their time they wait, but a slow guest is late then.
 const AT_A_TIME: usize = 4;
-/// Cells at a time of all events together, however many tests run beside each other: more would be late by themselves.
-static FREE: (Mutex<usize>, Condvar) = (Mutex::new(2 * AT_A_TIME), Condvar::new());
 /// So often a hand is brought into motion, where that fails.
 const BEGINS: usize = 3;
 /// A hand that takes its time to answer, so that what is written in a row takes a second.
 const THINKS: Duration = Duration::from_millis(40);
-
-/// One of those that are free, until it is dropped.
-struct Turn;
-
-impl Turn {
-    fn wait() -> Self {
-        let (free, is_free) = &FREE;
-        let free = free.lock().unwrap();
-        *is_free.wait_while(free, |free| *free == 0).unwrap() -= 1;
-        Self
-    }
-}
-
-impl Drop for Turn {
-    fn drop(&mut self) {
-        let (free, is_free) = &FREE;
-        *free.lock().unwrap() += 1;
-        is_free.notify_one();
-    }
-}
 
 /// One try: a cell on a wire.
 #[derive(Debug, Clone, Copy)]
@@ -229,7 +207,6 @@ fn try_all(column: Column) {
         for _ in 0..at_a_time {
             scope.spawn(|| {
                 while let Some(one) = all.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let _turn = Turn::wait();
                     if let Err(why) = one.run(!wanted.is_empty()) {
                         println!("WRONG: {}: {why}", one.name());
                         failed.lock().unwrap().push((one.name(), why));
