@@ -94,7 +94,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     std::fs::rename(&new, path)
 }
 
-/// The same; the old file stays beside the new one as `….last.toml`.
+/// The same; the old file stays beside this path as `….last.toml`.
 ///
 /// # Errors
 /// What the system says. Then the old file is as it was.

@@ -555,6 +555,13 @@ pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// Lets the bars of lists that fill a card stand in its margin, so that they cover nothing. Within a panel they would be cut.
+pub(crate) fn put_bar_in_margin(ui: &mut Ui) {
+    let scroll = &mut ui.spacing_mut().scroll;
+    scroll.bar_width = theme::GAP;
+    scroll.bar_outer_margin = -theme::GAP;
+}
+
 /// A table whose cells have what stands in them beside each other, in the middle of their height.
 pub(crate) fn table<'a>(ui: &'a mut Ui, id: impl egui::AsIdSalt) -> TableBuilder<'a> {
     let row = Layout::left_to_right(Align::Center);

@@ -8,45 +8,50 @@ use egui::{Ui, vec2};
 /// Ends the words that belong to the field before them.
 const MARKS: [char; 8] = ['.', ',', ';', ':', '。', '，', '；', '：'];
 
-/// Draws a sentence over the width of `ui`, in as many lines as it needs. `field` draws what stands at each `{}` of it, by its
-/// number; it is as wide as `widths` says, and on one line with the words before it and the unit behind it.
-pub(crate) fn sentence_ui(
-    ui: &mut Ui,
-    look: Look,
-    (sentence, widths): (&str, &[f32]),
-    mut field: impl FnMut(&mut Ui, usize),
-) {
-    let gap = theme::STEP;
-    let color = look.palette.text;
-    let mut parts = sentence.split("{}");
-    let mut before = parts.next().unwrap_or_default().trim();
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(gap, gap);
-        for (number, (part, width)) in parts.zip(widths).enumerate() {
-            let mut marks = part.char_indices().filter(|(_, sign)| MARKS.contains(sign));
-            let end = marks.next().map_or(0, |(at, mark)| at + mark.len_utf8());
-            let (unit, next) = part.split_at(end);
-            let words = [before, unit.trim()].map(|words| {
-                let width = text_width(ui, words, theme::body()).ceil();
-                (words, width)
-            });
-            let shown = words.iter().filter(|(_, width)| *width > 0.0);
-            let all = shown.fold(*width, |all, (_, width)| all + gap + width);
-            cell_ui(ui, vec2(all, theme::CONTROL), |ui| {
-                let words_ui = |ui: &mut Ui, (words, width): (&str, f32)| {
-                    if width > 0.0 {
-                        Label::new(words, color).cell_ui(ui, width);
-                    }
-                };
-                let [before, unit] = words;
-                words_ui(ui, before);
-                cell_ui(ui, vec2(*width, theme::CONTROL), |ui| field(ui, number));
-                words_ui(ui, unit);
-            });
-            before = next.trim();
-        }
-        if !before.is_empty() {
-            Label::new(before, color).ui(ui);
-        }
-    });
+/// A sentence with a field at each `{}`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sentence<'a> {
+    words: &'a str,
+    widths: &'a [f32],
+}
+
+impl<'a> Sentence<'a> {
+    /// With how wide each field is.
+    pub(crate) const fn new(words: &'a str, widths: &'a [f32]) -> Self {
+        Self { words, widths }
+    }
+
+    /// Draws it over the width of `ui`, in as many lines as it needs. `field_ui` draws a field, by its number; that is on one line
+    /// with the words before it and the unit behind it.
+    pub(crate) fn ui(self, ui: &mut Ui, look: Look, mut field_ui: impl FnMut(&mut Ui, usize)) {
+        let words_ui = |ui: &mut Ui, words: &str, width: f32| {
+            if width > 0.0 {
+                Label::new(words, look.palette.text).cell_ui(ui, width);
+            }
+        };
+        let mut parts = self.words.split("{}");
+        let mut before = parts.next().unwrap_or_default().trim();
+        // What is typed into a field stays there, whatever stands above the sentence.
+        let row = |ui: &mut Ui| {
+            ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+            for (number, (part, width)) in parts.zip(self.widths).enumerate() {
+                let mark = part.match_indices(MARKS).next();
+                let end = mark.map_or(0, |(at, mark)| at + mark.len());
+                let (unit, next) = part.split_at(end);
+                let unit = unit.trim();
+                let width_of = |words| text_width(ui, words, theme::body()).ceil();
+                let [before_width, unit_width] = [width_of(before), width_of(unit)];
+                let all = before_width + width + unit_width + 2.0 * theme::STEP;
+                cell_ui(ui, vec2(all, theme::CONTROL), |ui| {
+                    words_ui(ui, before, before_width);
+                    let place = vec2(*width, theme::CONTROL);
+                    cell_ui(ui, place, |ui| field_ui(ui, number));
+                    words_ui(ui, unit, unit_width);
+                });
+                before = next.trim();
+            }
+        };
+        ui.push_id(self.words, |ui| ui.horizontal_wrapped(row));
+        debug_assert!(before.is_empty(), "{} has more fields", self.words);
+    }
 }

@@ -41,10 +41,6 @@ fn spacing(style: &mut Style) {
     spacing.menu_margin = Margin::same(6);
     spacing.tooltip_width = 340.0;
     spacing.scroll.floating = true;
-    // In the margin around a list, so that it covers nothing in it.
-    let margin = spacing.menu_margin.rightf();
-    spacing.scroll.bar_width = margin;
-    spacing.scroll.bar_outer_margin = -margin;
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;
 }

@@ -8,7 +8,7 @@ use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
 use crate::trials::search::goal::{CLOSES_MAX, CLOSES_MIN, LIMIT_MIN_G, whole};
 use crate::trials::search::{Claim, FoundApproach, SearchGoal};
-use crate::ui::kit::{self, Button, NumberField, Pane, format};
+use crate::ui::kit::{self, Button, NumberField, Pane, Sentence, format};
 use crate::ui::text::tune::search;
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
@@ -21,6 +21,7 @@ use std::ops::RangeInclusive;
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.hand();
     let runs = hand.runs_series() || hand.series_asked.is_some();
+    kit::put_bar_in_margin(ui);
     let area = ScrollArea::vertical().id_salt("search");
     area.auto_shrink(false).show(ui, |ui| {
         ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
@@ -43,8 +44,8 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     }
     let rated = Force::RATED.get();
     let whole = |closes: usize| i16::try_from(closes).unwrap_or(i16::MAX);
-    let sentence = (look.say(search::GOAL), [theme::FIELD; 3].as_slice());
-    kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+    let sentence = Sentence::new(look.say(search::GOAL), &[theme::FIELD; 3]);
+    sentence.ui(ui, look, |ui, number| match number {
         0 => {
             let limit = GoalNumber(search::LIMIT, LIMIT_MIN_G..=rated);
             if let Some(limit) = limit.ui(ui, pane, goal.limit_g) {

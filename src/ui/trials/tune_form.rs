@@ -7,7 +7,7 @@ use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, tak
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, TextField, Weight};
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Sentence, TextField, Weight};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
@@ -40,29 +40,11 @@ impl Default for TuneForm {
     }
 }
 
-/// A list of numbers that are tried.
-struct NumberList {
-    field: PlanField,
-    /// What a screen reader says, with the hint.
-    name: Text,
-    /// The largest number.
-    most: i16,
-}
-
-const SPEEDS: NumberList = NumberList {
-    field: PlanField::Speeds,
-    name: tune::SPEEDS,
-    most: Speed::MAX.get(),
-};
-const FORCES: NumberList = NumberList {
-    field: PlanField::Forces,
-    name: tune::FORCES,
-    most: Force::MAX.get(),
-};
-
-/// A number of the plan, with its name and its range.
+/// A number of the plan or each of a list of them, with its name and its range.
 struct Figure(PlanField, Text, RangeInclusive<i32>);
 
+const SPEEDS: Figure = Figure(PlanField::Speeds, tune::SPEEDS, 1..=1000);
+const FORCES: Figure = Figure(PlanField::Forces, tune::FORCES, 0..=1000);
 const REPEATS: Figure = Figure(PlanField::Repeats, tune::REPEATS, 1..=1000);
 const FAST_SPEED: Figure = Figure(PlanField::Fast, tune::FAST, 1..=1000);
 const DWELL: Figure = Figure(PlanField::Dwell, tune::DWELL, 0..=600);
@@ -136,6 +118,7 @@ impl TuneForm {
             plan,
             disabled: runs.then(|| look.say(main::SERIES_RUNS)),
         };
+        kit::put_bar_in_margin(ui);
         let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
         area.show(ui, |ui| {
             if runs {
@@ -191,36 +174,22 @@ impl Pass<'_, '_> {
     fn ways_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         for dof in Dof::ALL {
-            let (start, close) = (self.plan.start[dof], self.plan.close[dof]);
-            let joint = look.say(words::dof(dof));
-            let field = theme::FIELD;
-            if close.is_some() {
-                let way = format!("{joint} {}", look.say(tune::WAY));
-                kit::sentence_ui(ui, look, (&way, &[field; 2]), |ui, number| match number {
-                    0 => self.start_ui(ui, dof),
-                    _ => self.close_ui(ui, dof),
-                });
-            } else if start.is_some() {
-                let stays = format!("{joint} {}", look.say(tune::STAYS));
-                let widths = [field, theme::CONTROL];
-                kit::sentence_ui(ui, look, (&stays, &widths), |ui, number| match number {
-                    0 => self.start_ui(ui, dof),
-                    _ => self.leave_ui(ui, dof),
-                });
-            }
+            let closes = self.plan.close[dof].is_some();
+            let (text, width) = if closes {
+                (tune::WAY, theme::FIELD)
+            } else if self.plan.start[dof].is_some() {
+                (tune::STAYS, theme::CONTROL)
+            } else {
+                continue;
+            };
+            let words = look.say(text).replacen("{}", look.say(words::dof(dof)), 1);
+            let widths = [theme::FIELD, width];
+            Sentence::new(&words, &widths).ui(ui, look, |ui, number| match number {
+                0 => self.angle_ui(ui, dof, PlanSide::Start),
+                _ if closes => self.angle_ui(ui, dof, PlanSide::Close),
+                _ => self.leave_ui(ui, dof),
+            });
             self.trouble_ui(ui, &[PlanField::Way(dof)]);
-        }
-    }
-
-    fn start_ui(&mut self, ui: &mut Ui, dof: Dof) {
-        if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Start) {
-            self.plan.start[dof] = Some(angle);
-        }
-    }
-
-    fn close_ui(&mut self, ui: &mut Ui, dof: Dof) {
-        if let Some(angle) = self.angle_ui(ui, dof, PlanSide::Close) {
-            self.plan.close[dof] = Some(angle);
         }
     }
 
@@ -235,17 +204,19 @@ impl Pass<'_, '_> {
     }
 
     /// Where a joint begins or ends.
-    fn angle_ui(&mut self, ui: &mut Ui, dof: Dof, side: PlanSide) -> Option<Angle> {
-        let (look, plan) = (self.pane.look, &self.plan);
+    fn angle_ui(&mut self, ui: &mut Ui, dof: Dof, side: PlanSide) {
+        let look = self.pane.look;
+        let is_wrong = self.is_wrong(PlanField::Way(dof));
         let (name, of, angle) = match side {
-            PlanSide::Start => (tune::START_NAME, tune::START, plan.start[dof]),
-            PlanSide::Close => (tune::CLOSE_NAME, tune::CLOSE, plan.close[dof]),
+            PlanSide::Start => (tune::START_NAME, tune::START, &mut self.plan.start[dof]),
+            PlanSide::Close => (tune::CLOSE_NAME, tune::CLOSE, &mut self.plan.close[dof]),
         };
         let name = look.fill(name, &[&look.say(words::dof(dof))]);
         let field = NumberField::new(&name, look.tip(of), 0.0..=1000.0).disabled(self.disabled);
-        let field = field.wrong(self.is_wrong(PlanField::Way(dof)));
-        let typed = field.whole_ui(ui, self.pane, angle.map(Angle::get))?;
-        Some(Angle::nearest(typed))
+        let field = field.wrong(is_wrong);
+        if let Some(typed) = field.whole_ui(ui, self.pane, angle.map(Angle::get)) {
+            *angle = Some(Angle::nearest(typed));
+        }
     }
 
     /// Starts and targets out of poses.
@@ -293,8 +264,8 @@ impl Pass<'_, '_> {
             text.clamp(theme::FIELD, LIST_WIDTH)
         };
         let widths = [width(&speeds), width(&forces), theme::FIELD];
-        let sentence = (look.say(tune::GRID), widths.as_slice());
-        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+        let sentence = Sentence::new(look.say(tune::GRID), &widths);
+        sentence.ui(ui, look, |ui, number| match number {
             0 => {
                 if let Some(speeds) = self.list_ui(ui, &SPEEDS, &speeds) {
                     self.plan.grid.speeds = speeds.into_iter().map(Speed::nearest).collect();
@@ -316,11 +287,13 @@ impl Pass<'_, '_> {
     }
 
     /// A list of numbers; it, once one that can be taken was typed.
-    fn list_ui(&mut self, ui: &mut Ui, of: &NumberList, numbers: &str) -> Option<Vec<i16>> {
+    fn list_ui(&mut self, ui: &mut Ui, figure: &Figure, numbers: &str) -> Option<Vec<i16>> {
         let look = self.pane.look;
-        let text = TextField::new(look.say(of.name), LIST_CHARS).hint(look.tip(of.name));
-        let text = text.wrong(self.is_wrong(of.field));
-        let read = |text: &str| list(text, of.most).map_err(|why| tune::list_error(look, why));
+        let &Figure(field, name, ref range) = figure;
+        let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
+        let text = text.wrong(self.is_wrong(field));
+        let most = i16::try_from(*range.end()).unwrap_or(i16::MAX);
+        let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
         text.read_ui(ui, self.pane, numbers, read)
     }
 
@@ -361,34 +334,34 @@ impl Pass<'_, '_> {
             let name = look.say(tune::APPROACH);
             kit::choose_ui(ui, name, &mut self.plan.approach, &all);
         });
-        let Approach::TwoStage { fast, until } = self.plan.approach else {
+        let Approach::TwoStage {
+            mut fast,
+            mut until,
+        } = self.plan.approach
+        else {
             return;
         };
-        let (sentence, name, most) = match until {
+        let (words, name, most) = match until {
             Until::Measured { .. } => (tune::MARGIN, tune::UNTIL_MARGIN, 500),
             Until::Angle(_) => (tune::ANGLE, tune::UNTIL_ANGLE, 1000),
             Until::Proximity(_) => (tune::PROXIMITY, tune::UNTIL_PROXIMITY, 16_000_000),
             Until::Touch(_) => (tune::TOUCH, tune::UNTIL_TOUCH, 3000),
         };
         let slows = Figure(PlanField::Until, name, 0..=most);
-        let (mut own_fast, mut own_until) = (fast, until);
-        let sentence = (look.say(sentence), [theme::FIELD; 2].as_slice());
-        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+        let sentence = Sentence::new(look.say(words), &[theme::FIELD; 2]);
+        sentence.ui(ui, look, |ui, number| match number {
             0 => {
                 let typed = self.figure_ui(ui, &FAST_SPEED, fast.get().into());
-                own_fast = typed.map_or(fast, Speed::nearest);
+                fast = typed.map_or(fast, Speed::nearest);
             }
             _ => {
                 let typed = self.figure_ui(ui, &slows, until.value());
                 let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
-                own_until = typed.unwrap_or(until);
+                until = typed.unwrap_or(until);
             }
         });
         self.trouble_ui(ui, &[PlanField::Fast, PlanField::Until]);
-        self.plan.approach = Approach::TwoStage {
-            fast: own_fast,
-            until: own_until,
-        };
+        self.plan.approach = Approach::TwoStage { fast, until };
     }
 
     /// How long it holds and rests, and what ends it.
@@ -396,8 +369,8 @@ impl Pass<'_, '_> {
         let look = self.pane.look;
         let (dwell, rest, limits) = (self.plan.dwell, self.plan.grid.rest, self.plan.limits);
         let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
-        let sentence = (look.say(tune::TIMES), [theme::FIELD; 5].as_slice());
-        kit::sentence_ui(ui, look, sentence, |ui, number| match number {
+        let sentence = Sentence::new(look.say(tune::TIMES), &[theme::FIELD; 5]);
+        sentence.ui(ui, look, |ui, number| match number {
             0 => self.plan.dwell = self.time_ui(ui, &DWELL, dwell),
             1 => self.plan.grid.rest = self.time_ui(ui, &REST, rest),
             2 => {

@@ -268,14 +268,24 @@ fn what_makes_no_sense_is_said_at_its_field() {
             "Index needs a start at least 30 above its target.",
             "0",
         ),
-        ("Speeds to try", "0", "Choose between 1 and 1000.", "25"),
+        (
+            "Speeds to try",
+            "0",
+            "Speeds to try: choose between 1 and 1000.",
+            "25",
+        ),
         (
             "Force limit, g",
             "100",
-            "Choose between 500 and 4000.",
+            "Force limit, g: choose between 500 and 4000.",
             "2000",
         ),
-        ("Hold, s", "0.1", "Choose between 0.3 and 600.", "1"),
+        (
+            "Hold, s",
+            "0.1",
+            "Hold, s: choose between 0.3 and 600.",
+            "1",
+        ),
     ] {
         enter(&mut bench, field, bad);
         assert!(bench.shows(why), "{why}");
@@ -325,7 +335,7 @@ fn what_is_wrong_in_a_plan_from_elsewhere_is_seen() {
     let plan = TrialAction::Plan(Box::new(wrong));
     bench.act(Action::Trial(plan));
     bench.run(400);
-    assert!(bench.shows("Choose between 500 and 4000."));
+    assert!(bench.shows("Force limit, g: choose between 500 and 4000."));
     assert_eq!(bench.typed("Force limit, g"), "100");
 }
 

@@ -12,7 +12,7 @@ use crate::trials::plan::PlanField;
 use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
 use crate::ui::style::phrase::texts;
 use crate::ui::style::{Look, format};
-use crate::ui::text::words;
+use crate::ui::text::{Text, words};
 
 texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
@@ -39,13 +39,13 @@ texts! {
     PLAN: "Plan", "试验计划";
     HIDE_PLAN: "Hide the plan", "收起计划", "Gives the results the whole width.", "让结果占满宽度。";
     SHOW_PLAN: "Show the plan", "显示计划", "Puts the plan beside the results.", "在结果旁显示计划。";
-    WAY: "from {} to {}", "从 {} 到 {}";
-    STAYS: "stays at {} {}", "停在 {} {}";
-    GRID: "At speeds {} with thresholds {} g, {}× each.", "速度 {}，力阈值 {} g，每组 {} 次。";
-    MARGIN: "At speed {}, slow {} before the contact.", "速度 {}，接触前 {} 减速。";
-    ANGLE: "At speed {}, slow at angle {}.", "速度 {}，到角度 {} 减速。";
-    PROXIMITY: "At speed {}, slow at proximity +{}.", "速度 {}，接近值增加 {} 时减速。";
-    TOUCH: "At speed {}, slow at a touch of {} g.", "速度 {}，触碰力 {} g 时减速。";
+    WAY: "{} from {} to {}", "{}从 {} 到 {}";
+    STAYS: "{} stays at {} {}", "{}停在 {} {}";
+    GRID: "At speeds {} with thresholds {} g; trials of each: {}.", "速度 {}，力阈值 {} g，每组 {} 次。";
+    MARGIN: "At speed {}, slow down {} before the contact.", "速度 {}，接触前 {} 减速。";
+    ANGLE: "At speed {}, slow down at angle {}.", "速度 {}，到角度 {} 减速。";
+    PROXIMITY: "At speed {}, slow down at proximity +{}.", "速度 {}，接近值增加 {} 时减速。";
+    TOUCH: "At speed {}, slow down at a touch of {} g.", "速度 {}，触碰力 {} g 时减速。";
     TIMES: "Hold {} s, rest {} s. Stop at {} g; begin below {} °C, stop at {} °C.", "保持 {} s，间隔 {} s。达到 {} g 即停；低于 {} °C 开始，达到 {} °C 即停。";
     RESULTS: "Results", "结果";
     JOINTS: "Close", "闭合";
@@ -82,7 +82,8 @@ texts! {
     BAD_STAGE: "The speed would change outside the way of {} ({} to {}).", "速度切换处不在{}的行程之内（{} 到 {}）。";
     SLOW_APPROACH: "The fast speed is below a speed to try: {}.", "快速段速度低于试验速度 {}。";
     TOO_MANY: "Too many trials: {}, at most 1000.", "试验次数过多：{} 次，最多 1000 次。";
-    BAD_NUMBER: "Choose between {} and {}.", "请选择 {} 到 {} 之间的数。";
+    BAD_NUMBER: "{}: choose between {} and {}.", "{}：请选择 {} 到 {} 之间的数。";
+    UNTIL: "Where it slows down", "减速位置";
     NOTHING_TO_TRY: "There is nothing to try.", "没有可试验的设置。";
     BAD_HEAT: "Begin must be below stop, and stop at most 75 °C.", "开始温度须低于停止温度，停止温度最高 75 °C。";
 
@@ -325,8 +326,26 @@ pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
             got,
             ..
         } => look.fill(TOO_MANY, &[&got]),
-        PlanError::Range { least, most, .. } => look.fill(BAD_NUMBER, &[&least, &most]),
+        PlanError::Range {
+            field, least, most, ..
+        } => look.fill(BAD_NUMBER, &[&look.say(plan_field(field)), &least, &most]),
         PlanError::Temperature { .. } => look.say(BAD_HEAT).into(),
+    }
+}
+
+/// What a field of the plan is called.
+const fn plan_field(field: PlanField) -> Text {
+    match field {
+        PlanField::Joints | PlanField::Way(_) => JOINTS,
+        PlanField::Speeds => SPEEDS,
+        PlanField::Forces => FORCES,
+        PlanField::Repeats => REPEATS,
+        PlanField::Dwell => DWELL,
+        PlanField::Rest => REST,
+        PlanField::Fast => FAST,
+        PlanField::Until => UNTIL,
+        PlanField::Ceiling => CEILING_CAPTION,
+        PlanField::Heat => STOP_C,
     }
 }
 
