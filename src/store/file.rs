@@ -84,7 +84,11 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
     }
-    let path = &std::fs::canonicalize(path).unwrap_or_else(|_none| path.to_owned());
+    let led = std::fs::canonicalize(path).or_else(|_none| {
+        let to = std::fs::read_link(path)?;
+        Ok::<_, io::Error>(path.with_file_name("").join(to))
+    });
+    let path = &led.unwrap_or_else(|_no_link| path.to_owned());
     let end = path.extension().and_then(|end| end.to_str());
     let new = path.with_extension(format!("new.{}", end.unwrap_or_default()));
     let mut file = create_file(&new)?;
@@ -167,6 +171,10 @@ mod tests {
         assert!(link.symlink_metadata().unwrap().is_symlink());
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
         assert_eq!(std::fs::read_to_string(last_of(&link)).unwrap(), "old");
+        // Also where the file is not there yet.
+        std::fs::remove_file(&file).unwrap();
+        replace(&link, b"newer").unwrap();
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "newer");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::ui::kit::controls::{Label, cell_ui, text_width};
 use crate::ui::style::Look;
 use crate::ui::theme;
-use egui::{Ui, vec2};
+use egui::{Ui, UiBuilder, vec2};
 
 /// Ends the words that belong to the field before them.
 const MARKS: [char; 8] = ['.', ',', ';', ':', '。', '，', '；', '：'];
@@ -41,7 +41,9 @@ impl<'a> Sentence<'a> {
                 let unit = unit.trim();
                 let width_of = |words| text_width(ui, words, theme::body()).ceil();
                 let [before_width, unit_width] = [width_of(before), width_of(unit)];
-                let all = before_width + width + unit_width + 2.0 * theme::STEP;
+                let shown = [before_width, *width, unit_width].into_iter();
+                let shown = shown.filter(|width| *width > 0.0);
+                let all = shown.fold(-theme::STEP, |all, width| all + width + theme::STEP);
                 cell_ui(ui, vec2(all, theme::CONTROL), |ui| {
                     words_ui(ui, before, before_width);
                     let place = vec2(*width, theme::CONTROL);
@@ -51,7 +53,8 @@ impl<'a> Sentence<'a> {
                 before = next.trim();
             }
         };
-        ui.push_id(self.words, |ui| ui.horizontal_wrapped(row));
+        let place = UiBuilder::new().scope_id(ui.scope_id().with(self.words));
+        ui.scope_builder(place, |ui| ui.horizontal_wrapped(row));
         debug_assert!(before.is_empty(), "{} has more fields", self.words);
     }
 }

@@ -64,7 +64,7 @@ texts! {
     TOUCH_DELTA_T: "Shear delta", "切向变化";
 
     HAND: "Hand", "灵巧手";
-    HAND_PICTURE: "Picture of the hand", "手部姿态图", "The joints as the hand reports them: drag a finger to move it, drag elsewhere to turn the picture, double-click to turn it back, click a finger for its details. Arrows are the forces on the fingertips. A coloured shell is where a joint is told to go.\nLengths and couplings are those of a public model of this hand (Unitree Robotics, BSD-3-Clause); which way the thumb turns is not documented.", "按反馈角度绘制：拖动手指可移动它，在其他位置拖动可旋转视图，双击复位，点击手指查看详情。箭头为指尖受力，彩色轮廓为目标姿态。\n尺寸与联动关系取自该手的公开模型（Unitree Robotics，BSD-3-Clause）；拇指旋转方向手册没有说明。";
+    HAND_PICTURE: "Picture of the hand", "手部姿态图", "Drag a finger to move it, elsewhere to turn the picture; double-click turns it back. Click a finger for its details.", "拖动手指可移动它，在其他位置拖动可旋转视图，双击复位；点击手指查看详情。";
 
     DRAG_FINGER: "drag to move it", "拖动即可移动";
     FINGER_FORCE: "force at the drawn finger", "图旁受力";

@@ -8,7 +8,7 @@ use crate::poses::edit::LibraryEdit;
 use crate::poses::library::LibraryPose;
 use crate::trials::search::goal::{CLOSES_MAX, CLOSES_MIN, LIMIT_MIN_G, whole};
 use crate::trials::search::{Claim, FoundApproach, SearchGoal};
-use crate::ui::kit::{self, Button, NumberField, Pane, Sentence, format};
+use crate::ui::kit::{self, Button, NumberField, Pane, Sentence, Typing, format};
 use crate::ui::text::tune::search;
 use crate::ui::text::{Text, main, tune};
 use crate::ui::theme;
@@ -72,6 +72,7 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
         kit::say_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
     }
     if goal != pane.state.trials.goal && !runs {
+        *pane.typing = Typing::default();
         pane.actions
             .push(Action::Trial(TrialAction::Goal(Box::new(goal))));
     }

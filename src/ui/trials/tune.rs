@@ -5,7 +5,8 @@ use crate::app::trials::{SeriesKind, TrialAction};
 use crate::hand::impact::NOTABLE_G;
 use crate::trials::estimate;
 use crate::ui::kit::{
-    self, Button, Pane, Pick, StartButton, StartWish, ViewRequest, Weight, format, start_refused,
+    self, Button, Pane, Pick, StartButton, StartWish, Typing, ViewRequest, Weight, format,
+    start_refused,
 };
 use crate::ui::text::tune;
 use crate::ui::text::tune::search;
@@ -42,7 +43,11 @@ impl TuneView {
                         (SeriesKind::Search, search::FIND),
                         (SeriesKind::Grid, search::GRID),
                     ];
+                    let before = self.kind;
                     Pick::new(look, search::WAY).ui(ui, &mut self.kind, all);
+                    if self.kind != before {
+                        *pane.typing = Typing::default();
+                    }
                 });
                 let start = Panel::bottom("start").resizable(false);
                 let start = start.show_separator_line(false).frame(Frame::NONE);
@@ -75,7 +80,9 @@ impl TuneView {
 /// What the button begins.
 fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     let wanted = pane.state.trials.planned(kind);
-    let unsound = (!wanted.is_sound()).then_some(tune::PLAN_WRONG);
+    // What was typed and refused is not what would be tried.
+    let is_sound = wanted.is_sound() && pane.typing.refused.is_none();
+    let unsound = (!is_sound).then_some(tune::PLAN_WRONG);
     let refusal = pane.hand().series_refusal(Some(&wanted.trials()));
     let [start, arm] =
         [TrialAction::Start(kind), TrialAction::ArmAndStart(kind)].map(Action::Trial);

@@ -7,7 +7,9 @@ use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, tak
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
-use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Sentence, TextField, Weight};
+use crate::ui::kit::{
+    self, Button, Label, Look, NumberField, Pane, Sentence, TextField, Typing, Weight,
+};
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
@@ -43,8 +45,8 @@ impl Default for TuneForm {
 /// A number of the plan or each of a list of them, with its name and its range.
 struct Figure(PlanField, Text, RangeInclusive<i32>);
 
-const SPEEDS: Figure = Figure(PlanField::Speeds, tune::SPEEDS, 1..=1000);
-const FORCES: Figure = Figure(PlanField::Forces, tune::FORCES, 0..=1000);
+const SPEEDS: Figure = Figure(PlanField::Speeds, tune::SPEEDS, 1..=Speed::MAX.get() as i32);
+const FORCES: Figure = Figure(PlanField::Forces, tune::FORCES, 0..=Force::MAX.get() as i32);
 const REPEATS: Figure = Figure(PlanField::Repeats, tune::REPEATS, 1..=1000);
 const FAST_SPEED: Figure = Figure(PlanField::Fast, tune::FAST, 1..=1000);
 const DWELL: Figure = Figure(PlanField::Dwell, tune::DWELL, 0..=600);
@@ -128,6 +130,7 @@ impl TuneForm {
         });
         let plan = pass.plan;
         if plan != pane.state.trials.plan && !runs {
+            *pane.typing = Typing::default();
             let action = TrialAction::Plan(Box::new(plan));
             pane.actions.push(Action::Trial(action));
         }

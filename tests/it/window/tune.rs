@@ -302,6 +302,27 @@ fn what_makes_no_sense_is_said_at_its_field() {
 }
 
 #[test]
+fn what_was_refused_keeps_a_series_from_starting_with_what_stood_there_before() {
+    let mut bench = on_block();
+    enter(&mut bench, "Force thresholds to try", "3000");
+    assert_eq!(
+        plan(&bench).grid.forces[0].get(),
+        3000,
+        "as far as a hand takes them"
+    );
+    enter(&mut bench, "Force thresholds to try", "500");
+    for (field, bad) in [("Speeds to try", "25, fast"), ("Force limit, g", "99999")] {
+        assert!(!bench.is_disabled(Role::Button, GUARDED));
+        enter(&mut bench, field, bad);
+        assert!(bench.shows("Correct the plan first."), "{field}");
+        assert!(bench.is_disabled(Role::Button, GUARDED), "{field}");
+        bench.click("Middle takes part");
+        bench.run(60);
+        assert_ne!(bench.typed(field), bad, "what is tried is shown again");
+    }
+}
+
+#[test]
 fn joints_and_poses_make_the_way() {
     let mut bench = on_block();
     bench.click("Middle takes part");

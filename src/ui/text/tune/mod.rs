@@ -41,12 +41,12 @@ texts! {
     SHOW_PLAN: "Show the plan", "显示计划", "Puts the plan beside the results.", "在结果旁显示计划。";
     WAY: "{} from {} to {}", "{}从 {} 到 {}";
     STAYS: "{} stays at {} {}", "{}停在 {} {}";
-    GRID: "At speeds {} with thresholds {} g; trials of each: {}.", "速度 {}，力阈值 {} g，每组 {} 次。";
-    MARGIN: "At speed {}, slow down {} before the contact.", "速度 {}，接触前 {} 减速。";
-    ANGLE: "At speed {}, slow down at angle {}.", "速度 {}，到角度 {} 减速。";
-    PROXIMITY: "At speed {}, slow down at proximity +{}.", "速度 {}，接近值增加 {} 时减速。";
-    TOUCH: "At speed {}, slow down at a touch of {} g.", "速度 {}，触碰力 {} g 时减速。";
-    TIMES: "Hold {} s, rest {} s. Stop at {} g; begin below {} °C, stop at {} °C.", "保持 {} s，间隔 {} s。达到 {} g 即停；低于 {} °C 开始，达到 {} °C 即停。";
+    GRID: "At speeds {} with thresholds {} g; trials of each: {}", "速度 {}，力阈值 {} g，每组 {} 次。";
+    MARGIN: "At speed {} first; slow down {} before the contact.", "先以速度 {} 接近；接触前 {} 处减速。";
+    ANGLE: "At speed {} first; slow down at angle {}", "先以速度 {} 接近；到角度 {} 处减速。";
+    PROXIMITY: "At speed {} first; slow down at proximity +{}", "先以速度 {} 接近；接近值增加 {} 时减速。";
+    TOUCH: "At speed {} first; slow down at a touch of {} g.", "先以速度 {} 接近；触碰力 {} g 时减速。";
+    TIMES: "Hold {} s, rest {} s. Force limit {} g; begin below {} °C, stop at {} °C.", "保持 {} s，间隔 {} s。力上限 {} g；低于 {} °C 开始，达到 {} °C 即停。";
     RESULTS: "Results", "结果";
     JOINTS: "Close", "闭合";
     JOINT_TIP: "Lets this joint close in each trial, or leaves it where it is. Nothing moves now.", "让该自由度在每次试验中闭合，或保持不动。现在不会运动。";
