@@ -84,11 +84,11 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
     }
-    let led = std::fs::canonicalize(path).or_else(|_none| {
+    let target = std::fs::canonicalize(path).or_else(|_none| {
         let to = std::fs::read_link(path)?;
         Ok::<_, io::Error>(path.with_file_name("").join(to))
     });
-    let path = &led.unwrap_or_else(|_no_link| path.to_owned());
+    let path = &target.unwrap_or_else(|_no_link| path.to_owned());
     let end = path.extension().and_then(|end| end.to_str());
     let new = path.with_extension(format!("new.{}", end.unwrap_or_default()));
     let mut file = create_file(&new)?;
