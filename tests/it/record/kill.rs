@@ -158,7 +158,7 @@ fn time_of(line: &str) -> Option<u64> {
 fn held_up(beats: &[u64], killed_at: u64) -> Duration {
     let recent = killed_at - 1_000_000_000;
     let pairs = beats.windows(2).filter(|pair| pair[1] >= recent);
-    let apart = pairs.map(|pair| Duration::from_nanos(pair[1].saturating_sub(pair[0])));
+    let apart = pairs.map(|pair| Duration::from_nanos(pair[1] - pair[0]));
     let silent = Duration::from_nanos(killed_at.saturating_sub(*beats.last().unwrap()));
     apart
         .chain([silent])
