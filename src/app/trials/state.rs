@@ -213,6 +213,12 @@ pub struct TrialsState {
 }
 
 impl TrialsState {
+    /// The search that runs now.
+    pub fn running_search(&self) -> Option<&Search> {
+        let search = self.search.as_ref();
+        search.filter(|search| self.running == Some(search.session))
+    }
+
     /// What a series of this kind would do now.
     pub fn planned(&self, kind: SeriesKind) -> SeriesPlan {
         match kind {

@@ -59,7 +59,7 @@ impl JointsView {
                 aim::link(ui);
             }
             let style = RowStyle { line, each, linked };
-            kit::put_bar_in_margin(ui);
+            kit::put_scroll_bar_in_margin(ui);
             let area = ScrollArea::vertical().max_height(room);
             area.auto_shrink(false).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;

@@ -555,8 +555,8 @@ pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Lets the bars of lists that fill a card stand in its margin, so that they cover nothing. Within a panel they would be cut.
-pub(crate) fn put_bar_in_margin(ui: &mut Ui) {
+/// Lets the scroll bars of lists that fill a card stand in its margin, so that they cover nothing. Within a panel they would be cut.
+pub(crate) fn put_scroll_bar_in_margin(ui: &mut Ui) {
     let scroll = &mut ui.spacing_mut().scroll;
     scroll.bar_width = theme::GAP;
     scroll.bar_outer_margin = -theme::GAP;

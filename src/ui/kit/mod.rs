@@ -18,8 +18,8 @@ pub(crate) use card::{ButtonRole, Card, CardView, Choice};
 pub(crate) use controls::{
     Button, CardGrid, Label, Pick, Weight, bare, card_ui, cell_ui, choose_ui, click_if,
     edit_said_ui, edit_ui, entry_ui, focus_ring, full_card_ui, head_ui, lamp, lamp_ui,
-    lasting_popup, left_ui, named_field, pressed, progress_ui, put_bar_in_margin, right_ui, say_ui,
-    set_accessible_name, share, sign, table, text_width, tick_ui, warning_ui, wide_ui,
+    lasting_popup, left_ui, named_field, pressed, progress_ui, put_scroll_bar_in_margin, right_ui,
+    say_ui, set_accessible_name, share, sign, table, text_width, tick_ui, warning_ui, wide_ui,
 };
 pub(crate) use drive_words::DriveWords;
 pub(crate) use field::{NumberField, TextField};

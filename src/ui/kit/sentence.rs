@@ -1,6 +1,6 @@
 //! A sentence whose figures are fields, edited in place.
 
-use crate::ui::kit::controls::{Label, cell_ui, text_width};
+use crate::ui::kit::controls::{Label, cell_ui, say_ui, text_width};
 use crate::ui::style::Look;
 use crate::ui::theme;
 use egui::{Ui, UiBuilder, vec2};
@@ -9,16 +9,27 @@ use egui::{Ui, UiBuilder, vec2};
 const MARKS: [char; 8] = ['.', ',', ';', ':', '。', '，', '；', '：'];
 
 /// A sentence with a field at each `{}`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Sentence<'a> {
     words: &'a str,
     widths: &'a [f32],
+    wrong: Option<(usize, String)>,
 }
 
 impl<'a> Sentence<'a> {
     /// With how wide each field is.
     pub(crate) const fn new(words: &'a str, widths: &'a [f32]) -> Self {
-        Self { words, widths }
+        Self {
+            words,
+            widths,
+            wrong: None,
+        }
+    }
+
+    /// Says below the field of this number why what stands in it cannot be.
+    pub(crate) fn wrong(mut self, wrong: Option<(usize, String)>) -> Self {
+        self.wrong = wrong;
+        self
     }
 
     /// Draws it over the width of `ui`, in as many lines as it needs. `field_ui` draws a field, by its number; that is on one line
@@ -31,7 +42,7 @@ impl<'a> Sentence<'a> {
         };
         let mut parts = self.words.split("{}");
         let mut before = parts.next().unwrap_or_default().trim();
-        // What is typed into a field stays there, whatever stands above the sentence.
+        let id = ui.scope_id().with(self.words);
         let row = |ui: &mut Ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             for (number, (part, width)) in parts.zip(self.widths).enumerate() {
@@ -46,15 +57,22 @@ impl<'a> Sentence<'a> {
                 let all = shown.fold(-theme::STEP, |all, width| all + width + theme::STEP);
                 cell_ui(ui, vec2(all, theme::CONTROL), |ui| {
                     words_ui(ui, before, before_width);
-                    let place = vec2(*width, theme::CONTROL);
-                    cell_ui(ui, place, |ui| field_ui(ui, number));
+                    // What is typed into a field stays there, whatever appears before it.
+                    let own = UiBuilder::new().scope_id(id.with(number));
+                    cell_ui(ui, vec2(*width, theme::CONTROL), |ui| {
+                        ui.scope_builder(own, |ui| field_ui(ui, number));
+                    });
                     words_ui(ui, unit, unit_width);
                 });
+                if let Some((_, why)) = self.wrong.as_ref().filter(|(at, _)| *at == number) {
+                    ui.end_row();
+                    say_ui(ui, why, look.palette.bad);
+                    ui.end_row();
+                }
                 before = next.trim();
             }
         };
-        let place = UiBuilder::new().scope_id(ui.scope_id().with(self.words));
-        ui.scope_builder(place, |ui| ui.horizontal_wrapped(row));
+        ui.horizontal_wrapped(row);
         debug_assert!(before.is_empty(), "{} has more fields", self.words);
     }
 }

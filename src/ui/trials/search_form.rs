@@ -21,7 +21,7 @@ use std::ops::RangeInclusive;
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.hand();
     let runs = hand.runs_series() || hand.series_asked.is_some();
-    kit::put_bar_in_margin(ui);
+    kit::put_scroll_bar_in_margin(ui);
     let area = ScrollArea::vertical().id_salt("search");
     area.auto_shrink(false).show(ui, |ui| {
         ui.add_enabled_ui(!runs, |ui| goal_ui(ui, pane, runs));
@@ -96,7 +96,7 @@ impl GoalNumber {
 /// How far it is, or what it came to.
 fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
     let (look, palette) = (pane.look, pane.look.palette);
-    let runs = pane.state.trials.running == Some(search.session);
+    let runs = pane.state.trials.running_search().is_some();
     match (&search.finding, &search.progress) {
         (Some(finding), _) => {
             match &finding.result {

@@ -1,4 +1,4 @@
-//! The plan of a series in sentences whose figures are fields, each sentence with what is wrong below it. Every change is one
+//! The plan of a series in sentences whose figures are fields, each with what is wrong below it. Every change is one
 //! action with the whole plan.
 
 use crate::app::action::Action;
@@ -43,17 +43,17 @@ impl Default for TuneForm {
 }
 
 /// A number of the plan or each of a list of them, with its name and its range.
-struct Figure(PlanField, Text, RangeInclusive<i32>);
+struct PlanNumber(PlanField, Text, RangeInclusive<i32>);
 
-const SPEEDS: Figure = Figure(PlanField::Speeds, tune::SPEEDS, 1..=Speed::MAX.get() as i32);
-const FORCES: Figure = Figure(PlanField::Forces, tune::FORCES, 0..=Force::MAX.get() as i32);
-const REPEATS: Figure = Figure(PlanField::Repeats, tune::REPEATS, 1..=1000);
-const FAST_SPEED: Figure = Figure(PlanField::Fast, tune::FAST, 1..=1000);
-const DWELL: Figure = Figure(PlanField::Dwell, tune::DWELL, 0..=600);
-const REST: Figure = Figure(PlanField::Rest, tune::REST, 0..=600);
-const CEILING: Figure = Figure(PlanField::Ceiling, tune::CEILING_CAPTION, 1..=4000);
-const START_C: Figure = Figure(PlanField::Heat, tune::START_C, 1..=100);
-const STOP_C: Figure = Figure(PlanField::Heat, tune::STOP_C, 1..=100);
+const SPEEDS: PlanNumber = PlanNumber(PlanField::Speeds, tune::SPEEDS, 1..=Speed::MAX.get() as i32);
+const FORCES: PlanNumber = PlanNumber(PlanField::Forces, tune::FORCES, 0..=Force::MAX.get() as i32);
+const REPEATS: PlanNumber = PlanNumber(PlanField::Repeats, tune::REPEATS, 1..=1000);
+const FAST_SPEED: PlanNumber = PlanNumber(PlanField::Fast, tune::FAST, 1..=1000);
+const DWELL: PlanNumber = PlanNumber(PlanField::Dwell, tune::DWELL, 0..=600);
+const REST: PlanNumber = PlanNumber(PlanField::Rest, tune::REST, 0..=600);
+const CEILING: PlanNumber = PlanNumber(PlanField::Ceiling, tune::CEILING_CAPTION, 1..=4000);
+const START_C: PlanNumber = PlanNumber(PlanField::Heat, tune::START_C, 1..=100);
+const STOP_C: PlanNumber = PlanNumber(PlanField::Heat, tune::STOP_C, 1..=100);
 
 /// One pass over the form.
 struct Pass<'a, 'p> {
@@ -120,7 +120,7 @@ impl TuneForm {
             plan,
             disabled: runs.then(|| look.say(main::SERIES_RUNS)),
         };
-        kit::put_bar_in_margin(ui);
+        kit::put_scroll_bar_in_margin(ui);
         let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
         area.show(ui, |ui| {
             if runs {
@@ -156,11 +156,11 @@ impl Pass<'_, '_> {
         matches!(&self.wrong, Some((at, _)) if *at == field)
     }
 
-    /// What is wrong with one of these, once.
-    fn trouble_ui(&mut self, ui: &mut Ui, fields: &[PlanField]) {
-        if let Some((_, why)) = self.wrong.take_if(|(at, _)| fields.contains(at)) {
-            kit::say_ui(ui, &why, self.pane.look.palette.bad);
-        }
+    /// Which of the fields of a sentence is wrong, and why. Of two that are wrong together, the last.
+    fn wrong_of(&self, fields: &[PlanField]) -> Option<(usize, String)> {
+        let (wrong, why) = self.wrong.as_ref()?;
+        let at = fields.iter().rposition(|field| field == wrong)?;
+        Some((at, why.clone()))
     }
 
     /// Who closes.
@@ -170,7 +170,9 @@ impl Pass<'_, '_> {
             let angle = (!takes_part[dof]).then_some(self.form.targets[dof]);
             set_target(&mut self.plan, dof, angle);
         }
-        self.trouble_ui(ui, &[PlanField::Joints]);
+        if let Some((_, why)) = self.wrong_of(&[PlanField::Joints]) {
+            kit::say_ui(ui, &why, self.pane.look.palette.bad);
+        }
     }
 
     /// From where to where each of them goes, and where others stand.
@@ -187,12 +189,13 @@ impl Pass<'_, '_> {
             };
             let words = look.say(text).replacen("{}", look.say(words::dof(dof)), 1);
             let widths = [theme::FIELD, width];
-            Sentence::new(&words, &widths).ui(ui, look, |ui, number| match number {
+            let sentence = Sentence::new(&words, &widths);
+            let sentence = sentence.wrong(self.wrong_of(&[PlanField::Way(dof); 2]));
+            sentence.ui(ui, look, |ui, number| match number {
                 0 => self.angle_ui(ui, dof, PlanSide::Start),
                 _ if closes => self.angle_ui(ui, dof, PlanSide::Close),
                 _ => self.leave_ui(ui, dof),
             });
-            self.trouble_ui(ui, &[PlanField::Way(dof)]);
         }
     }
 
@@ -267,7 +270,9 @@ impl Pass<'_, '_> {
             text.clamp(theme::FIELD, LIST_WIDTH)
         };
         let widths = [width(&speeds), width(&forces), theme::FIELD];
+        let fields = [PlanField::Speeds, PlanField::Forces, PlanField::Repeats];
         let sentence = Sentence::new(look.say(tune::GRID), &widths);
+        let sentence = sentence.wrong(self.wrong_of(&fields));
         sentence.ui(ui, look, |ui, number| match number {
             0 => {
                 if let Some(speeds) = self.list_ui(ui, &SPEEDS, &speeds) {
@@ -280,19 +285,17 @@ impl Pass<'_, '_> {
                 }
             }
             _ => {
-                if let Some(repeats) = self.figure_ui(ui, &REPEATS, repeats) {
+                if let Some(repeats) = self.number_ui(ui, &REPEATS, repeats) {
                     self.plan.grid.repeats = usize::try_from(repeats).unwrap_or(1);
                 }
             }
         });
-        let fields = [PlanField::Speeds, PlanField::Forces, PlanField::Repeats];
-        self.trouble_ui(ui, &fields);
     }
 
     /// A list of numbers; it, once one that can be taken was typed.
-    fn list_ui(&mut self, ui: &mut Ui, figure: &Figure, numbers: &str) -> Option<Vec<i16>> {
+    fn list_ui(&mut self, ui: &mut Ui, number: &PlanNumber, numbers: &str) -> Option<Vec<i16>> {
         let look = self.pane.look;
-        let &Figure(field, name, ref range) = figure;
+        let &PlanNumber(field, name, ref range) = number;
         let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
         let text = text.wrong(self.is_wrong(field));
         let most = i16::try_from(*range.end()).unwrap_or(i16::MAX);
@@ -301,19 +304,19 @@ impl Pass<'_, '_> {
     }
 
     /// A whole number; it, once one of its range was typed.
-    fn figure_ui(&mut self, ui: &mut Ui, figure: &Figure, value: i32) -> Option<i64> {
-        let number = self.number(figure);
+    fn number_ui(&mut self, ui: &mut Ui, number: &PlanNumber, value: i32) -> Option<i64> {
+        let number = self.field(number);
         number.whole_ui(ui, self.pane, Some(value))
     }
 
-    fn time_ui(&mut self, ui: &mut Ui, figure: &Figure, time: Duration) -> Duration {
-        let number = self.number(figure).decimals(1);
+    fn time_ui(&mut self, ui: &mut Ui, number: &PlanNumber, time: Duration) -> Duration {
+        let number = self.field(number).decimals(1);
         let typed = number.ui(ui, self.pane, Some(time.as_secs_f64()));
         let typed = typed.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         typed.unwrap_or(time)
     }
 
-    fn number(&self, Figure(field, name, range): &Figure) -> NumberField<'static> {
+    fn field(&self, PlanNumber(field, name, range): &PlanNumber) -> NumberField<'static> {
         let look = self.pane.look;
         let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
         let number = NumberField::new(look.say(*name), look.tip(*name), from..=to);
@@ -350,20 +353,20 @@ impl Pass<'_, '_> {
             Until::Proximity(_) => (tune::PROXIMITY, tune::UNTIL_PROXIMITY, 16_000_000),
             Until::Touch(_) => (tune::TOUCH, tune::UNTIL_TOUCH, 3000),
         };
-        let slows = Figure(PlanField::Until, name, 0..=most);
+        let slows = PlanNumber(PlanField::Until, name, 0..=most);
         let sentence = Sentence::new(look.say(words), &[theme::FIELD; 2]);
+        let sentence = sentence.wrong(self.wrong_of(&[PlanField::Fast, PlanField::Until]));
         sentence.ui(ui, look, |ui, number| match number {
             0 => {
-                let typed = self.figure_ui(ui, &FAST_SPEED, fast.get().into());
+                let typed = self.number_ui(ui, &FAST_SPEED, fast.get().into());
                 fast = typed.map_or(fast, Speed::nearest);
             }
             _ => {
-                let typed = self.figure_ui(ui, &slows, until.value());
+                let typed = self.number_ui(ui, &slows, until.value());
                 let typed = typed.and_then(|typed| Until::new(until.name(), typed).ok());
                 until = typed.unwrap_or(until);
             }
         });
-        self.trouble_ui(ui, &[PlanField::Fast, PlanField::Until]);
         self.plan.approach = Approach::TwoStage { fast, until };
     }
 
@@ -373,27 +376,27 @@ impl Pass<'_, '_> {
         let (dwell, rest, limits) = (self.plan.dwell, self.plan.grid.rest, self.plan.limits);
         let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
         let sentence = Sentence::new(look.say(tune::TIMES), &[theme::FIELD; 5]);
+        let numbers = [DWELL, REST, CEILING, START_C, STOP_C];
+        let sentence = sentence.wrong(self.wrong_of(&numbers.map(|PlanNumber(field, ..)| field)));
         sentence.ui(ui, look, |ui, number| match number {
             0 => self.plan.dwell = self.time_ui(ui, &DWELL, dwell),
             1 => self.plan.grid.rest = self.time_ui(ui, &REST, rest),
             2 => {
-                if let Some(ceiling) = self.figure_ui(ui, &CEILING, limits.ceiling_g.into()) {
+                if let Some(ceiling) = self.number_ui(ui, &CEILING, limits.ceiling_g.into()) {
                     self.plan.limits.ceiling_g = i16::try_from(ceiling).unwrap_or(i16::MAX);
                 }
             }
             3 => {
-                if let Some(start) = self.figure_ui(ui, &START_C, limits.start_c.into()) {
+                if let Some(start) = self.number_ui(ui, &START_C, limits.start_c.into()) {
                     self.plan.limits.start_c = celsius(start);
                 }
             }
             _ => {
-                if let Some(stop) = self.figure_ui(ui, &STOP_C, limits.stop_c.into()) {
+                if let Some(stop) = self.number_ui(ui, &STOP_C, limits.stop_c.into()) {
                     self.plan.limits.stop_c = celsius(stop);
                 }
             }
         });
-        let [dwell, rest] = [PlanField::Dwell, PlanField::Rest];
-        self.trouble_ui(ui, &[dwell, rest, PlanField::Ceiling, PlanField::Heat]);
     }
 
     fn words_ui(&mut self, ui: &mut Ui) {

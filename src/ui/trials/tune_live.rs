@@ -37,13 +37,9 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.vertical(|ui| {
             let label = Label::new(&trial, palette.text).title();
             label.named(name).ui(ui);
-            let trials = &pane.state.trials;
-            let search = trials
-                .search
-                .as_ref()
-                .filter(|own| trials.running == Some(own.session));
-            let progress = search.and_then(|own| own.progress.as_ref());
-            let left = progress.map_or_else(|| run.left(pane.state.now), |own| own.left);
+            let search = pane.state.trials.running_search();
+            let progress = search.and_then(|search| search.progress.as_ref());
+            let left = progress.map_or_else(|| run.left(pane.state.now), |search| search.left);
             let left = format::duration(left);
             let left = look.fill(tune::LEFT, &[&left]);
             let setting = match run.view.setting {

@@ -292,7 +292,7 @@ fn what_makes_no_sense_is_said_at_its_field() {
         assert!(bench.is_disabled(Role::Button, "Start trials"), "{why}");
         let below =
             bench.rect(Role::Label, why).top() - bench.rect(Role::TextInput, field).bottom();
-        assert!((0.0..60.0).contains(&below), "{why}: {below}");
+        assert!((0.0..12.0).contains(&below), "{why}: {below}");
         enter(&mut bench, field, good);
         assert!(!bench.shows(why));
     }
