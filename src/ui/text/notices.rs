@@ -210,6 +210,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.fill(panels::DISARMED_BY_OTHER, &[&what])
         }
         NoticeKind::IdleDisarmed => said(inputs::IDLE_DISARMED),
+        NoticeKind::StepsLost(count) => look.fill(panels::STEPS_LOST, &[count]),
         NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
