@@ -156,6 +156,17 @@ mod tests {
         states.iter().map(|motor| motor.q).collect()
     }
 
+    /// CycloneDDS 11 wrote this of two motors at 0 and 0.25, both at 31 °C, with our mark.
+    const CYCLONE: &str = "000100000200000000000000000000000000000000000000000000000000000000000000000000001f000000000000000100534800000000000000000000803e0000000000000000000000000000000000000000000000001f000000000000000100534800000000";
+
+    #[test]
+    fn motors_are_what_cyclonedds_writes() {
+        let states = [0, 250].map(|angle| Motor::measured(angle, 31)).to_vec();
+        let message = cdr::encode(&Motors { states });
+        let hex = message.iter().map(|byte| format!("{byte:02x}"));
+        assert_eq!(hex.collect::<String>(), CYCLONE);
+    }
+
     #[test]
     fn a_message_has_twelve_motors_of_the_types_own_layout() {
         let pair = MotorPair::new(Side::Right);

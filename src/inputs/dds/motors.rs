@@ -93,6 +93,16 @@ mod tests {
         all
     }
 
+    /// CycloneDDS 11 wrote this of two motors at 0 and 0.25.
+    const CYCLONE: &str = "000100000200000001000000000000000000f0400000f0400000f0400000f040090000000900000009000000010000000000803e0000f0400000f0400000f0400000f040090000000900000009000000";
+
+    #[test]
+    fn the_layout_is_that_of_cyclonedds() {
+        let hex = message(&[0.0, 0.25]).into_iter();
+        let hex = hex.map(|byte| format!("{byte:02x}"));
+        assert_eq!(hex.collect::<String>(), CYCLONE);
+    }
+
     const RIGHT: [f32; 6] = [0.0, 1.0, 0.5, 0.25, 1.000_000_1, 0.1];
     const LEFT: [f32; 6] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.4];
 

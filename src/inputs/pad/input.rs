@@ -176,7 +176,7 @@ impl PadInput {
     /// Takes in what happened at a gamepad. Of others than the one that is followed STOP alone counts, and it counts wherever it was
     /// seen down: also where a gamepad is found with it, or events were lost around it.
     pub fn take(&mut self, report: &PadReport) -> Option<PadEvent> {
-        if self.is_stop(report) {
+        if self.sees_stop(report) {
             self.apply(report);
             self.let_go();
             self.look();
@@ -185,8 +185,8 @@ impl PadInput {
         self.apply(report)
     }
 
-    /// Whether a report says that STOP is down that was not down before.
-    fn is_stop(&mut self, report: &PadReport) -> bool {
+    /// Notes where the controls of other gamepads are; true if a report says that STOP is down that was not down before.
+    fn sees_stop(&mut self, report: &PadReport) -> bool {
         let (pad, mut state, is_certain) = match &report.news {
             PadNews::Found { pad, facts, .. } => (*pad, PadState::of(facts), true),
             PadNews::Moved { pad, .. } => (*pad, self.state_of(*pad), true),

@@ -2,7 +2,7 @@
 //! hand is not left to go on to a target of a program that is gone.
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
-use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed, Target};
+use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
 use crate::share::gateway::allowed;
@@ -61,11 +61,12 @@ impl ClientLeases {
         }
     }
 
-    /// Writes for a client that may, or may from now on. Done once the hand acknowledged it.
+    /// Writes what a request asks for, of a client that may, or may from now on. Done once the hand acknowledged it.
     pub(crate) async fn write(
         &self,
         client: ClientId,
         command: HandCommand,
+        request: &[u8],
     ) -> Result<(), WriteRefusal> {
         let lease = match self.lease(client) {
             ClientLease::Held(lease) => lease,
@@ -74,7 +75,7 @@ impl ClientLeases {
                 return Ok(self.link.write(command).await?);
             }
             // Whoever may not move the hand may stop it, while another moves it.
-            ClientLease::Never | ClientLease::Ended(_) if self.is_stop(client, &command).await => {
+            ClientLease::Never | ClientLease::Ended(_) if self.is_stop(client, request).await => {
                 return Ok(());
             }
             ClientLease::Never => self.take(client, Claim::Wrote).await?,
@@ -170,16 +171,9 @@ impl ClientLeases {
         self.writers == Writers::First && self.link.status().holder.is_none()
     }
 
-    async fn is_stop(&self, client: ClientId, command: &HandCommand) -> bool {
-        match command {
-            HandCommand::Angles(targets) => self.stops(client, &raw(targets)).await,
-            _ => false,
-        }
-    }
-
-    /// Whether a request that cannot be written as it stands is a stop; then the hand is stopped. It is one of the client that
+    /// Whether a request is a stop; then the hand is stopped. One that cannot be written as it stands may be one of the client that
     /// moves the hand as well, which would go on to where it was sent before.
-    pub(crate) async fn is_odd_stop(&self, client: ClientId, request: &[u8]) -> bool {
+    pub(crate) async fn is_stop(&self, client: ClientId, request: &[u8]) -> bool {
         match allowed::all_angles(request) {
             Some(angles) => self.stops(client, &angles).await,
             None => false,
@@ -301,14 +295,6 @@ impl ClientLeases {
         let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
         Ok(PerDof::new(values))
     }
-}
-
-/// Targets as their register has them.
-fn raw(targets: &PerDof<Target>) -> PerDof<i16> {
-    targets.map(|target| match target {
-        Target::Go(to) => to.get(),
-        Target::Leave => NO_ACTION,
-    })
 }
 
 /// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.

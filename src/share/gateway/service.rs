@@ -56,7 +56,7 @@ impl Service {
                 Ok([address, count].map(u16::to_be_bytes).concat())
             }
             // A stop counts although its length is wrong.
-            _ if self.leases.is_odd_stop(client, request).await => {
+            _ if self.leases.is_stop(client, request).await => {
                 Ok(request.get(1..5).unwrap_or_default().to_vec())
             }
             // A known function of a wrong length.
@@ -90,8 +90,8 @@ impl Service {
         command: Result<HandCommand, WriteRefusal>,
     ) -> Result<(), ModbusException> {
         let written = match command {
-            Ok(command) => self.leases.write(client, command).await,
-            Err(odd) if self.leases.is_odd_stop(client, request).await => {
+            Ok(command) => self.leases.write(client, command, request).await,
+            Err(odd) if self.leases.is_stop(client, request).await => {
                 self.note(client, |row| row.obeyed_odd(odd));
                 return Ok(());
             }

@@ -37,18 +37,18 @@ async fn a_flood_of_offers_does_not_keep_what_the_hand_says_from_being_heard() {
     };
     let (offers, offered) = mpsc::channel(FLOOD);
     while offers.try_send(offer(hand.clock.now())).is_ok() {}
-    let task = tokio::spawn({
-        let hand = hand.clone();
-        async move { follow(&hand, start, offered, |_| ()).await }
-    });
-    // It listens from its first step on.
-    tokio::task::yield_now().await;
     let hot = Said {
         celsius: 75,
         ..WELL
     };
-    hand.tells(hot.sample(hand.clock.now()));
-    let end = task.await.unwrap();
+    // It says so after the first look.
+    let mut is_told = false;
+    let end = follow(&hand, start, offered, |_| {
+        if !std::mem::replace(&mut is_told, true) {
+            hand.tells(hot.sample(hand.clock.now()));
+        }
+    });
+    let end = end.await;
     assert!(matches!(end, FollowEnd::Hot(_)), "{end:?}");
     let taken = hand.asked();
     let taken = taken
