@@ -79,7 +79,6 @@ impl Try {
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),
                 Start::Process(Place::grip),
-                Start::Process(Place::check),
             ],
             Row::Stdio => &[
                 Start::Process(Place::stdio_move),

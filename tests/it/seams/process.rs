@@ -159,10 +159,6 @@ impl Place {
         )
     }
 
-    pub(super) fn check(self) -> Process {
-        self.start("check", &["--json", "--arm"])
-    }
-
     /// A program that moves the hand by lines of JSON.
     fn stdio(self) -> Process {
         let hand = self.hand.endpoint.clone();

@@ -66,7 +66,7 @@ impl Row {
             Self::Slider => "slider in the window",
             Self::Pose => "pose and sequence",
             Self::Series => "series in the window",
-            Self::Trial => "trial, tune, grip, check",
+            Self::Trial => "trial, tune, grip",
             Self::Follow => "follow UDP and TCP",
             Self::FollowDds => "follow DDS",
             Self::Leading => "another hand leading",
