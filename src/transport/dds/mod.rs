@@ -21,7 +21,7 @@ use crate::transport::dds::wire::{EntityId, Prefix};
 use std::collections::VecDeque;
 use std::fmt;
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddrV4, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -198,12 +198,10 @@ impl Shared {
             let done = work(&mut core, Instant::now());
             (done, core.outgoing())
         };
-        let sent = outgoing
-            .into_iter()
-            .map(|(place, bytes)| self.sockets.send(&bytes, place));
-        // All are sent, whatever becomes of one.
-        let is_sent = sent.fold(true, |all, sent| sent && all);
-        (done, is_sent)
+        let is_unsent =
+            |(place, bytes): &(SocketAddrV4, Vec<u8>)| !self.sockets.send(bytes, *place);
+        let unsent = outgoing.iter().filter(|one| is_unsent(one)).count();
+        (done, unsent == 0)
     }
 
     fn listen(&self, nth: usize) {

@@ -380,7 +380,7 @@ fn a_long_message_is_put_together_and_no_longer_one() {
         prefix: [1; 12],
         entity: EntityId([0, 0, 1, 3]),
     };
-    let whole: Vec<u8> = (0..2500).map(|nth| nth as u8).collect();
+    let whole: Vec<u8> = (0..=249).cycle().take(2500).collect();
     let mut assemblies = Assemblies::default();
     let part = |first: usize| Fragment {
         number: 1,
@@ -393,12 +393,13 @@ fn a_long_message_is_put_together_and_no_longer_one() {
     assert_eq!(assemblies.push(key, &part(2)), None);
     assert_eq!(assemblies.push(key, &part(0)), None);
     assert_eq!(assemblies.push(key, &part(1)).as_ref(), Some(&whole));
-    for number in 1..1000 {
+    let kinds = [(0, 1), (5, 1000), (usize::MAX - 1, 1), (0, 1000)];
+    for (number, (first, fragment_size)) in (1..1000).zip(kinds.into_iter().cycle()) {
         for total_size in [ASSEMBLED_MAX, ASSEMBLED_MAX + 1, usize::MAX] {
             let part = Fragment {
                 number,
-                first: [0, 5, usize::MAX - 1][number as usize % 3],
-                fragment_size: [1, 1000][number as usize % 2],
+                first,
+                fragment_size,
                 total_size,
                 bytes: &[1, 2, 3],
             };
