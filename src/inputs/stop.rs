@@ -82,7 +82,7 @@ fn is_yes(value: Option<&Token<'_>>, end: TextEnd) -> bool {
             let word = text.lower();
             let is_begun = !text.is_ended && !word.is_empty();
             let begins_no = ["false", "null"].iter().any(|no| no.starts_with(&word));
-            !is_no(&word) && !(is_begun && begins_no)
+            !(is_no(&word) || is_begun && begins_no)
         }
     }
 }

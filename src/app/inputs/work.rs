@@ -156,13 +156,10 @@ impl HandInputs {
             stop: Arc::new(move || stops.stop()),
             wake: Arc::clone(&env.wake),
         };
-        let joined = DdsNode::open(&place).and_then(|node| {
-            let commands = DdsCommands::of(&node, side)?;
-            Ok(JoinedDds {
-                others: OtherFollowers::open(&node, side, env.clock)?,
-                source: DdsSource::open(config, commands),
-                shared: SharedOnDds::open(node, link, card)?,
-            })
+        let joined = DdsNode::open(&place).map(|node| JoinedDds {
+            others: OtherFollowers::open(&node, side, env.clock),
+            source: DdsSource::open(config, DdsCommands::of(&node, side)),
+            shared: SharedOnDds::open(node, link, card),
         });
         match joined {
             Ok(joined) => self.dds = Some(joined),

@@ -172,13 +172,13 @@ impl FollowSource {
         (link, clock): (&LinkHandle, Clock),
         allowed: Allowed,
     ) -> anyhow::Result<Self> {
-        let others = OtherFollowers::open(&node, card.side, clock)?;
+        let others = OtherFollowers::open(&node, card.side, clock);
         if allowed.moves
             && let Some(other) = others.was_there().await
         {
             bail!(followed(&other));
         }
-        let commands = DdsCommands::of(&node, card.side)?;
+        let commands = DdsCommands::of(&node, card.side);
         let stops = link.clone();
         let config = DdsSourceConfig {
             side: card.side,
@@ -188,7 +188,7 @@ impl FollowSource {
             wake: Arc::new(|| ()),
         };
         let follows = allowed.moves;
-        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card })?;
+        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card });
         Ok(Self::Dds(DdsSource::open(config, commands), out, others))
     }
 

@@ -8,7 +8,7 @@ use crate::inputs::follow::{ENDS_AFTER, is_fresh};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::rate::EventRate;
 use crate::link::{ArmRequest, Clock, Owner, Wake};
-use crate::transport::dds::{DdsError, DdsMessage, DdsNode, DdsWriterId};
+use crate::transport::dds::{DdsMessage, DdsNode, DdsWriterId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -72,14 +72,11 @@ pub struct DdsCommands {
 
 impl DdsCommands {
     /// Those that are sent to the hand of this side from now on. Must be called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the readers.
-    pub fn of(node: &DdsNode, side: Side) -> Result<Self, DdsError> {
-        Ok(Self {
-            ctrl: node.reader(&ctrl::topic(side), ctrl::KEPT)?,
-            motors: node.reader(&motors::topic(), ctrl::KEPT)?,
-        })
+    pub fn of(node: &DdsNode, side: Side) -> Self {
+        Self {
+            ctrl: node.reader(&ctrl::topic(side), ctrl::KEPT),
+            motors: node.reader(&motors::topic(), ctrl::KEPT),
+        }
     }
 }
 
