@@ -193,7 +193,7 @@ impl Script<'_> {
         let is_lost = self.owes_stop && !status.state.is_live();
         let may_move = is_lost || self.is_to_stop() || status.state == LinkState::Holding;
         let done = if may_move {
-            session::stopped(link, &mut link.records()).await
+            session::stopped(link).await
         } else {
             Ok(())
         };
@@ -388,8 +388,7 @@ impl Script<'_> {
         // Until it is confirmed.
         (self.right, self.owes_stop) = (None, true);
         let link = self.hand.link.clone();
-        let stopping =
-            async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
+        let stopping = async move { Done::Stopped(session::stopped(&link).await) };
         self.begin(Task::of(id, stopping))
     }
 
