@@ -265,7 +265,7 @@ mod tests {
         }
         assert!(!watch.has_ceased());
         watch.doubted_acknowledged(ms(280));
-        assert_eq!(watch.next_frame(ms(281)), Some(ms(281)), "others may move");
+        assert_eq!(watch.next_frame(ms(270)), Some(ms(280)), "others may move");
         watch.trusted_rest();
         assert_eq!(watch.next_frame(ms(300)), None);
     }

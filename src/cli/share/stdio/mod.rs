@@ -271,6 +271,10 @@ impl Script<'_> {
             why.kind,
             RefusalKind::Ended(Disarmed::LinkLost | Disarmed::Resume)
         );
+        if self.owes_stop {
+            // The hand goes on to where it was sent. The stop waits for its link.
+            drop(self.hand.link.stop());
+        }
         self.told
             .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
