@@ -39,7 +39,7 @@ impl HandInputs {
             place,
             side,
             clock: env.clock,
-            stop: Arc::new(move || link.stop()),
+            stop: Arc::new(move || drop(link.stop())),
             wake: Arc::clone(&env.wake),
         };
         match StreamSource::open(config, &env.runtime) {
@@ -71,7 +71,7 @@ impl HandInputs {
                     input: PadInput::new(settings.pad_map()),
                     records: link.records(),
                     clock,
-                    stop: Arc::new(move || link.stop()),
+                    stop: Arc::new(move || drop(link.stop())),
                     wake: Arc::clone(&env.wake),
                 });
                 self.pad = Some(source);
