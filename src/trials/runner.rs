@@ -1,6 +1,8 @@
 //! One running trial: samples and time in, setpoints out. Sends nothing, reads no clock, arms nothing.
 
-use crate::hand::{Angle, Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status, Target};
+use crate::hand::{
+    Angle, AngleReading, Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status, Target,
+};
 use crate::hand::{ArmEpoch, Setpoints};
 use crate::trials::limits::{Abort, Feedback, LinkView, reason};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
@@ -351,7 +353,11 @@ impl Runner {
         for (dof, joint) in self.joints.iter_mut() {
             let Some(joint) = joint else { continue };
             joint.look(sample, since, now);
-            if !joint.slow && joint.begins_slow(self.plan.approach, sample, rest_g[dof]) {
+            // What stopped before it, at an obstacle or for want of accuracy, goes on from where it is.
+            if !joint.slow
+                && (joint.begins_slow(self.plan.approach, sample, rest_g[dof])
+                    || joint.stands(sample, now))
+            {
                 joint.slow = true;
                 joint.still = None;
                 setpoints.speed[dof] = Some(self.setting.speed);
@@ -404,11 +410,7 @@ impl ClosingJoint {
         let tip = sample.tactile[self.dof.finger()].map(|tip| tip.value);
         match until {
             Until::Angle(_) | Until::Measured { .. } => {
-                let angle = sample
-                    .angle
-                    .and_then(|angle| angle.value[self.dof].documented());
-                let near = |halt: Angle| angle.is_some_and(|at| at <= halt.get() + STILL_COUNTS);
-                self.halt.is_none_or(near)
+                self.halt.is_none_or(|halt| self.has_halted(halt, sample))
             }
             Until::Proximity(rise) => {
                 let now = tip.map(|tip| tip.proximity);
@@ -445,14 +447,31 @@ impl ClosingJoint {
         }
     }
 
-    /// Whether it has stopped: at its target, at its force, or at an obstacle.
-    fn has_stopped(&self, sample: &HandSample, now: Moment) -> bool {
-        let Some((since, _)) = self.still.filter(|_| self.slow) else {
-            return false;
-        };
-        let still = now.since(since);
+    /// Whether it is at its halt, or past it. A drive that rests short of its target has arrived once it says that it stopped.
+    fn has_halted(&self, halt: Angle, sample: &HandSample) -> bool {
+        let angle = sample.angle.map(|angle| angle.value[self.dof]);
+        angle.and_then(AngleReading::documented).is_some_and(|at| {
+            let short = at.saturating_sub(halt.get());
+            let is_near = short <= Angle::ARRIVED_WITHIN.cast_signed();
+            short <= STILL_COUNTS || (is_near && self.says_stopped(sample))
+        })
+    }
+
+    /// Whether its drive says that it stopped, once it moved.
+    fn says_stopped(&self, sample: &HandSample) -> bool {
         let says = sample.status.map(|status| status.value[self.dof]);
-        let says_so = self.moved && says.is_some_and(Status::is_stopped);
-        still >= STILL_ANYWAY || (says_so && still >= STILL_FOR)
+        self.moved && says.is_some_and(Status::is_stopped)
+    }
+
+    /// Whether it has stopped for good: at its target, at its force, or at an obstacle.
+    fn has_stopped(&self, sample: &HandSample, now: Moment) -> bool {
+        self.slow && self.stands(sample, now)
+    }
+
+    fn stands(&self, sample: &HandSample, now: Moment) -> bool {
+        let still = self.still.map(|(since, _)| now.since(since));
+        still.is_some_and(|still| {
+            still >= STILL_ANYWAY || (self.says_stopped(sample) && still >= STILL_FOR)
+        })
     }
 }

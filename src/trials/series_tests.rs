@@ -8,6 +8,7 @@ use crate::hand::{ArmEpoch, Setpoints};
 use crate::record::LinkState;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
+use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::series::{Series, SeriesOrder, TrialSeries};
 use crate::trials::summary::{Trial, TrialKind};
 use std::time::Duration;
@@ -28,6 +29,10 @@ struct Hand {
     /// The force was last read then.
     force_at: Option<Moment>,
     takes_limits: bool,
+    /// How far before its target a closing joint comes to rest, as one with backlash does.
+    rests_short: i16,
+    /// Where something is in the way.
+    blocked_at: i16,
     link: LinkView,
 }
 
@@ -43,6 +48,8 @@ impl Hand {
             celsius: 31,
             force_at: None,
             takes_limits: true,
+            rests_short: 0,
+            blocked_at: -1,
             link: LinkView {
                 state: LinkState::Armed,
                 armed: Some(EPOCH),
@@ -66,9 +73,17 @@ impl Hand {
     fn step(&mut self) {
         self.now = self.now.plus(STEP);
         for dof in Dof::ALL {
-            let way = self.target[dof] - self.angle[dof];
-            self.angle[dof] += way.clamp(-5, 5);
+            self.angle[dof] += self.way(dof).clamp(-5, 5);
         }
+    }
+
+    fn way(&self, dof: Dof) -> i16 {
+        let way = self.target[dof] - self.angle[dof];
+        if way >= 0 {
+            return way;
+        }
+        let free = self.angle[dof] - self.blocked_at;
+        (way + self.rests_short).max(-free.max(0)).min(0)
     }
 
     fn sample(&self) -> HandSample {
@@ -80,7 +95,7 @@ impl Hand {
             })
         }
         let now = self.now;
-        let status = |dof: Dof| match self.target[dof] - self.angle[dof] {
+        let status = |dof: Dof| match self.way(dof) {
             0 => Status::PositionReached,
             way if way < 0 => Status::Grasping,
             _ => Status::Releasing,
@@ -324,6 +339,56 @@ fn heat_and_force_end_it_and_force_counts_from_rest() {
         hand.grams = if closing(hand) { 1992 } else { -7 };
     });
     assert_eq!(ran.aborted, None, "1999 g above rest");
+}
+
+fn two_stage(until: Until) -> TrialPlan {
+    TrialPlan {
+        approach: Approach::TwoStage {
+            fast: Speed::MAX,
+            until,
+        },
+        ..plan(25, 1)
+    }
+}
+
+/// When a trial's joint went on slowly and when it stopped, s after the command.
+fn stages(trial: &Trial) -> (f64, f64) {
+    let recording = &trial.recording;
+    let when = |what| {
+        let at = recording.when(what);
+        seconds(recording.zero(), at.unwrap_or_else(|| panic!("{what:?}")))
+    };
+    (
+        when(TrialEvent::Slow(Dof::Index)),
+        when(TrialEvent::Stopped),
+    )
+}
+
+#[test]
+fn a_joint_that_rests_short_of_its_halt_goes_on_slowly() {
+    let halt = Until::Angle(Angle::nearest(600));
+    for rests_short in 0..=20 {
+        let ran = run(two_stage(halt), |hand| hand.rests_short = rests_short);
+        assert_eq!(ran.aborted, None, "{rests_short}");
+        // 400 at 500 a second, and the same again.
+        let (slow, stopped) = stages(&ran.trials[0]);
+        assert!((0.75..0.85).contains(&slow), "{rests_short}: {slow}");
+        assert!((1.75..1.9).contains(&stopped), "{rests_short}: {stopped}");
+    }
+}
+
+#[test]
+fn a_joint_that_is_stopped_before_its_halt_does_not_wait_for_it() {
+    for until in [
+        Until::Angle(Angle::nearest(600)),
+        Until::Proximity(1000),
+        Until::Touch(Force::nearest(100)),
+    ] {
+        let ran = run(two_stage(until), |hand| hand.blocked_at = 800);
+        let (slow, stopped) = stages(&ran.trials[0]);
+        assert!((0.5..0.8).contains(&slow), "{until:?}: {slow}");
+        assert!(stopped < slow + 0.5, "{until:?}: {stopped}");
+    }
 }
 
 #[test]

@@ -75,7 +75,15 @@ impl Try {
                 | Column::SecondHandscope
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
-            Row::Trial => &[Start::Process(Place::trial)],
+            Row::Trial => &[
+                Start::Process(Place::trial),
+                Start::Process(Place::tune),
+                Start::Process(Place::grip),
+            ],
+            Row::Stdio => &[
+                Start::Process(Place::stdio_move),
+                Start::Process(Place::stdio_follow),
+            ],
             Row::Follow => &[
                 Start::Process(Place::follow_udp),
                 Start::Process(Place::follow_tcp),

@@ -14,7 +14,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::net::{TcpStream, UdpSocket};
-use std::process::{Child, Stdio};
+use std::process::{Child, ChildStdin, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::sleep;
@@ -61,6 +61,8 @@ impl Heard {
 /// A command of the program at the hand of a cell, and whoever makes it move that hand.
 pub(super) struct Process {
     child: Child,
+    /// Its standard input, where it takes lines.
+    input: Option<ChildStdin>,
     /// Another Handscope at the same hand.
     second: Option<Child>,
     out: Heard,
@@ -102,11 +104,15 @@ impl Place {
     }
 
     fn start_without_hand(self, command: &str, args: &[&str]) -> Process {
+        self.start_with_input(command, args, Stdio::null())
+    }
+
+    fn start_with_input(self, command: &str, args: &[&str], input: Stdio) -> Process {
         let mut child = handscope()
             .arg(command)
             .args(args)
             .env("HOME", self.folder.path())
-            .stdin(Stdio::null())
+            .stdin(input)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -115,6 +121,7 @@ impl Place {
         out.listen(child.stdout.take().unwrap());
         err.listen(child.stderr.take().unwrap());
         Process {
+            input: child.stdin.take(),
             child,
             second: None,
             out,
@@ -135,6 +142,58 @@ impl Place {
             "trial",
             &[&plan[..], &pace, &rest, &["--json", "--arm"]].concat(),
         )
+    }
+
+    pub(super) fn tune(self) -> Process {
+        self.start(
+            "tune",
+            &["--joint", "index", "--limit", "500", "--json", "--arm"],
+        )
+    }
+
+    pub(super) fn grip(self) -> Process {
+        let slow = SLOW.to_string();
+        self.start(
+            "grip",
+            &["--gap", "30", "--speed", &slow, "--json", "--arm"],
+        )
+    }
+
+    /// A program that moves the hand by lines of JSON.
+    fn stdio(self) -> Process {
+        let hand = self.hand.endpoint.clone();
+        let args = [
+            "--hand",
+            &hand,
+            "--tcp",
+            "127.0.0.1:0",
+            "--writers",
+            "--stdio",
+        ];
+        let mut process = self.start_with_input("share", &args, Stdio::piped());
+        process.hears("\"ready\"");
+        process.hears("\"state\"");
+        process.ask(r#"{"id":1,"do":"arm"}"#);
+        process.hears("\"reply\"");
+        process
+    }
+
+    pub(super) fn stdio_move(self) -> Process {
+        let mut process = self.stdio();
+        let to = "[null,null,null,0,null,null]";
+        process.ask(&format!(
+            r#"{{"id":2,"do":"move","angle":{to},"speed":{SLOW}}}"#
+        ));
+        process
+    }
+
+    pub(super) fn stdio_follow(self) -> Process {
+        let mut process = self.stdio();
+        let mut input = process.input.take().unwrap();
+        process.sends(move |line| {
+            let _sent = writeln!(input, "{line}");
+        });
+        process
     }
 
     pub(super) fn follow_udp(self) -> Process {
@@ -271,10 +330,17 @@ impl Place {
     }
 }
 
+/// Printed once targets are followed: by `follow`, and by `share --stdio` once it is armed.
+const FOLLOWED: [&str; 2] = ["\"phase\":\"following\"", "\"reply\""];
 const FOLLOW_UDP: [&str; 6] = ["--udp", "127.0.0.1:0", "--json", "--arm", "--rate", "200"];
 const FOLLOW_TCP: [&str; 6] = ["--tcp", "127.0.0.1:0", "--json", "--arm", "--rate", "200"];
 
 impl Process {
+    /// Writes a line to its standard input.
+    fn ask(&mut self, line: &str) {
+        writeln!(self.input.as_ref().unwrap(), "{line}").unwrap();
+    }
+
     /// Waits until this was said.
     fn hears(&self, words: &str) -> String {
         let begun = Instant::now();
@@ -304,7 +370,7 @@ impl Process {
                 if ends.load(Ordering::Relaxed) {
                     return;
                 }
-                if followed.is_none() && out.text().contains("\"phase\":\"following\"") {
+                if followed.is_none() && FOLLOWED.iter().any(|sign| out.text().contains(sign)) {
                     followed = Some(Instant::now());
                 }
                 let way = followed.map_or(0.0, |since| since.elapsed().as_secs_f64() * SENT_PER_S);

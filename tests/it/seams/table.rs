@@ -18,6 +18,7 @@ pub(super) enum Row {
     FollowDds,
     Leading,
     Share,
+    Stdio,
     Exhibition,
     Params,
     Calibration,
@@ -45,7 +46,7 @@ pub(super) enum Column {
 }
 
 impl Row {
-    pub(super) const ALL: [Self; 11] = [
+    pub(super) const ALL: [Self; 12] = [
         Self::Slider,
         Self::Pose,
         Self::Series,
@@ -54,6 +55,7 @@ impl Row {
         Self::FollowDds,
         Self::Leading,
         Self::Share,
+        Self::Stdio,
         Self::Exhibition,
         Self::Params,
         Self::Calibration,
@@ -64,11 +66,12 @@ impl Row {
             Self::Slider => "slider in the window",
             Self::Pose => "pose and sequence",
             Self::Series => "series in the window",
-            Self::Trial => "trial",
+            Self::Trial => "trial, tune, grip",
             Self::Follow => "follow UDP and TCP",
             Self::FollowDds => "follow DDS",
             Self::Leading => "another hand leading",
             Self::Share => "share --writers",
+            Self::Stdio => "share --stdio",
             Self::Exhibition => "exhibition",
             Self::Params => "params",
             Self::Calibration => "calibration",
@@ -139,13 +142,14 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
         | Row::Leading
         | Row::Exhibition
         | Row::Calibration => true,
-        Row::Trial | Row::Follow | Row::FollowDds | Row::Share | Row::Params => false,
+        Row::Trial | Row::Follow | Row::FollowDds | Row::Share | Row::Stdio | Row::Params => false,
     };
     match (column, row) {
         // The second master of this table writes without a wire, as one on another connection does. On a bus its frames are heard.
-        (Column::SecondMaster, Row::Trial | Row::Follow | Row::FollowDds | Row::Share)
-            if !matches!(protocol, Protocol::Tcp) =>
-        {
+        (
+            Column::SecondMaster,
+            Row::Trial | Row::Follow | Row::FollowDds | Row::Share | Row::Stdio,
+        ) if !matches!(protocol, Protocol::Tcp) => {
             CannotBe("the frames of a second master are heard on a bus: tried with the link")
         }
         (Column::SecondHandscope, _) if is_port && is_in_the_window => {
@@ -172,6 +176,7 @@ pub(super) const fn cell(row: Row, column: Column) -> Cell {
         Row::Trial => trial(column),
         Row::Follow | Row::FollowDds => follow(column),
         Row::Share => share(column),
+        Row::Stdio => stdio(column),
         Row::Params => params(column),
     }
 }
@@ -345,6 +350,28 @@ const fn share(column: Column) -> Cell {
         Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
         Column::FaultOrHeat => Tried(Held(1000), "fault"),
         Column::ReaderGone => CannotBe("it prints nothing after its first line"),
+    }
+}
+
+/// A program moves the hand by lines of JSON.
+const fn stdio(column: Column) -> Cell {
+    match column {
+        Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        Column::Signal
+        | Column::Panic
+        | Column::Killed
+        | Column::Frozen
+        | Column::DisplayLost
+        | Column::FeedbackFrozen
+        | Column::OddReplies
+        | Column::SecondHandscope
+        | Column::Asleep
+        | Column::Disobeys
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::SecondMaster
+        | Column::FaultOrHeat => share(column),
     }
 }
 

@@ -11,6 +11,8 @@ pub(crate) mod link;
 pub(crate) mod process;
 pub(crate) mod program;
 pub(crate) mod recorded;
+#[cfg(unix)]
+pub(crate) mod referee;
 pub(crate) mod skipped;
 pub(crate) mod states;
 pub(crate) mod time;

@@ -5,4 +5,6 @@ mod drive;
 mod grips;
 mod hand;
 mod personalities;
+#[cfg(unix)]
+mod referee;
 mod servers;
