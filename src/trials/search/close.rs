@@ -64,6 +64,8 @@ pub struct CloseFacts {
     pub stiffness_at_least: Option<f64>,
     /// Slips while it was held; `None` if touch told too little.
     pub slips: Option<usize>,
+    /// Usual time between two readings, s.
+    pub reading_s: Option<f64>,
     /// Longest time between two readings of the force, s.
     pub longest_gap_s: Option<f64>,
 }
@@ -113,6 +115,7 @@ impl CloseFacts {
             stiffness: told.map(|(steady, pressed)| steady / pressed),
             stiffness_at_least: untold.map(|steady| steady / PRESSED_LEAST),
             slips: joint.slip_count,
+            reading_s: joint.rate_hz.map(|rate| 1.0 / rate.max(1.0)),
             longest_gap_s: joint.longest_gap_s,
         }
     }

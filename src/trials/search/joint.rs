@@ -19,6 +19,10 @@ const CONTACT_G: f64 = 15.0;
 const CONTACT_SIGMAS: f64 = 5.0;
 /// … which is so much too late at most, units of ANGLE_ACT.
 const LATE_MOST: f64 = 12.0;
+/// A contact is told where a joint goes less than this between two readings, units of ANGLE_ACT; a stiffness, where that is less
+/// than this share of the way into the object.
+const SHARP: f64 = 5.0;
+const SHARP_SHARE: f64 = 0.25;
 /// A stiffness below this share of what it was means that the object gives.
 const GIVES_BELOW: f64 = 0.5;
 /// Left of the grip, as a share of the force that stopped the drive, below which the object gave.
@@ -85,12 +89,9 @@ impl JointModel {
             });
         }
         let gives = self.gives(facts, at);
-        if !facts.is_uncertain {
-            self.stiffnesses.extend(facts.stiffness);
-        }
-        if let Some(contact) = facts.contact {
-            self.contacts.push(contact);
-        }
+        self.stiffnesses.extend(self.stiffness_in(facts, at));
+        let is_sharp = self.contacts.is_empty() || self.step(facts, at) < SHARP;
+        self.contacts.extend(facts.contact.filter(|_| is_sharp));
         let left = facts.peak_g.zip(facts.steady_g);
         self.left.extend(left.map(|(peak_g, steady_g)| Left {
             threshold_g: at.threshold_g,
@@ -126,8 +127,29 @@ impl JointModel {
         if let Some((_, steady)) = gone {
             return Some((before.unwrap_or_default(), steady.max(0.0)));
         }
-        let (before, now) = (before?, facts.stiffness.filter(|_| !facts.is_uncertain)?);
+        let (before, now) = (before?, self.stiffness_most(facts, at)?);
         (now < GIVES_BELOW * before).then_some((before, now))
+    }
+
+    /// The way of a joint between two readings, units of ANGLE_ACT.
+    fn step(&self, facts: &CloseFacts, at: Contact) -> f64 {
+        facts.reading_s.unwrap_or_default() * at.speed * self.rate()
+    }
+
+    /// The stiffness that a close tells: none if the contact may be off by much of the way into the object.
+    fn stiffness_in(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+        let pressed = facts.steady_g.zip(facts.stiffness);
+        let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
+        let pressed = steady / stiffness.max(0.01);
+        (self.step(facts, at) < SHARP_SHARE * pressed).then_some(stiffness)
+    }
+
+    /// The highest stiffness that a close may be of: between two readings a contact is drawn early, never late.
+    fn stiffness_most(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+        let pressed = facts.steady_g.zip(facts.stiffness);
+        let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
+        let pressed = steady / stiffness.max(0.01) - self.step(facts, at);
+        (pressed > 0.0).then(|| steady / pressed)
     }
 
     /// Noise of the force, g.

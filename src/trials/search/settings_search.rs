@@ -739,10 +739,10 @@ impl SettingsSearch {
             speed: SLOWEST.into(),
             threshold_g,
         };
-        let thresholds = self.thresholds().into_iter().map(slowest);
+        let mut thresholds = self.thresholds().into_iter().map(slowest);
         let holding = thresholds.clone().find(|at| self.holds_enough(*at));
         let at = holding
-            .or(thresholds.last())
+            .or(thresholds.next_back())
             .unwrap_or(self.at(SLOWEST.into()));
         let bounds = self.joints.iter().filter_map(|joint| {
             let peak_g = self.expected(joint, at)?.max(self.safe(joint, at)?);
