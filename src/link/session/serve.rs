@@ -1,15 +1,16 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, RegisterWrite, Target};
+use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::Started;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
+use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
-use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::motion::{ANGLE_FRESH, ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
@@ -54,7 +55,8 @@ impl Session {
     }
 
     /// What is told after something was done.
-    pub(crate) fn after_step(&mut self, bus: &dyn Bus) {
+    pub(crate) fn after_step(&mut self, bus: &mut dyn Bus) {
+        self.learn_late(bus);
         self.tell_rest();
         self.count(bus);
         self.watch_others(bus);
@@ -63,6 +65,9 @@ impl Session {
     /// Does the most urgent thing; false if nothing is due.
     async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if self.urgent_step(bus).await? {
+            return Ok(true);
+        }
+        if self.motion.hold.is_none() && self.identify_further(bus).await? {
             return Ok(true);
         }
         if self.motion.lets_jobs(self.now()) && self.next_job() {
@@ -84,8 +89,12 @@ impl Session {
         self.watch_age();
         let now = self.now();
         let hold = self.motion.hold;
-        if hold.is_some_and(|hold| hold.next_frame(now) <= now) {
+        // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
+        // would never see the hand rest.
+        let waits = self.motion.waits_for_look && self.slowness.slowest().is_some();
+        if hold.is_some_and(|hold| hold.next_frame(now) <= now) && !waits {
             self.send_hold(bus).await?;
+            self.motion.waits_for_look = true;
         } else if self.motion.begins_round(now)
             && let Some(question) = self.plan.before_write(now)
         {
@@ -200,7 +209,8 @@ impl Session {
         let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
         let let_go = is_let_go.then_some(ArmRefusal::LetGo);
         let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        if let Some(reason) = busy.or(let_go).or_else(refusal) {
+        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
+        if let Some(reason) = busy.or(let_go).or_else(refusal).or(unknown) {
             self.refuse_arm(reason);
             return Ok(());
         }
@@ -325,6 +335,7 @@ impl Session {
         }
         if self.motion.hold.is_none_or(|hold| hold.alarmed) {
             self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
+            self.motion.waits_for_look = false;
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }
         if self.feedback.is_suspect() {
@@ -361,7 +372,10 @@ impl Session {
 
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
-        if self.feedback.is_doubted() {
+        // On a slow way the newest pose is old: where the joints must be by now follows from what they were told.
+        let is_slow = self.slowness.slowest().is_some();
+        let is_old = is_slow && !self.sample.angles_fresh(now, ANGLE_FRESH);
+        if self.feedback.is_doubted() || is_old {
             self.feedback.hold_targets(now)
         } else {
             hold_targets(&self.sample, now)
@@ -423,6 +437,10 @@ impl Session {
         cause: WriteCause,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
+        let reason = Refusal::NotIdentified;
+        let Some(permitted) = self.status.series.permit(write, cause) else {
+            return Err(BusError::Refused { reason });
+        };
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
@@ -436,7 +454,7 @@ impl Session {
             cause,
             write: write.into(),
         });
-        let written = bus.write_unless(write, limit, urgent).await;
+        let written = bus.write_unless(permitted, limit, urgent).await;
         let answered = self.now();
         let took = answered.since(asked);
         self.tell(Record::Answered {
