@@ -164,12 +164,7 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
     );
     judge(
         is_over(foreign_replies, FOREIGN_PER_MILLE),
-        wrong(
-            format!(
-                "two devices answer as id {id}: {foreign_replies} replies came to {requests} requests that nobody had asked for"
-            ),
-            "take one of the two off the line and give it another id; if there is only one, it or its adapter sends replies twice or too late",
-        ),
+        two_devices(id, foreign_replies, requests),
     );
     judge(
         is_over(late_replies, TIMEOUTS_PER_MILLE),
@@ -187,13 +182,7 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
     );
     judge(
         is_over(refusals, REFUSALS_PER_MILLE),
-        wrong(
-            format!(
-                "{refusals} of {requests} requests were refused{}",
-                whole_blocks(measured)
-            ),
-            "a gateway that refuses now and then loses frames on the hand's side: check that cable; a hand that refuses the same registers always has none there",
-        ),
+        refused(measured, refusals, requests),
     );
     judge(
         implausible * 1000 > readings * IMPLAUSIBLE_PER_MILLE,
@@ -218,6 +207,23 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
             "report this as an error of the program",
         ),
     );
+}
+
+fn two_devices(id: u16, replies: u64, requests: u64) -> Finding {
+    wrong(
+        format!(
+            "two devices answer as id {id}: {replies} replies came to {requests} requests that nobody had asked for"
+        ),
+        "take one of the two off the line and give it another id; if there is only one, it or its adapter sends replies twice or too late",
+    )
+}
+
+fn refused(measured: &Measured, refusals: u64, requests: u64) -> Finding {
+    let blocks = whole_blocks(measured);
+    wrong(
+        format!("{refusals} of {requests} requests were refused{blocks}"),
+        "a gateway that refuses now and then loses frames on the hand's side: check that cable; a hand that refuses the same registers always has none there",
+    )
 }
 
 /// Names the blocks that were refused each time.
