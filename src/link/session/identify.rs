@@ -84,13 +84,18 @@ impl Session {
 
     async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let id = self.first_answer(bus).await?;
-        // A stop from here on belongs to this hand; what was wished before does not.
+        // Of what was wished before, only a stop belongs to this hand.
+        self.keep_pressed_stop();
         self.forget_wishes();
+        let known = self.status.quirks;
         let until = self.now().plus(self.identifies_within());
         let packing = self.ask_packing(bus, id.as_ref(), until).await?;
         bus.set_packing(packing);
         self.evidence = SeriesEvidence::default();
-        self.status.series = Series::Unknown;
+        // What was another series stays that until it shows otherwise: a stop that cuts the questions short is not for it.
+        if self.status.series == Series::Ours {
+            self.status.series = Series::Unknown;
+        }
         self.ask_series(bus, until).await?;
         self.status.quirks = Quirks {
             packing,
@@ -98,6 +103,11 @@ impl Session {
             ..self.ask_rest(bus, until).await?
         };
         self.evidence.fingertips(self.status.quirks.touch);
+        // A stop cut the questions short: what was known of this hand stays.
+        if self.is_stop_wanted() && known.hand_id == self.status.quirks.hand_id {
+            bus.set_packing(known.packing);
+            self.status.quirks = known;
+        }
         self.judge_series()
     }
 
@@ -144,7 +154,10 @@ impl Session {
     }
 
     fn judge_series(&mut self) -> Result<(), WireEnd> {
-        let series = self.evidence.verdict();
+        let series = match self.evidence.verdict() {
+            Series::Unknown if self.status.series == Series::Other => Series::Other,
+            verdict => verdict,
+        };
         if self.status.series != series {
             self.status.series = series;
             self.publish();
@@ -362,7 +375,11 @@ impl Session {
 
     /// True if there is no time for another question.
     fn hurried(&self, until: Moment) -> bool {
-        self.now() >= until || self.ends.wanted.borrow().stop
+        self.now() >= until || self.is_stop_wanted()
+    }
+
+    fn is_stop_wanted(&self) -> bool {
+        self.ends.wanted.borrow().stop || self.has_pending_stop()
     }
 }
 
