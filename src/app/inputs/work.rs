@@ -153,7 +153,7 @@ impl HandInputs {
             side,
             allowed,
             clock: env.clock,
-            stop: Arc::new(move || stops.stop()),
+            stop: Arc::new(move || drop(stops.stop())),
             wake: Arc::clone(&env.wake),
         };
         let joined = DdsNode::open(&place).map(|node| JoinedDds {

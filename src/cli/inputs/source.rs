@@ -184,7 +184,7 @@ impl FollowSource {
             side: card.side,
             allowed: allowed.limits,
             clock,
-            stop: Arc::new(move || stops.stop()),
+            stop: Arc::new(move || drop(stops.stop())),
             wake: Arc::new(|| ()),
         };
         let follows = allowed.moves;

@@ -41,7 +41,7 @@ fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsS
         clock: stage.clock(),
         stop: {
             let link = stage.link().clone();
-            Arc::new(move || link.stop())
+            Arc::new(move || drop(link.stop()))
         },
         wake: Arc::new(|| ()),
     };
