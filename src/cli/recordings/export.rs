@@ -365,6 +365,12 @@ impl Done {
             if let Some(words) = lost(&recording.damage) {
                 say(&format!("{} is damaged: {words}", file.path().display()));
             }
+            if recording.rows == 0 && files.len() > 1 {
+                say(&format!(
+                    "there is nothing to export of {}",
+                    file.path().display()
+                ));
+            }
             all.rows += recording.rows;
             all.damage.add(&recording.damage);
         }
@@ -380,10 +386,16 @@ impl Done {
         }
         if is_standard(&args.out) {
             say(&format!("{} {}", all.rows, form.rows()));
-            Ok(())
         } else {
-            out.result(args.json, &object, [line])
+            out.result(args.json, &object, [line])?;
         }
+        if all.rows == 0 {
+            bail!(
+                "there is nothing to export: no {} in this stretch; 'handscope info' tells what a recording holds",
+                form.rows()
+            );
+        }
+        Ok(())
     }
 }
 

@@ -360,6 +360,7 @@ fn not_opened(look: Look, why: &OpenError) -> String {
         OpenError::NotMcap => recordings::NOT_MCAP,
         OpenError::Foreign => recordings::FOREIGN,
         OpenError::SeveralHands { hands } => return look.told(recordings::SEVERAL_HANDS, hands),
+        OpenError::TooMuch { .. } => recordings::TOO_MUCH,
         OpenError::Empty => recordings::EMPTY,
     };
     look.say(words).to_owned()

@@ -24,6 +24,8 @@ mod interop;
 #[cfg(unix)]
 mod loss;
 #[cfg(unix)]
+mod of_others;
+#[cfg(unix)]
 mod overshoot;
 mod params;
 mod pictures;
