@@ -391,8 +391,7 @@ impl Done {
         }
         if all.rows == 0 {
             bail!(
-                "there is nothing to export: no {} in this stretch; 'handscope info' tells what a recording holds",
-                form.rows()
+                "nothing was exported: there is nothing to export in this stretch; 'handscope info' shows what a recording holds"
             );
         }
         Ok(())

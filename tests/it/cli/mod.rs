@@ -24,8 +24,9 @@ mod interop;
 #[cfg(unix)]
 mod loss;
 #[cfg(unix)]
-mod of_others;
+mod no_result;
 #[cfg(unix)]
+mod of_others;
 mod overshoot;
 mod params;
 mod pictures;
