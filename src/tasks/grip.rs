@@ -1,7 +1,7 @@
 //! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to
 //! the gap or to what stands between them.
 
-use crate::hand::gap::{Gap, gap_on_path, held_gap};
+use crate::hand::gap::{Gap, PinchGap, held_gap, pinch_gap};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
@@ -47,6 +47,8 @@ pub struct GripStart {
     pub lease: Lease,
     /// What was read until now.
     pub seen: HandSample,
+    /// What tells the grip.
+    pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
 }
@@ -79,8 +81,8 @@ pub struct GripReport {
     pub end: GripEnd,
     /// Why the hand was not armed any more then, if it was not.
     pub disarmed: Option<Disarmed>,
-    /// Between the pads then, in mm by the model; `None` where they do not face each other, or angles are old.
-    pub gap_mm: Option<f32>,
+    /// What is between the pads then, by the model; `None` where they do not face each other, or angles are old.
+    pub gap: Option<PinchGap>,
     /// What the hand gripped then.
     pub grip: Grip,
     /// What feedback says of the stop that followed, if one did.
@@ -98,7 +100,7 @@ pub async fn grip<H: TaskHand>(
     let mut run = GripRun {
         hand,
         sample: start.seen,
-        estimator: GripEstimator::default(),
+        estimator: start.grip.clone(),
         setpoints: SentSetpoints::default(),
         legs: None,
         sent: start.clock.now(),
@@ -144,9 +146,9 @@ pub async fn grip<H: TaskHand>(
     GripReport {
         end,
         disarmed,
-        gap_mm: run
+        gap: run
             .angles()
-            .and_then(|angles| gap_on_path(&angles.map(f32::from))),
+            .and_then(|angles| pinch_gap(&angles.map(f32::from))),
         grip: run.estimator.grip(),
         stop,
     }

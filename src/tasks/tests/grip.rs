@@ -2,6 +2,7 @@
 
 use crate::hand::feedback::tactile::TactileBlock;
 use crate::hand::gap::Gap;
+use crate::hand::grip::GripEstimator;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, HandSample, PerDof, Setpoints,
     Speed, Status, Target, Timed,
@@ -42,6 +43,7 @@ impl Bench {
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
+            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         let (end, ended) = oneshot::channel::<()>();
@@ -213,7 +215,7 @@ async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
     bench.at(end, false, 3).await;
     let report = bench.task.await.unwrap();
     assert_eq!((report.end, report.stop), (GripEnd::Reached, None));
-    assert!((report.gap_mm.unwrap() - 30.0).abs() < 0.2);
+    assert!((report.gap.unwrap().mm - 30.0).abs() < 0.2);
     assert_eq!(bench.hand.asked(), [Asked::Disarm]);
 }
 
@@ -226,7 +228,7 @@ async fn what_thumb_and_index_hold_ends_it_with_its_size() {
     bench.at(angles(45.0), true, 3).await;
     let report = bench.task.await.unwrap();
     assert_eq!(report.end, GripEnd::Held);
-    assert!((report.gap_mm.unwrap() - 45.0).abs() < 0.2);
+    assert!((report.gap.unwrap().mm - 45.0).abs() < 0.2);
     let asked = bench.hand.asked();
     assert_eq!(asked.last(), Some(&Asked::Disarm));
     assert!(!asked.contains(&Asked::Stop), "it goes on holding");
@@ -244,7 +246,7 @@ async fn what_is_in_the_way_and_not_held_is_told_apart() {
     let bench = Bench::start();
     bench.at(PerDof::splat(400), false, 60).await;
     let report = bench.task.await.unwrap();
-    assert_eq!((report.end, report.gap_mm), (GripEnd::NotOpened, None));
+    assert_eq!((report.end, report.gap), (GripEnd::NotOpened, None));
     assert!(report.stop.is_some());
 }
 
