@@ -32,7 +32,7 @@ impl FleetState {
             domain: 0,
         };
         let opened = DdsNode::open(&place)
-            .and_then(|node| FleetList::open(&node, env.clock, Arc::clone(&env.wake)));
+            .map(|node| FleetList::open(&node, env.clock, Arc::clone(&env.wake)));
         match opened {
             Ok(list) => self.list = Some(list),
             Err(error) => self.refused = Some(error),

@@ -11,7 +11,7 @@ use crate::record::file::format::encode::EntryEncoder;
 use crate::record::file::format::topic::Topic;
 use crate::record::{Entry, Record};
 use crate::share::fleet::{FleetCard, FleetTeller};
-use crate::transport::dds::{DdsError, DdsNode, DdsTopic, DdsWriter};
+use crate::transport::dds::{DdsNode, DdsTopic, DdsWriter};
 use serde::Serialize;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::watch;
@@ -102,11 +102,8 @@ pub struct DdsPublisher {
 
 impl DdsPublisher {
     /// Tells from now on, for as long as the link is open; it does not keep it open. Must be called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the writers.
-    pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Result<Self, DdsError> {
-        let writers = Writers::open(node, side)?;
+    pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
+        let writers = Writers::open(node, side);
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
         let (told, view) = watch::channel(DdsTold::default());
@@ -117,10 +114,10 @@ impl DdsPublisher {
             told,
         };
         let entries = LinkEntries::new(link.observe(), link.clock());
-        Ok(Self {
+        Self {
             told: view,
             _task: AbortOnDropHandle::new(tokio::spawn(telling.run(entries))),
-        })
+        }
     }
 
     /// What was told so far.
@@ -140,15 +137,12 @@ pub struct SharedOnDds {
 
 impl SharedOnDds {
     /// Tells of this hand there from now on. Must be called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the writers.
-    pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
-        Ok(Self {
-            publisher: DdsPublisher::open(&node, link, card.side)?,
-            teller: FleetTeller::open(&node, link, card)?,
+    pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
+        Self {
+            publisher: DdsPublisher::open(&node, link, card.side),
+            teller: FleetTeller::open(&node, link, card),
             node,
-        })
+        }
     }
 
     /// What was told so far.
@@ -172,7 +166,7 @@ struct Writers {
 }
 
 impl Writers {
-    fn open(node: &DdsNode, side: Side) -> Result<Self, DdsError> {
+    fn open(node: &DdsNode, side: Side) -> Self {
         let letter = match side {
             Side::Left => 'l',
             Side::Right => 'r',
@@ -182,19 +176,19 @@ impl Writers {
         let model = node.lasting_writer(&DdsTopic {
             name: "rt/robot_description".into(),
             type_name: "std_msgs::msg::dds_::String_".into(),
-        })?;
+        });
         // Kept for those that come; nobody reads it yet who could be too slow.
         let _kept = model.send(cdr::encode(&urdf(side)));
-        Ok(Self {
+        Self {
             _model: model,
             state: node.writer(&DdsTopic {
                 name: format!("rt/inspire_hand/state/{letter}"),
                 type_name: "inspire::inspire_hand_state".into(),
-            })?,
-            joints: node.writer(&ros_topic(Topic::Joints))?,
-            touch: [little?, ring?, middle?, index?, thumb?],
-            grip: node.writer(&ros_topic(Topic::Grip))?,
-        })
+            }),
+            joints: node.writer(&ros_topic(Topic::Joints)),
+            touch: [little, ring, middle, index, thumb],
+            grip: node.writer(&ros_topic(Topic::Grip)),
+        }
     }
 }
 

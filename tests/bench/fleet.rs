@@ -53,7 +53,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     };
     let (link, _records) = link::open(config, runtime.handle());
     let node = node()?;
-    let mut list = FleetList::open(&node, clock, Arc::new(|| ()))?;
+    let mut list = FleetList::open(&node, clock, Arc::new(|| ()));
     let programs = (0..PROGRAMS).map(|program| start(program, &link));
     let mut programs: Vec<Program> = programs.collect::<Result<_, _>>()?;
     let all = |hands: &[FleetHand]| hands.len() == HANDS;
@@ -121,8 +121,10 @@ fn start(program: usize, link: &LinkHandle) -> Result<Program, Failure> {
     let node = node()?;
     let own = (0..HANDS).filter(|hand| hand % PROGRAMS == program);
     let hands = own.map(|hand| FleetTeller::open(&node, link, card(&format!("hand {hand}"))));
-    let hands = hands.collect::<Result<_, _>>()?;
-    Ok(Program { _node: node, hands })
+    Ok(Program {
+        hands: hands.collect(),
+        _node: node,
+    })
 }
 
 fn card(name: &str) -> FleetCard {

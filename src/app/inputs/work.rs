@@ -154,13 +154,10 @@ impl HandInputs {
             wake: Arc::clone(&env.wake),
         };
         let side = card.side;
-        let joined = DdsNode::open(&place).and_then(|node| {
-            let messages = node.reader(&ctrl::topic(side), ctrl::KEPT)?;
-            Ok(JoinedDds {
-                others: OtherFollowers::open(&node, side, env.clock)?,
-                source: DdsSource::open(config, messages),
-                shared: SharedOnDds::open(node, link, card)?,
-            })
+        let joined = DdsNode::open(&place).map(|node| JoinedDds {
+            others: OtherFollowers::open(&node, side, env.clock),
+            source: DdsSource::open(config, node.reader(&ctrl::topic(side), ctrl::KEPT)),
+            shared: SharedOnDds::open(node, link, card),
         });
         match joined {
             Ok(joined) => self.dds = Some(joined),

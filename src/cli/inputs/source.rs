@@ -172,20 +172,20 @@ impl FollowSource {
         (link, clock): (&LinkHandle, Clock),
         allowed: Allowed,
     ) -> anyhow::Result<Self> {
-        let others = OtherFollowers::open(&node, card.side, clock)?;
+        let others = OtherFollowers::open(&node, card.side, clock);
         if allowed.moves
             && let Some(other) = others.was_there().await
         {
             bail!(followed(&other));
         }
-        let messages = node.reader(&ctrl::topic(card.side), ctrl::KEPT)?;
+        let messages = node.reader(&ctrl::topic(card.side), ctrl::KEPT);
         let config = DdsSourceConfig {
             allowed: allowed.limits,
             clock,
             wake: Arc::new(|| ()),
         };
         let follows = allowed.moves;
-        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card })?;
+        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card });
         Ok(Self::Dds(DdsSource::open(config, messages), out, others))
     }
 

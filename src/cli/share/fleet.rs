@@ -38,7 +38,7 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
         domain: args.domain,
     })?;
     let clock = Clock::start();
-    let mut list = FleetList::open(&node, clock, Arc::new(|| ()))?;
+    let mut list = FleetList::open(&node, clock, Arc::new(|| ()));
     let over = async {
         match args.length {
             Some(length) => sleep(length).await,

@@ -115,7 +115,6 @@ async fn serve(
     };
     let node = args.dds.join("read this hand")?;
     let dds = node.map(|node| SharedOnDds::open(node, link, card));
-    let dds = dds.transpose()?;
     if let Some(dds) = dds.as_ref().filter(|_| !args.stdio) {
         out.line(&dds::ready(dds))?;
     }

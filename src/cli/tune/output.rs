@@ -3,7 +3,7 @@
 use crate::cli::tune::args::TuneArgs;
 use crate::tasks::series::stop_words;
 use crate::tasks::series::{SeriesReport, Stop};
-use crate::trials::search::{Claim, Finding, FoundApproach, Tried, Untold};
+use crate::trials::search::{Claim, ComparedThreshold, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 
 /// How a search ended.
@@ -47,6 +47,7 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "peaks_g": claim.map(peaks),
         "joints": claim.map(|claim| &claim.joints),
         "tried": report.tried,
+        "compared": report.finding.as_ref().map(|finding| &finding.compared),
         "untold": untold(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
         "aborted": report.series.aborted.map(|why| why.to_string()),
         "stop": stop,
@@ -104,6 +105,7 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
             report.tried.len()
         ),
     ];
+    lines.extend(compared(report).map(ToString::to_string));
     lines.extend(untold(report).iter().map(|own| format!("not told: {own}")));
     lines
 }
@@ -136,6 +138,12 @@ fn untold(report: &SearchReport) -> &[Untold] {
         .finding
         .as_ref()
         .map_or(&[], |finding| &finding.untold)
+}
+
+/// What was found out of the drives, where there is an offset that it matters for.
+fn compared(report: &SearchReport) -> impl Iterator<Item = &ComparedThreshold> {
+    let all = report.finding.iter().flat_map(|finding| &finding.compared);
+    all.filter(|own| own.is_notable() && own.compared.is_some())
 }
 
 /// Of each confirming close the highest of its joints, g.

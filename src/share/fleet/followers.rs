@@ -3,7 +3,7 @@
 use crate::hand::kinematics::Side;
 use crate::link::Clock;
 use crate::share::fleet::{FleetBook, FleetCard, FleetHand, topic};
-use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
+use crate::transport::dds::{DdsMessage, DdsNode};
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{interval, timeout};
@@ -25,11 +25,8 @@ pub struct OtherFollowers {
 
 impl OtherFollowers {
     /// Listens from now on. Must be called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the reader.
-    pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Result<Self, DdsError> {
-        let messages = node.reader(&topic(), KEPT)?;
+    pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Self {
+        let messages = node.reader(&topic(), KEPT);
         let (told, seen) = watch::channel(None);
         let listening = Listening {
             node: node.clone(),
@@ -37,10 +34,10 @@ impl OtherFollowers {
             clock,
             told,
         };
-        Ok(Self {
+        Self {
             seen,
             _task: AbortOnDropHandle::new(tokio::spawn(listening.run(messages))),
-        })
+        }
     }
 
     /// One that is there now.

@@ -2,7 +2,7 @@
 
 use crate::link::{Clock, Wake};
 use crate::share::fleet::{FleetBook, FleetHand, topic};
-use crate::transport::dds::{DdsError, DdsMessage, DdsNode};
+use crate::transport::dds::{DdsMessage, DdsNode};
 use std::net::Ipv4Addr;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
@@ -25,22 +25,19 @@ pub struct FleetList {
 
 impl FleetList {
     /// Listens from now on; `wake` is called when the list changed. Must be called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the reader.
-    pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Result<Self, DdsError> {
-        let messages = node.reader(&topic(), KEPT)?;
+    pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Self {
+        let messages = node.reader(&topic(), KEPT);
         let (told, shown) = watch::channel(Vec::new());
         let interface = node.address();
         let listening = listen(messages, interface, clock, move |list| {
             told.send_replace(list);
             wake();
         });
-        Ok(Self {
+        Self {
             interface,
             shown,
             _task: AbortOnDropHandle::new(tokio::spawn(listening)),
-        })
+        }
     }
 
     /// The address of the interface at which it listens.

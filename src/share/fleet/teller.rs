@@ -2,7 +2,7 @@
 
 use crate::link::{LinkHandle, LinkStatus};
 use crate::share::fleet::{FleetCard, FleetHand, TOLD_EACH, reachable, topic};
-use crate::transport::dds::{DdsError, DdsNode, DdsWriter};
+use crate::transport::dds::{DdsNode, DdsWriter};
 use std::net::Ipv4Addr;
 use tokio::sync::watch;
 use tokio::time::sleep;
@@ -18,20 +18,17 @@ pub struct FleetTeller {
 impl FleetTeller {
     /// Tells of this hand from now on, with what its link says of itself; of its gateway only if those who listen reach it. Must be
     /// called within a tokio runtime.
-    ///
-    /// # Errors
-    /// [`DdsError`], if the library does not make the writer.
-    pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Result<Self, DdsError> {
+    pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
         let telling = Publishing {
-            writer: node.writer(&topic())?,
+            writer: node.writer(&topic()),
             interface: node.address(),
             status: link.observe().status,
         };
         let (card, cards) = watch::channel(card);
-        Ok(Self {
+        Self {
             card,
             _task: AbortOnDropHandle::new(tokio::spawn(telling.run(cards))),
-        })
+        }
     }
 
     /// Says this of it from now on.

@@ -228,7 +228,6 @@ chinese! {
     fn dds_zh(&DdsError) as dds {
         DdsError::NoInterface { name } => "本机没有带 IPv4 地址的网络接口 {name}：可用 'ip address' 查看。";
         DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_error_zh(&error.into());
-        DdsError::Library { error } => "DDS 未能启动：“{error}”。";
     }
 
     fn file_cause_zh(&FileCause) {

@@ -229,7 +229,7 @@ impl Place {
             name: "rt/inspire_hand/ctrl/r".into(),
             type_name: "inspire::inspire_hand_ctrl".into(),
         };
-        let writer = node.writer(&topic).unwrap();
+        let writer = node.writer(&topic);
         drop(inside);
         let domain = domain.to_string();
         let process = self.start(

@@ -41,7 +41,7 @@ fn states(node: &DdsNode) -> mpsc::Receiver<DdsMessage> {
         name: "rt/inspire_hand/state/l".into(),
         type_name: "inspire::inspire_hand_state".into(),
     };
-    node.reader(&topic, 64).unwrap()
+    node.reader(&topic, 64)
 }
 
 type Lists = (
@@ -63,7 +63,7 @@ async fn states_are_told_while_the_hand_answers_and_not_a_moment_longer() {
         config("tcp:127.0.0.1:1", to_hand(hand.clone())),
         &Handle::current(),
     );
-    let publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left).unwrap();
+    let publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left);
     let message = timeout(PATIENCE, heard.recv()).await.unwrap().unwrap();
     let (_, angle, _, _, err, _, temperature): Lists = cdr::decode(&message.bytes).unwrap();
     assert_eq!((angle, err), (vec![1000; 6], vec![0; 6]));
@@ -91,12 +91,12 @@ async fn the_grip_is_told_as_a_recording_has_it() {
         name: "rt/handscope/grip".into(),
         type_name: "handscope_msgs::msg::dds_::Grip_".into(),
     };
-    let mut heard = listens.unwrap().reader(&topic, 64).unwrap();
+    let mut heard = listens.unwrap().reader(&topic, 64);
     let (link, _records): (LinkHandle, _) = link::open(
         config("tcp:127.0.0.1:1", to_hand(hand::plain())),
         &Handle::current(),
     );
-    let publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left).unwrap();
+    let publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left);
     let first = timeout(PATIENCE, async {
         loop {
             let message = heard.recv().await.unwrap();
@@ -151,17 +151,220 @@ fn nobody_listens_before_it_is_opened_or_after_it_is_closed() {
     }
 }
 
-/// UDP sockets of a process.
-fn udp_sockets(id: u32) -> usize {
+/// Where a process listens for UDP, as `ADDRESS:PORT` in hex of the machine's byte order.
+fn udp_places(id: u32) -> Vec<String> {
     let table = fs::read_to_string(format!("/proc/{id}/net/udp")).unwrap();
-    let fields = |line: &str| line.split_whitespace().nth(9).map(str::to_owned);
-    let all: Vec<String> = table.lines().skip(1).filter_map(fields).collect();
     let open = fs::read_dir(format!("/proc/{id}/fd")).unwrap();
     let open = open.filter_map(|entry| fs::read_link(entry.ok()?.path()).ok());
-    let names = open.filter_map(|link| Some(link.to_str()?.to_owned()));
-    names
-        .filter(|name| all.iter().any(|inode| *name == format!("socket:[{inode}]")))
-        .count()
+    let open: Vec<String> = open
+        .filter_map(|link| Some(link.to_str()?.to_owned()))
+        .collect();
+    let place = |line: &str| {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        let name = format!("socket:[{}]", fields[9]);
+        open.contains(&name).then(|| fields[1].to_owned())
+    };
+    table.lines().skip(1).filter_map(place).collect()
+}
+
+#[test]
+fn it_listens_at_its_interface_and_nowhere_else() {
+    if !Path::new("/proc/self/net/udp").exists() {
+        return skipped("sockets of a process", "this system does not list them");
+    }
+    let mut running = start(&["share", "--hand", "sim:", "--dds", "--domain", "47"]);
+    running.until(|line| line == "ready dds 127.0.0.1");
+    let places = udp_places(running.id());
+    assert_eq!(places.len(), 3, "{places:?}");
+    let own = u32::from_ne_bytes([127, 0, 0, 1]);
+    let group = u32::from_ne_bytes([239, 255, 0, 1]);
+    for place in &places {
+        let (address, _) = place.split_once(':').unwrap();
+        let address = u32::from_str_radix(address, 16).unwrap();
+        assert!([own, group].contains(&address), "{places:?}");
+    }
+}
+
+/// Resident memory of a process in MB.
+fn resident_mb(id: u32) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap();
+    let line = status
+        .lines()
+        .find(|line| line.starts_with("VmRSS:"))
+        .unwrap();
+    let kilobytes = line.split_whitespace().nth(1).unwrap();
+    kilobytes.parse::<u64>().unwrap() / 1024
+}
+
+/// A heartbeat of 2^40 messages, in the name of a participant.
+fn heartbeat(prefix: &[u8], writer: [u8; 4]) -> Vec<u8> {
+    let range = [[0_u32, 1], [256, 0]].concat();
+    let range = range.into_iter().flat_map(u32::to_le_bytes).collect();
+    let parts: [Vec<u8>; 6] = [
+        b"RTPS\x02\x02\x00\x00".to_vec(),
+        prefix.to_vec(),
+        vec![7, 1, 28, 0],
+        [[0; 4], writer].concat(),
+        range,
+        vec![1, 0, 0, 0],
+    ];
+    parts.concat()
+}
+
+/// Datagrams that others sent, each changed at some places and in the name of this participant.
+fn forged(prefix: &[u8], many: usize) -> impl Iterator<Item = Vec<u8>> {
+    let lines = include_str!("../../interop/rtps_packets.txt").lines();
+    let byte = |two: &[u8]| u8::from_str_radix(str::from_utf8(two).unwrap(), 16).unwrap();
+    let packet = |line: &str| -> Vec<u8> { line.as_bytes().chunks(2).map(byte).collect() };
+    let packets: Vec<Vec<u8>> = lines
+        .filter(|line| !line.starts_with('#'))
+        .map(packet)
+        .collect();
+    let mut random = fastrand::Rng::with_seed(52);
+    (0..many).map(move |_| {
+        let mut packet = packets[random.usize(..packets.len())].clone();
+        packet[8..20].copy_from_slice(prefix);
+        for _ in 0..random.usize(1..4) {
+            let at = random.usize(20..packet.len() - 4);
+            let value = [0, 1, u32::MAX, 1 << 31, 1 << 8, random.u32(..)][random.usize(..6)];
+            packet[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        }
+        packet
+    })
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn forged_words_take_no_memory_and_the_program_ends_when_it_is_told_to() {
+    if !Path::new("/proc/self/status").exists() {
+        return skipped("memory of a process", "this system does not tell it");
+    }
+    let mut running = start(&[
+        "share", "--hand", "sim:", "--dds", "--domain", "46", "--side", "left",
+    ]);
+    running.until(|line| line == "ready dds 127.0.0.1");
+    let known = DdsNode::open(&place(46)).unwrap();
+    let mut heard = states(&known);
+    timeout(PATIENCE, heard.recv()).await.unwrap().unwrap();
+    // What it writes tells how it is called.
+    let topic = DdsTopic {
+        name: "rt/own".into(),
+        type_name: "t::T".into(),
+    };
+    let mut own = known.reader(&topic, 1);
+    let writer = known.writer(&topic);
+    assert!(writer.send(vec![0, 1, 0, 0]));
+    let name = own.recv().await.unwrap().from.0;
+    let prefix = &name[..12];
+    let before = resident_mb(running.id());
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let first = 7400 + 250 * 46;
+    let send = |packet: &[u8]| {
+        for port in [first + 10, first + 11, first + 12, first + 13] {
+            // Nobody may listen at some of them.
+            let _sent = socket.send_to(packet, ("127.0.0.1", port));
+        }
+    };
+    for writer in [
+        [0, 0, 3, 0xc2],
+        [0, 0, 4, 0xc2],
+        [0, 2, 0, 0xc2],
+        [0, 0, 1, 3],
+    ] {
+        let packet = heartbeat(prefix, writer);
+        assert_eq!(packet.len(), 52);
+        send(&packet);
+    }
+    for (nth, packet) in forged(prefix, 20_000).enumerate() {
+        send(&packet);
+        if nth % 50 == 0 {
+            sleep(Duration::from_millis(1)).await;
+        }
+    }
+    sleep(Duration::from_secs(2)).await;
+    let after = resident_mb(running.id());
+    println!("{before} MB before, {after} MB after");
+    assert!(after < before + 60, "{before} MB before, {after} MB after");
+    // It is still heard by one that comes new.
+    let mut new = states(&DdsNode::open(&place(46)).unwrap());
+    timeout(PATIENCE, new.recv()).await.unwrap().unwrap();
+    running.signal(Signal::SIGINT);
+    let asked = Instant::now();
+    running.end().ok();
+    // A second, and what a busy machine adds.
+    assert!(
+        asked.elapsed() < Duration::from_secs(4),
+        "{:?}",
+        asked.elapsed()
+    );
+}
+
+/// The same, read and written by DDS of other authors.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn dds_by_other_authors_hears_ours_and_is_heard() {
+    use futures::StreamExt as _;
+    use rustdds::no_key::{DataReader, DataWriter};
+    use rustdds::policy::{Durability, History, Reliability};
+    use rustdds::{CDRDeserializerAdapter, CDRSerializerAdapter, TopicKind};
+    let ours = DdsNode::open(&place(48)).unwrap();
+    let theirs = rustdds::DomainParticipantBuilder::new(48)
+        .with_only_networks([std::net::Ipv4Addr::LOCALHOST])
+        .build()
+        .unwrap();
+    let qos = |durability| {
+        rustdds::QosPolicyBuilder::new()
+            .durability(durability)
+            .history(History::KeepLast { depth: 100 })
+            .reliability(Reliability::Reliable {
+                max_blocking_time: rustdds::Duration::ZERO,
+            })
+            .build()
+    };
+    let volatile = qos(Durability::Volatile);
+    let there = |name: &str, qos| {
+        let topic = theirs.create_topic(name.into(), "t::T".into(), qos, TopicKind::NoKey);
+        topic.unwrap()
+    };
+    let reads = theirs.create_subscriber(&volatile).unwrap();
+    let writes = theirs.create_publisher(&volatile).unwrap();
+    let here = |name: &str| DdsTopic {
+        name: name.into(),
+        type_name: "t::T".into(),
+    };
+    let kept = ours.lasting_writer(&here("kept"));
+    assert!(kept.send([[0, 1, 0, 0], 5_u32.to_le_bytes()].concat()));
+    let lasting = qos(Durability::TransientLocal);
+    let topic = there("kept", &lasting);
+    let late: DataReader<u32, CDRDeserializerAdapter<u32>> =
+        reads.create_datareader_no_key(&topic, None).unwrap();
+    let topic = there("back", &volatile);
+    let writer: DataWriter<u32, CDRSerializerAdapter<u32>> =
+        writes.create_datawriter_no_key(&topic, None).unwrap();
+    let mut back = ours.reader(&here("back"), 64);
+    let mut late = late.async_sample_stream();
+    let first = timeout(PATIENCE, late.next()).await.unwrap().unwrap();
+    assert_eq!(first.unwrap().into_value(), 5);
+    let echo = async {
+        let mut number = 0;
+        loop {
+            writer.write(number, None).unwrap();
+            number += 1;
+            sleep(Duration::from_millis(10)).await;
+        }
+    };
+    let heard = async {
+        let mut all = Vec::new();
+        while all.len() < 100 {
+            let bytes = back.recv().await.unwrap().bytes;
+            all.push(u32::from_le_bytes(bytes[4..8].try_into().unwrap()));
+        }
+        all
+    };
+    let all = tokio::select! {
+        all = timeout(PATIENCE, heard) => all.unwrap(),
+        () = echo => unreachable!(),
+    };
+    let expected: Vec<u32> = (all[0]..all[0] + 100).collect();
+    assert_eq!(all, expected);
 }
 
 #[test]
@@ -176,7 +379,7 @@ fn it_is_off_unless_a_person_wants_it() {
     ] {
         let mut running = start(&[words, &["--hand", "sim:"]].concat());
         assert!(running.line().starts_with(ready));
-        assert_eq!(udp_sockets(running.id()), 0, "{words:?}");
+        assert_eq!(udp_places(running.id()), [""; 0], "{words:?}");
     }
     for words in [
         &["share"][..],
@@ -185,7 +388,7 @@ fn it_is_off_unless_a_person_wants_it() {
     ] {
         let mut running = start(&[words, &["--hand", "sim:"], dds].concat());
         running.until(|line| line == "ready dds 127.0.0.1");
-        assert!(udp_sockets(running.id()) > 0, "{words:?}");
+        assert!(!udp_places(running.id()).is_empty(), "{words:?}");
         running.signal(Signal::SIGINT);
         running.end().ok();
     }

@@ -23,7 +23,7 @@ fn node(domain: u16) -> DdsNode {
 }
 
 fn look(node: &DdsNode) -> FleetList {
-    FleetList::open(node, Clock::start(), Arc::new(|| ())).unwrap()
+    FleetList::open(node, Clock::start(), Arc::new(|| ()))
 }
 
 fn card(name: &str, place: &Place) -> FleetCard {
@@ -57,7 +57,7 @@ async fn a_shared_hand_is_listed_as_it_changes_and_not_longer_than_it_is_there()
     let (here, there) = (node(51), node(51));
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
-    let teller = FleetTeller::open(&there, &place.link, card("egg", &place)).unwrap();
+    let teller = FleetTeller::open(&there, &place.link, card("egg", &place));
     let hands = listed(&mut list, |hands| !hands.is_empty()).await;
     let expected = FleetHand {
         card: card("egg", &place),
@@ -89,7 +89,7 @@ async fn a_hundred_hands_are_listed_right_after_each_change() {
         let node = node(52);
         let hands = (0..10).map(|hand| {
             let card = card(&format!("{program} {hand}"), &place);
-            FleetTeller::open(&node, &place.link, card).unwrap()
+            FleetTeller::open(&node, &place.link, card)
         });
         let hands = hands.collect();
         programs.push((node, hands));
@@ -116,8 +116,8 @@ async fn nonsense_on_the_topic_is_survived_and_listed_as_nothing() {
     let (here, there) = (node(53), node(53));
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
-    let noise = there.writer(&handscope::share::fleet::topic()).unwrap();
-    let teller = FleetTeller::open(&there, &place.link, card("egg", &place)).unwrap();
+    let noise = there.writer(&handscope::share::fleet::topic());
+    let teller = FleetTeller::open(&there, &place.link, card("egg", &place));
     listed(&mut list, |hands| hands.len() == 1).await;
     let mut seed = fastrand::Rng::with_seed(7);
     let good = FleetHand {
@@ -161,7 +161,7 @@ async fn watch(hand: &FleetHand) -> (LinkHandle, Records) {
 async fn told(place: &Place) -> FleetHand {
     let (here, there) = (node(54), node(54));
     let mut list = look(&here);
-    let _teller = FleetTeller::open(&there, &place.link, card("egg", place)).unwrap();
+    let _teller = FleetTeller::open(&there, &place.link, card("egg", place));
     let hands = listed(&mut list, |hands| hands.len() == 1).await;
     hands[0].clone()
 }

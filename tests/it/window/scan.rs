@@ -241,7 +241,7 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
     };
     let (interface, domain) = ("127.0.0.1".into(), 0);
     let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
-    let other = node.writer(&fleet::topic()).unwrap();
+    let other = node.writer(&fleet::topic());
     bench.type_into("Interface of DDS", "nowhere0");
     bench.click_button("Look for them");
     bench.run(100);
@@ -287,7 +287,7 @@ fn a_hand_elsewhere_that_follows_on_dds_keeps_this_one_from_following_too() {
     };
     let (interface, domain) = ("127.0.0.1".into(), 0);
     let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
-    let writer = node.writer(&fleet::topic()).unwrap();
+    let writer = node.writer(&fleet::topic());
     let hand = FleetHand {
         card: FleetCard {
             host: "lab".into(),
