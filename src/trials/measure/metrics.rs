@@ -20,7 +20,7 @@ use crate::hand::{Angle, Dof, Status};
 use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
 use crate::trials::measure::detect::{RestLevel, begins, passes, rest};
 use crate::trials::measure::slip::{SlipEvent, slips};
-use crate::trials::measure::unseen::{PeakDoubt, RiseSpan, Unseen, unseen};
+use crate::trials::measure::unseen::{PeakDoubt, RiseSpan, unseen};
 use crate::trials::plan::{TrialPlan, TrialSetting};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
 use serde::{Deserialize, Serialize};
@@ -225,7 +225,16 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
     let steady = steady.filter(|_| pressed);
     let held = stop.and_then(|stop| slips(curves, stop, end));
     let rate_hz = rate(&force, end);
-    let hidden = peak.and_then(|_| hidden(&force, contact.or(touch).zip(stop), rate_hz));
+    let rise = contact.or(touch).zip(stop).zip(rate_hz.zip(at_rest));
+    let rise = rise.map(|((contact_s, stop_s), (rate_hz, rest))| RiseSpan {
+        contact_s,
+        stop_s,
+        rate_hz,
+        noise_g: rest.sigma,
+    });
+    let hidden = rise
+        .filter(|_| peak.is_some())
+        .map(|rise| unseen(&force, rise));
     JointMetrics {
         dof,
         rest_force_g: at_rest.map(|rest| rest.level),
@@ -322,17 +331,6 @@ fn highest(curve: &TimeSeries, end: f64) -> Option<f64> {
         .between(0.0, end)
         .map(|point| point.v)
         .reduce(f64::max)
-}
-
-/// What the readings from the contact to the stop may not have shown.
-fn hidden(force: &TimeSeries, rise: Option<(f64, f64)>, rate_hz: Option<f64>) -> Option<Unseen> {
-    let (contact_s, stop_s) = rise?;
-    let span = RiseSpan {
-        contact_s,
-        stop_s,
-        rate_hz: rate_hz?,
-    };
-    Some(unseen(force, span))
 }
 
 fn is_clipped(raw: &TimeSeries, end: f64) -> bool {

@@ -11,8 +11,9 @@ const GAP_TIMES: f64 = 2.5;
 const PEAK_LATE_S: f64 = 0.05;
 /// A reading after the highest that is lower than this share of it: the impact was shorter than the time between two.
 const BRIEF_BELOW: f64 = 0.7;
-/// Of smaller peaks, g, a fall is noise.
-const BRIEF_LEAST_G: f64 = 50.0;
+/// So much lower, as a multiple of the noise and some grams, it is no noise.
+const BRIEF_SIGMAS: f64 = 6.0;
+const BRIEF_G: f64 = 20.0;
 
 /// Why the peak of a close may have been higher than any reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,6 +40,7 @@ pub struct RiseSpan {
     pub stop_s: f64,
     /// Readings a second.
     pub rate_hz: f64,
+    pub noise_g: f64,
 }
 
 /// What may have been missed from the contact to the stop, of a force above its rest. Between two readings that are far apart, or
@@ -58,10 +60,11 @@ pub fn unseen(force: &TimeSeries, span: RiseSpan) -> Unseen {
     let slopes = pairs().map(|(a, b)| (b.v - a.v) / (b.t - a.t).max(1e-3));
     let steepest = slopes.fold(0.0, f64::max);
     let peak = points.iter().map(|point| point.v).fold(0.0, f64::max);
+    let told = BRIEF_SIGMAS * span.noise_g + BRIEF_G;
     let mut unseen = Unseen::default();
     for (a, b) in pairs().filter(|(a, b)| b.t >= from && a.t <= to) {
         let apart = b.t - a.t;
-        let is_brief = peak >= BRIEF_LEAST_G && a.v >= peak && b.v < BRIEF_BELOW * peak;
+        let is_brief = a.v >= peak && b.v < BRIEF_BELOW * peak && a.v - b.v > told;
         if apart > GAP_S || is_brief {
             let missed = a.v.max(0.0) + steepest * apart - peak;
             unseen.missed_g = unseen.missed_g.max(missed);
@@ -83,6 +86,7 @@ mod tests {
         contact_s: 0.5,
         stop_s: 0.6,
         rate_hz: 100.0,
+        noise_g: 0.0,
     };
 
     /// 5000 g/s from 0.5 to 0.6 s, then nearly level, read where `keep` says so.

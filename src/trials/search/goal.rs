@@ -20,7 +20,7 @@ const FIRST_SHARE: f64 = 0.3;
 /// Closes that confirm a setting.
 pub const CLOSES_MIN: usize = 5;
 pub const CLOSES_MAX: usize = 100;
-pub const CLOSES: usize = 10;
+pub const CLOSES: usize = FREE_95;
 /// How far past the limit a force may be before the hand is stopped: a trial over the limit is told from a crash.
 const CEILING_SHARE: f64 = 1.4;
 const CEILING_MORE_G: f64 = 100.0;
