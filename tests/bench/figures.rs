@@ -31,7 +31,6 @@ mod memory;
     clippy::indexing_slicing,
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
     reason = "it is a file of the tests, which use more of it and may stop at what is wrong"
 )]
 mod other_hand;

@@ -2,16 +2,14 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use crate::trials::other_hand::{OtherBody, OtherHand};
+use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s};
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
-use handscope::link::{LinkConfig, Owner};
+use handscope::link::{LinkConfig, Owner, Stop};
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::tasks::series::{
-    RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, trials,
-};
+use handscope::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, arm_limits, trials};
 use handscope::trials::search::{
     Compared, Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch,
 };
@@ -171,6 +169,25 @@ fn the_threshold_is_below_what_is_to_be_held_where_the_drive_keeps_what_it_ran_p
         let claim = finding.result.unwrap();
         let (threshold, holds) = (claim.setting.force.get(), claim.joints[0].hold_g);
         assert!(threshold < 120 && holds >= 200.0, "{threshold} {holds}");
+    }
+}
+
+#[test]
+fn its_close_is_about_as_quick_as_the_best_of_a_grid_on_another_hand() {
+    for (seed, stiffness, counts_offset) in [(1, 25.0, true), (2, 12.0, false), (3, 45.0, true)] {
+        let body = OtherBody {
+            offset: 120.0,
+            counts_offset,
+            stiffness: (stiffness, 1.0),
+            ..OtherBody::default()
+        };
+        let claim = on_other_hand(body, seed).finding.unwrap().result.unwrap();
+        let best = best_close_s(body, f64::from(LIMIT), 200.0);
+        assert!(
+            claim.close_s < 1.12 * best,
+            "{seed}: {} {best}",
+            claim.close_s
+        );
     }
 }
 
