@@ -7,7 +7,6 @@ use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
-use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -24,7 +23,7 @@ impl Session {
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().priority);
         // Elsewhere requests of others are heard.
-        let is_tcp = matches!(self.dialled, Endpoint::Tcp { .. });
+        let is_tcp = self.dialled.host().is_some();
         let watched = is_tcp && self.status.armed.is_some();
         self.plan.watch_setpoints(watched, now);
         if self.motion.hold.is_none() {
@@ -117,6 +116,7 @@ impl Session {
         self.feedback.take(&self.sample, fresh);
         self.watch_feedback(&doubted);
         self.counters.fresh(fresh, now);
+        self.counters.judge(&self.sample, fresh);
         let sample = Arc::new(self.sample);
         self.tell(Record::Reading { sample, fresh });
         if fresh.contains(Group::Faults) {
