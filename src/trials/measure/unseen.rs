@@ -28,7 +28,7 @@ pub enum PeakDoubt {
 /// What readings of a rising force may not have shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Unseen {
-    /// What the peak may have been more, g.
+    /// What the peak may have been more, g, as far as the steepest rise that was read tells.
     pub missed_g: f64,
     pub doubt: Option<PeakDoubt>,
 }
@@ -53,8 +53,8 @@ pub fn unseen(force: &TimeSeries, span: RiseSpan) -> Unseen {
         .collect();
     let first = points.iter().rposition(|point| point.t < from);
     // The gap may be longer than what was looked at before the contact.
-    let before = force.between(f64::NEG_INFINITY, from).next_back();
-    let before = before.filter(|_| first.is_none());
+    let before = force.points().iter().rfind(|point| point.t < from);
+    let before = before.copied().filter(|_| first.is_none());
     let points: Vec<CurvePoint> = before.into_iter().chain(points).collect();
     let pairs = || points.iter().zip(points.iter().skip(1));
     let slopes = pairs().map(|(a, b)| (b.v - a.v) / (b.t - a.t).max(1e-3));

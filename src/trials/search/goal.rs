@@ -206,7 +206,10 @@ mod tests {
             (|w| w.limit_g = 2001, "30 and 2000"),
             (|w| w.hold_g = 401, "at most 400 g"),
             (|w| w.closes = 4, "5 and 100"),
-            (|w| w.distribution_free = true, "59 say 95 of 100"),
+            (
+                |w| (w.distribution_free, w.closes) = (true, 21),
+                "59 say 95 of 100",
+            ),
             (|w| w.close = PerDof::splat(None), "no joint takes part"),
         ] {
             let mut goal = good.clone();

@@ -321,7 +321,7 @@ mod tests {
         let still: Vec<_> = (0..300).map(|_| contacts(0.0, 25)).collect();
         assert!(told(still) <= 1);
         for creep in [1.0, -1.0] {
-            let creeping: Vec<_> = (0..100).map(|_| contacts(creep, 20)).collect();
+            let creeping: Vec<_> = (0..100).map(|_| contacts(creep, 25)).collect();
             assert!(told(creeping) >= 97);
             let Some(NoClaim::Creeps { counts, .. }) = contacts(creep, 40) else {
                 panic!("{creep}");
