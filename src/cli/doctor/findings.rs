@@ -1,6 +1,7 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
 use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
+use crate::link::priority;
 use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
 use crate::transport::{PortFacts, Route};
 use serde::Serialize;
@@ -14,6 +15,9 @@ const TIMEOUTS_PER_MILLE: u64 = 10;
 const CHECKSUMS_PER_MILLE: u64 = 1;
 /// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
+
+/// A stall of this computer that is longer costs a close its evidence.
+const STALL_HARMFUL: Duration = Duration::from_millis(50);
 
 #[derive(Serialize)]
 pub(crate) struct Finding {
@@ -41,6 +45,27 @@ fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
     }
 }
 
+/// What this computer itself did not manage.
+fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
+    let stats = &measured.stats;
+    if stats.longest_stall < STALL_HARMFUL {
+        return;
+    }
+    let priority = if priority::is_raised() {
+        ""
+    } else {
+        "; the system grants this program no priority: 'ulimit -e 30' or LimitNICE=-10 in its unit would let it have some"
+    };
+    found.push(hint(
+        format!(
+            "this computer was too busy to attend to the hand {} times, {} ms at the longest",
+            stats.stalls,
+            stats.longest_stall.as_millis()
+        ),
+        format!("close what else runs while the hand moves{priority}"),
+    ));
+}
+
 /// All findings, the worst first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     let mut found = Vec::new();
@@ -48,7 +73,10 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     match &checkup.answer {
         // The sentence says itself what to do.
         Err(why) => found.push(wrong(why, "")),
-        Ok(measured) => answers(measured, &mut found),
+        Ok(measured) => {
+            answers(measured, &mut found);
+            stalls(measured, &mut found);
+        }
     }
     let measured = checkup.answer.as_ref().ok();
     match &checkup.connection {
@@ -271,7 +299,13 @@ mod tests {
     #[test]
     fn each_trouble_has_its_own_words_and_advice() {
         type Change = fn(&mut Measured);
-        let cases: [(ConnectionFacts, Change, bool, &str); 9] = [
+        let cases: [(ConnectionFacts, Change, bool, &str); 10] = [
+            (
+                ConnectionFacts::BuiltIn,
+                |measured| measured.stats.longest_stall = Duration::from_millis(90),
+                false,
+                "90 ms at the longest",
+            ),
             (usb(Some(16)), |_| (), true, "/ttyT0/latency_timer"),
             (
                 usb(None),

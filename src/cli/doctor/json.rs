@@ -2,6 +2,8 @@
 
 use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
+use crate::cli::watch::telemetry::stalls_json;
+use crate::link::priority;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -78,6 +80,8 @@ fn errors_json(measured: &Measured) -> Value {
         "foreign_replies": stats.foreign_replies,
         "foreign_requests": stats.foreign_requests,
         "refusals": stats.refusals,
+        "stalls": stalls_json(stats),
+        "priority_raised": priority::is_raised(),
     })
 }
 

@@ -18,6 +18,7 @@ use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::pending::PendingStop;
 use crate::link::session::rest::RestWatch;
+use crate::link::session::stall::{STALL_MIN, StallMeter};
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::other_controller::OtherController;
 use crate::link::session::watch::save::SaveWatch;
@@ -73,6 +74,7 @@ pub(crate) struct Session {
     pub(crate) broken_off: Option<Box<dyn FnOnce() + Send + Sync>>,
     pub(crate) saving: SaveWatch,
     pub(crate) sleep: SleepWatch,
+    pub(crate) stalls: StallMeter,
     silent: u32,
     /// When the first of the unanswered requests in a row was asked.
     silent_since: Option<Moment>,
@@ -111,6 +113,7 @@ impl Session {
             leaves_line: false,
             broken_off: None,
             saving: SaveWatch::default(),
+            stalls: StallMeter::default(),
             silent: 0,
             silent_since: None,
             adapter: KnownAdapter::default(),
@@ -217,7 +220,8 @@ impl Session {
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
     /// A stop that came while there was no live link is kept; nothing else is.
     fn begin(&mut self, bus: &dyn Bus) {
-        self.forget_wishes_but(|wanted| wanted.stop);
+        self.keep_pressed_stop();
+        self.forget_wishes();
         if self.sample != HandSample::default() {
             self.counters.stats.reconnects += 1;
         }
@@ -272,15 +276,8 @@ impl Session {
 
     /// Empties the slot of wishes, but not the wish to close and how often to read.
     pub(crate) fn forget_wishes(&self) {
-        self.forget_wishes_but(|_| false);
-    }
-
-    fn forget_wishes_but(&self, stop: fn(&PendingControl) -> bool) {
         self.ends.wanted.send_if_modified(|wanted| {
-            *wanted = PendingControl {
-                stop: stop(wanted),
-                ..wanted.lasting()
-            };
+            *wanted = wanted.lasting();
             false
         });
     }
@@ -322,7 +319,7 @@ impl Session {
         let Some(since) = self.silent_since else {
             return limit;
         };
-        let left = SILENCE_MAX.saturating_sub(self.now().since(since));
+        let left = SILENCE_MAX.saturating_sub(self.silent_for(since));
         limit.min(left.max(on_wire + REPLY_LIMIT_MIN))
     }
 
@@ -351,9 +348,7 @@ impl Session {
             BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
-            return Err(WireEnd::Lost(LinkTrouble::Silent {
-                silent: self.silent,
-            }));
+            return Err(WireEnd::Lost(self.silence()));
         }
         if self.motion.hold.is_some() {
             return Ok(());
@@ -381,10 +376,49 @@ impl Session {
             _ => Duration::ZERO,
         };
         let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
-        self.silent += 1;
+        // A reply that nobody was there to read was not missing.
+        let stalled = self.stalls.since(asked);
+        if stalled.is_zero() || stalled * 2 < waited {
+            self.silent += 1;
+        }
         let since = *self.silent_since.get_or_insert(asked);
-        let one_more = now.since(since) + REPLY_LIMIT_MIN;
+        let one_more = self.silent_for(since) + REPLY_LIMIT_MIN;
         self.silent >= SILENT_MAX || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
+    }
+
+    /// How long the hand is silent since then: what this program stalled is not counted as the hand's silence.
+    fn silent_for(&self, since: Moment) -> Duration {
+        let passed = self.now().since(since);
+        passed.saturating_sub(self.stalls.since(since))
+    }
+
+    /// This program attended to the wire so much too late.
+    pub(crate) fn stalled(&mut self, late: Duration) {
+        let now = self.now();
+        let Some(stall) = self.stalls.late(late, now) else {
+            return;
+        };
+        let stats = &mut self.counters.stats;
+        stats.stalls += 1;
+        stats.stalled += stall.lasted;
+        stats.longest_stall = stats.longest_stall.max(stall.lasted);
+        self.status.stall = Some(stall);
+        self.publish();
+    }
+
+    /// A silence is not the hand's alone if this program stalled in it.
+    fn silence(&self) -> LinkTrouble {
+        let silent = self.silent;
+        let stalled = self
+            .silent_since
+            .map_or(Duration::ZERO, |since| self.stalls.since(since));
+        if stalled < STALL_MIN {
+            return LinkTrouble::Silent { silent };
+        }
+        LinkTrouble::Stalled {
+            silent,
+            stalled_ms: u32::try_from(stalled.as_millis()).unwrap_or(u32::MAX),
+        }
     }
 
     /// Goes to a state and tells the window.

@@ -13,4 +13,5 @@ pub(crate) mod requests;
 pub(crate) mod rest;
 pub(crate) mod serve;
 pub(crate) mod settings;
+pub(crate) mod stall;
 pub(crate) mod watch;

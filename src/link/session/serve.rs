@@ -10,6 +10,7 @@ use crate::link::request::RequestError;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::stall::watched;
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
@@ -19,6 +20,8 @@ use tokio::time::{sleep_until, timeout};
 
 /// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
 const HOLDER_WITHIN: Duration = Duration::from_millis(250);
+/// So much of a stall of this program leaves a hand armed whose angles grow old by it: the hand goes on as it was told, and is read next.
+const STALL_FORGIVEN: Duration = Duration::from_secs(1);
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
 
@@ -137,6 +140,7 @@ impl Session {
         let is_armed = self.status.armed.is_some();
         let ends = self.ends.wanted.borrow().ends().filter(|_| is_armed);
         let due = ends.map_or(due, |end| end.min(due));
+        let due_at = due;
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
         let is_news =
@@ -147,6 +151,7 @@ impl Session {
             Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
             () = sleep_until(due) => {}
         }
+        self.stalled(self.now().since(due_at));
     }
 
     /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
@@ -279,12 +284,18 @@ impl Session {
         self.publish();
     }
 
+    /// How old the angles of an armed hand may be: what this program stalled since is not counted, up to a limit.
+    fn angle_lost(&self) -> Duration {
+        let asked = self.sample.angle.map_or(Moment::ZERO, |angle| angle.asked);
+        ANGLE_LOST + self.stalls.since(asked).min(STALL_FORGIVEN)
+    }
+
     /// An armed hand whose pose is not known any more is not armed.
     fn watch_age(&mut self) {
-        if self.status.armed.is_some() && !self.sample.angles_fresh(self.now(), ANGLE_LOST) {
+        let now = self.now();
+        if self.status.armed.is_some() && !self.sample.angles_fresh(now, self.angle_lost()) {
             self.disarm(Disarmed::Stale);
         }
-        let now = self.now();
         if self.status.armed.is_some() && self.ends.wanted.borrow().is_let_go(now) {
             self.begin_hold(Disarmed::Released);
         }
@@ -471,7 +482,8 @@ impl Session {
             cause,
             write: write.into(),
         });
-        let written = bus.write_unless(write, limit, urgent).await;
+        let (written, late) = watched(bus.write_unless(write, limit, urgent)).await;
+        self.stalled(late);
         let answered = self.now();
         let took = answered.since(asked);
         self.tell(Record::Answered {

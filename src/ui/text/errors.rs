@@ -96,6 +96,7 @@ chinese! {
         LinkTrouble::Mute { place, unit } => "{place} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。";
         LinkTrouble::NoAnswer { id } => "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。";
         LinkTrouble::Silent { silent } => "灵巧手停止应答：连续 {silent} 次请求没有应答。";
+        LinkTrouble::Stalled { silent, stalled_ms } => "灵巧手停止应答：连续 {silent} 次请求没有应答，其间本机过于繁忙，停顿了 {stalled_ms} 毫秒。";
         LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。";
         LinkTrouble::Suspended { slept_s } => "本机休眠了 {slept_s} 秒：之前显示的数据已过时。";
     }
@@ -610,6 +611,10 @@ mod tests {
                 unit: 255,
             },
             LinkTrouble::Silent { silent: 5 },
+            LinkTrouble::Stalled {
+                silent: 5,
+                stalled_ms: 300,
+            },
             LinkTrouble::Ambiguous,
             LinkTrouble::Suspended { slept_s: 9 },
         ];

@@ -13,5 +13,6 @@ mod rates;
 mod scan;
 mod settings;
 mod several_hands;
+mod stall;
 mod stop;
 mod tap;
