@@ -18,7 +18,7 @@ use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::pending::PendingStop;
 use crate::link::session::rest::RestWatch;
-use crate::link::session::stall::{STALL_MIN, StallMeter};
+use crate::link::session::stall::{STALL_MIN, StallMeter, watched};
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::other_controller::OtherController;
 use crate::link::session::watch::save::SaveWatch;
@@ -355,11 +355,16 @@ impl Session {
         }
         // A stop does not wait for the line to settle.
         let stop = stopped(Arc::clone(&self.ends.wanted));
-        tokio::select! {
-            biased;
-            () = stop => Ok(()),
-            settled = bus.quiet() => unless_lost(settled),
-        }
+        let settle = async {
+            tokio::select! {
+                biased;
+                () = stop => Ok(()),
+                settled = bus.quiet() => unless_lost(settled),
+            }
+        };
+        let (settled, late) = watched(settle).await;
+        self.stalled(late);
+        settled
     }
 
     /// The hand answered.

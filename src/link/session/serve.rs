@@ -523,7 +523,9 @@ impl Session {
 
     /// Waits for the line; of all failures it can only be lost.
     pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
-        unless_lost(bus.turn().await)
+        let (turned, late) = watched(bus.turn()).await;
+        self.stalled(late);
+        unless_lost(turned)
     }
 }
 

@@ -29,7 +29,7 @@ async fn a_stall_of_our_own_is_counted_and_neither_loses_the_link_nor_disarms() 
             let status = link.status();
             assert!(status.armed.is_some(), "{wire} {length}: {status:?}");
             let stats = link.stats();
-            let longest = ms(length - 30)..=ms(length);
+            let longest = ms(length - 30)..=ms(length + 5);
             assert!(longest.contains(&stats.longest_stall), "{wire}: {stats:?}");
             assert!(status.stall.is_some(), "{wire}: {status:?}");
         }
@@ -54,6 +54,6 @@ async fn a_hand_that_is_silent_when_we_stall_is_lost_with_both_named() {
         let Some(LinkTrouble::Stalled { stalled_ms, .. }) = status.trouble else {
             panic!("{wire}: {status:?}")
         };
-        assert!((150..=200).contains(&stalled_ms), "{wire}: {stalled_ms}");
+        assert!((150..=205).contains(&stalled_ms), "{wire}: {stalled_ms}");
     }
 }
