@@ -5,6 +5,7 @@ use crate::link::Stop;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
 };
+use crate::record::LinkState;
 use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
@@ -14,6 +15,8 @@ use tokio::time::{Instant, sleep};
 
 /// A hand that is there answers long before; after this the user is told why nothing comes.
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+/// While something answers and is being identified, the wait lasts this long: a way to a hand may be slow.
+const IDENTIFIED_WITHIN: Duration = Duration::from_secs(6);
 /// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
 
@@ -58,7 +61,7 @@ pub(crate) fn open_with_records(
 
 /// Waits until the hand answers. The error says why it does not.
 pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::Result<()> {
-    let until = Instant::now() + ANSWER_WITHIN;
+    let begun = Instant::now();
     loop {
         let status = link.status();
         if status.state.is_live() {
@@ -67,10 +70,18 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
         if let Some(trouble) = status.trouble {
             bail!(no_hand(endpoint, &trouble));
         }
-        if Instant::now() >= until {
+        if begun.elapsed() >= patience(&status) {
             bail!(unanswered(endpoint));
         }
         sleep(LOOK_EACH).await;
+    }
+}
+
+/// How long a link in this state is waited for.
+pub(crate) fn patience(status: &LinkStatus) -> Duration {
+    match status.state {
+        LinkState::Identifying => IDENTIFIED_WITHIN,
+        _ => ANSWER_WITHIN,
     }
 }
 

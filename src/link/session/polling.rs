@@ -8,7 +8,6 @@ use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::session::stall::watched;
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
-use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -25,7 +24,7 @@ impl Session {
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().priority);
         // Elsewhere requests of others are heard.
-        let is_tcp = matches!(self.dialled, Endpoint::Tcp { .. });
+        let is_tcp = self.dialled.host().is_some();
         let watched = is_tcp && self.status.armed.is_some();
         self.plan.watch_setpoints(watched, now);
         if self.motion.hold.is_none() {
@@ -85,7 +84,8 @@ impl Session {
         match result {
             Ok(None) => Ok(()),
             Ok(Some(bytes)) => {
-                self.answered(took);
+                // What we stalled says nothing of how slow the hand is.
+                self.answered(took.saturating_sub(late));
                 self.watch_ticks(span.len, took);
                 self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
@@ -120,6 +120,7 @@ impl Session {
         self.feedback.take(&self.sample, fresh);
         self.watch_feedback(&doubted);
         self.counters.fresh(fresh, now);
+        self.counters.judge(&self.sample, fresh);
         let sample = Arc::new(self.sample);
         self.tell(Record::Reading { sample, fresh });
         if fresh.contains(Group::Faults) {

@@ -1,15 +1,18 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, RegisterWrite, Target};
+use crate::hand::{
+    ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target,
+};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::Started;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
+use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
-use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::motion::{ANGLE_FRESH, ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::session::stall::watched;
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
@@ -61,7 +64,8 @@ impl Session {
     }
 
     /// What is told after something was done.
-    pub(crate) fn after_step(&mut self, bus: &dyn Bus) {
+    pub(crate) fn after_step(&mut self, bus: &mut dyn Bus) {
+        self.learn_late(bus);
         self.tell_rest();
         self.count(bus);
         self.watch_others(bus);
@@ -70,6 +74,9 @@ impl Session {
     /// Does the most urgent thing; false if nothing is due.
     async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if self.urgent_step(bus).await? {
+            return Ok(true);
+        }
+        if self.motion.hold.is_none() && self.identify_further(bus).await? {
             return Ok(true);
         }
         if self.motion.lets_jobs(self.now()) && self.next_job() {
@@ -91,12 +98,16 @@ impl Session {
         self.watch_age();
         let now = self.now();
         let hold = self.motion.hold;
-        let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
+        // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
+        // would never see the hand rest.
+        let waits = self.motion.waits_for_look && self.slowness.slowest().is_some();
+        let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now) && !waits;
         let reads_first = |hold: &mut HoldWatch| hold.reads_first();
         if self.motion.hold.as_mut().is_some_and(reads_first) {
             self.poll_motion(bus).await?;
         } else if hold.is_some_and(is_due) {
             self.send_hold(bus).await?;
+            self.motion.waits_for_look = true;
         } else if self.motion.begins_round(now)
             && let Some(question) = self.plan.before_write(now)
         {
@@ -214,7 +225,8 @@ impl Session {
         let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
         let let_go = is_let_go.then_some(ArmRefusal::LetGo);
         let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        if let Some(reason) = busy.or(let_go).or_else(refusal) {
+        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
+        if let Some(reason) = busy.or(let_go).or_else(refusal).or(unknown) {
             self.refuse_arm(reason);
             return Ok(());
         }
@@ -346,6 +358,7 @@ impl Session {
         // Joints in doubt that were told where to stay are not told again: a deaf one that woke would move.
         if (self.motion.hold).is_none_or(|hold| hold.alarmed && !hold.has_ceased()) {
             self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
+            self.motion.waits_for_look = false;
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }
         if self.feedback.is_suspect() {
@@ -388,7 +401,14 @@ impl Session {
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
         let seen = hold_targets(&self.sample, now);
-        PerDof::from_fn(|dof| self.feedback.hold_target(dof, now).unwrap_or(seen[dof]))
+        // On a slow way the newest pose is old: where the joints must be by now follows from what they were told.
+        let is_slow = self.slowness.slowest().is_some();
+        let is_old = is_slow && !self.sample.angles_fresh(now, ANGLE_FRESH);
+        PerDof::from_fn(|dof| {
+            let doubted = self.feedback.hold_target(dof, now);
+            let expected = || self.feedback.expected(dof, now).filter(|_| is_old);
+            doubted.or_else(expected).unwrap_or(seen[dof])
+        })
     }
 
     /// Whether the trusted joints rest, and so the hand.
@@ -469,6 +489,10 @@ impl Session {
         cause: WriteCause,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
+        let reason = Refusal::NotIdentified;
+        let Some(permitted) = self.status.series.permit(write, cause) else {
+            return Err(BusError::Refused { reason });
+        };
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
@@ -482,7 +506,7 @@ impl Session {
             cause,
             write: write.into(),
         });
-        let (written, late) = watched(bus.write_unless(write, limit, urgent)).await;
+        let (written, late) = watched(bus.write_unless(permitted, limit, urgent)).await;
         self.stalled(late);
         let answered = self.now();
         let took = answered.since(asked);
@@ -497,7 +521,7 @@ impl Session {
         let span = write.span();
         self.ends.image.send_modify(|image| image.forget(span));
         written?;
-        self.answered(took);
+        self.answered(took.saturating_sub(late));
         Ok(())
     }
 

@@ -24,6 +24,7 @@ mod interop;
 #[cfg(unix)]
 mod loss;
 #[cfg(unix)]
+mod no_result;
 mod overshoot;
 mod params;
 mod pictures;
