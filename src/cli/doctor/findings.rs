@@ -28,6 +28,8 @@ const SLOW: Duration = Duration::from_millis(60);
 
 /// A stall of this computer that is longer costs a close its evidence.
 const STALL_HARMFUL: Duration = Duration::from_millis(50);
+/// So many short ones in a check say the same.
+const STALLS_MANY: u64 = 50;
 
 #[derive(Serialize)]
 pub(crate) struct Finding {
@@ -58,7 +60,7 @@ fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
 /// What this computer itself did not manage.
 fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
     let stats = &measured.stats;
-    if stats.longest_stall < STALL_HARMFUL {
+    if stats.longest_stall < STALL_HARMFUL && stats.stalls < STALLS_MANY {
         return;
     }
     let priority = if priority::is_raised() {
@@ -531,9 +533,13 @@ mod tests {
             reconnects: _,
             writes: _,
             dropped_events: _,
+            stalls: _,
+            stalled: _,
+            longest_stall: _,
             line: _,
         } = LinkStats::default();
-        let counts: [(Count, bool, &str); 11] = [
+        let counts: [(Count, bool, &str); 12] = [
+            (|stats| &mut stats.stalls, false, "too busy"),
             (|stats| &mut stats.timeouts, true, "without a reply"),
             (|stats| &mut stats.checksum_errors, true, "wrong checksum"),
             (|stats| &mut stats.resyncs, true, "no frame"),
