@@ -129,7 +129,7 @@ fn disarmed(look: Look, why: Disarmed) -> String {
     }
 }
 
-const fn disarmed_zh(why: Disarmed) -> &'static str {
+pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
     match why {
         Disarmed::Stop => "已取消使能：按下了停止。",
         Disarmed::Person => "已取消使能。",
@@ -361,6 +361,7 @@ fn not_opened(look: Look, why: &OpenError) -> String {
         OpenError::NotMcap => recordings::NOT_MCAP,
         OpenError::Foreign => recordings::FOREIGN,
         OpenError::SeveralHands { hands } => return look.told(recordings::SEVERAL_HANDS, hands),
+        OpenError::TooMuch { .. } => recordings::TOO_MUCH,
         OpenError::Empty => recordings::EMPTY,
     };
     look.say(words).to_owned()
