@@ -11,10 +11,12 @@ use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
-use crate::link::stop::StopRequest;
+use crate::link::stop::{Stop, until_rest};
 use crate::link::tap::WireTap;
 use crate::link::wanted::{Ends, PendingControl};
 use crate::record::{Calibrated, Disarmed, Hold, Record, Reset, Saved, Written};
+use futures::FutureExt as _;
+use futures::future::BoxFuture;
 use std::sync::{Arc, Weak};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
@@ -397,6 +399,24 @@ impl LinkHandle {
     /// The recorded traffic; copies go on recording with the link.
     pub fn tap(&self) -> WireTap {
         self.0.tap.clone()
+    }
+}
+
+/// A stop that was asked for. It acts whether it is awaited or not; awaited it says what feedback says of it. It stays pending while a
+/// link that was lost comes back within [`STOP_PENDING`](crate::link::STOP_PENDING).
+#[derive(Debug)]
+pub struct StopRequest {
+    link: LinkHandle,
+    pressed: Moment,
+}
+
+impl IntoFuture for StopRequest {
+    type Output = Stop;
+    type IntoFuture = BoxFuture<'static, Stop>;
+
+    fn into_future(self) -> Self::IntoFuture {
+        let Self { link, pressed } = self;
+        async move { until_rest(|| link.status_since(pressed)).await }.boxed()
     }
 }
 

@@ -1,11 +1,7 @@
-//! A stop as whoever asked for it sees it: it acts at once, and can be awaited until feedback says how it went.
+//! How a stop ends, as feedback shows it.
 
-use crate::hand::Moment;
-use crate::link::handle::LinkHandle;
 use crate::link::status::LinkStatus;
 use crate::record::Hold;
-use futures::FutureExt as _;
-use futures::future::BoxFuture;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
@@ -33,24 +29,6 @@ pub enum Stop {
     NotConfirmed,
     /// The link is gone, and did not come back in time.
     LinkLost,
-}
-
-/// A stop that was asked for. It acts whether it is awaited or not; awaited it says what feedback says of it. It stays pending while a
-/// link that was lost comes back within [`STOP_PENDING`].
-#[derive(Debug)]
-pub struct StopRequest {
-    pub(crate) link: LinkHandle,
-    pub(crate) pressed: Moment,
-}
-
-impl IntoFuture for StopRequest {
-    type Output = Stop;
-    type IntoFuture = BoxFuture<'static, Stop>;
-
-    fn into_future(self) -> Self::IntoFuture {
-        let Self { link, pressed } = self;
-        async move { until_rest(|| link.status_since(pressed)).await }.boxed()
-    }
 }
 
 /// Waits until feedback says how a stop went that was asked for just now.

@@ -42,6 +42,15 @@ pub(crate) struct HoldWatch {
     has_ceased: bool,
 }
 
+/// A stop without a link.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PendingStop {
+    /// When it was asked for.
+    pub(crate) at: Moment,
+    /// A hand that answers until then is stopped first.
+    pub(crate) until: Moment,
+}
+
 impl HoldWatch {
     /// A stop that is asked for now, of a hand that moves or does not, as far as is known.
     pub(crate) const fn new(at: Moment, moved: bool) -> Self {

@@ -3,18 +3,9 @@
 
 use crate::hand::Moment;
 use crate::link::session::conversation::Session;
-use crate::link::session::hold::HoldWatch;
+use crate::link::session::hold::{HoldWatch, PendingStop};
 use crate::link::stop::STOP_PENDING;
 use crate::record::{Hold, LinkState};
-
-/// A stop without a link.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PendingStop {
-    /// When it was asked for.
-    at: Moment,
-    /// A hand that answers until then is stopped first.
-    until: Moment,
-}
 
 impl Session {
     /// Keeps a stop that was asked for at `at`, and raises the alarm: it may not have reached the hand.

@@ -3,7 +3,7 @@
 use crate::app::settings::Language;
 use crate::hand::{Dof, Fault, Finger, Status, Words};
 use crate::link::Owner;
-use crate::record::{ArmRefusal, SetpointConflict};
+use crate::record::{ArmRefusal, Disarmed, SetpointConflict};
 use crate::ui::style::Look;
 use crate::ui::style::phrase::Text;
 use crate::ui::text::{inputs, main};
@@ -25,6 +25,25 @@ pub(crate) const fn finger(finger: Finger) -> Text {
     match finger {
         Finger::Thumb => main::THUMB,
         finger => dof(finger.bend()),
+    }
+}
+
+/// Why the hand is no longer armed, as a Chinese sentence.
+pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
+    match why {
+        Disarmed::Stop => "已取消使能：按下了停止。",
+        Disarmed::Person => "已取消使能。",
+        Disarmed::Fault => "已取消使能：驱动器报告故障。",
+        Disarmed::LinkLost => "已取消使能：连接断开。",
+        Disarmed::Stale => "已取消使能：反馈过时。",
+        Disarmed::OtherController => {
+            "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。"
+        }
+        Disarmed::FrozenFeedback => "已取消使能：已发出运动指令，但灵巧手的反馈毫无变化。",
+        Disarmed::Resume => "已取消使能：本机曾休眠。",
+        Disarmed::Released => "未使能：没有按住需要按住的键。",
+        Disarmed::Silent => "已取消使能：控制来源已无数据。",
+        Disarmed::Hot => "已取消使能：有驱动器达到 70 °C。",
     }
 }
 

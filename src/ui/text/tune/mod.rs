@@ -13,7 +13,7 @@ use crate::trials::plan::PlanField;
 use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
 use crate::ui::style::phrase::texts;
 use crate::ui::style::{Look, format};
-use crate::ui::text::{Text, notices, words};
+use crate::ui::text::{Text, words};
 use std::time::Duration;
 
 texts! {
@@ -281,7 +281,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         Abort::Disarmed { why: None } => look.say(NOT_ARMED).into(),
         Abort::Disarmed { why: Some(why) } => match look.language {
             Language::En => look.fill(DISARMED, &[&why]),
-            Language::Zh => notices::disarmed_zh(why).into(),
+            Language::Zh => words::disarmed_zh(why).into(),
         },
         Abort::OtherController { wrote: None } => look.say(OTHER_CONTROLLER).into(),
         Abort::OtherController { wrote: Some(wrote) } => {
