@@ -2,7 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s};
+use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s, drawn};
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
@@ -110,6 +110,19 @@ fn an_offset_that_the_drive_counts_or_not_breaks_nothing_and_is_told() {
         told += usize::from(compared == Some(right));
     }
     assert!(claims >= 34 && told >= 28, "{claims} {told} of 36");
+}
+
+#[test]
+fn hands_that_nothing_was_tuned_on_break_nothing() {
+    for seed in 1000..1008 {
+        let search = on_other_hand(drawn(seed, LIMIT.into()), seed);
+        assert!(
+            !search.broke && search.highest < 1.15,
+            "{seed}: {}",
+            search.highest
+        );
+        assert!(search.finding.is_some(), "{seed}");
+    }
 }
 
 #[test]
