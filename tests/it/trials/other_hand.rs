@@ -78,8 +78,8 @@ pub(crate) fn drawn(seed: u64, limit: f64) -> OtherBody {
         rate: between(1.4, 1.7),
         noise: between(2.0, 6.0),
         offset: between(-60.0, 230.0),
-        counts_offset: seed % 4 != 0,
-        stops_in_air: seed % 3 == 0,
+        counts_offset: !seed.is_multiple_of(4),
+        stops_in_air: seed.is_multiple_of(3),
         contact: (between(300.0, 700.0), between(1.0, 5.0)),
         stiffness: match seed % 7 {
             3 => (stiffness / 4.0, 1.4),
