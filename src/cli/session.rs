@@ -1,9 +1,11 @@
 //! A link for a terminal command: its clock, and the wait for a hand that answers. Prints nothing.
 
 use crate::app::connect::SimDial;
-use crate::link::Stop;
+use crate::app::files::settings_file;
+use crate::checkup::free_file;
+use crate::hand::grip::GripEstimator;
 use crate::link::{
-    self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records,
+    self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records, Stop,
 };
 use crate::record::LinkState;
 use crate::tasks::series::STOP_LOST;
@@ -30,6 +32,14 @@ pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
+
+/// What tells the grip of a hand, with what is kept of its free motion. A file that cannot be read is as none.
+pub(crate) fn grip_estimator(hand: &Endpoint) -> GripEstimator {
+    let settings = settings_file::default_path();
+    let file = settings.and_then(|settings| free_file::file_of(&settings, hand));
+    let known = file.and_then(|file| free_file::read(&file).ok());
+    GripEstimator::knowing(known.unwrap_or_default())
+}
 
 /// Opens a link and waits for the hand. Must be called within a tokio runtime.
 pub(crate) async fn reach(hand: &Endpoint, rates: PollRates) -> anyhow::Result<LinkHandle> {

@@ -123,7 +123,7 @@ pub(crate) async fn serve(
     let mut script = Script {
         told: Told::stdout()?,
         seen: HandSample::default(),
-        grip: GripEstimator::default(),
+        grip: session::grip_estimator(hand.endpoint),
         missed: 0,
         right: None,
         owes_stop: false,
