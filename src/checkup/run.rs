@@ -324,7 +324,7 @@ impl Checkup {
             return Some(self.fail(Abort::LinkLost));
         }
         if link.armed.is_some_and(|epoch| epoch != self.epoch) {
-            return Some(self.fail(Abort::Disarmed));
+            return Some(self.fail(Abort::ArmedAnew));
         }
         if link.foreign_setpoint != self.foreign {
             let wrote = link.foreign_setpoint;

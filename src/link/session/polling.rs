@@ -5,6 +5,7 @@ use crate::hand::{Group, Moment, Reply, Span};
 use crate::link::bus::Bus;
 use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::stall::watched;
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
 use std::sync::Arc;
@@ -75,13 +76,16 @@ impl Session {
         let limit = self.reply_limit(bus, span.len);
         let asked = self.now();
         let wanted = Arc::clone(&self.ends.wanted);
-        let result = bus.read_unless(span, limit, &|| wanted.borrow().stop).await;
+        let urgent = || wanted.borrow().stop;
+        let (result, late) = watched(bus.read_unless(span, limit, &urgent)).await;
+        self.stalled(late);
         let received = self.now();
         let took = received.since(asked);
         match result {
             Ok(None) => Ok(()),
             Ok(Some(bytes)) => {
-                self.answered(took);
+                // What we stalled says nothing of how slow the hand is.
+                self.answered(took.saturating_sub(late));
                 self.watch_ticks(span.len, took);
                 self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
