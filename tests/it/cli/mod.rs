@@ -25,6 +25,8 @@ mod interop;
 mod loss;
 #[cfg(unix)]
 mod no_result;
+#[cfg(unix)]
+mod of_others;
 mod overshoot;
 mod params;
 mod pictures;
