@@ -180,3 +180,73 @@ fn joint_words(joint: &JointMetrics) -> String {
     };
     format!("{} {}, {end}{doubt}", joint.dof.name(), values.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::{Force, Speed};
+    use crate::trials::TrialKind;
+    use crate::trials::measure::curve::JointCurves;
+    use crate::trials::measure::metrics::{DwellSpan, measure_joint};
+
+    fn trial(stops_s: &[(Dof, Option<f64>)]) -> TrialSummary {
+        let span = DwellSpan {
+            slow_s: None,
+            end_s: 1.0,
+            threshold_g: 200.0,
+        };
+        let joints = stops_s.iter().map(|(dof, stop_s)| JointMetrics {
+            time_to_stop_s: *stop_s,
+            ..measure_joint(*dof, &JointCurves::default(), span)
+        });
+        TrialSummary {
+            number: 1,
+            kind: TrialKind::Trial,
+            repeat: Some(1),
+            setting: TrialSetting {
+                speed: Speed::MAX,
+                force: Force::GENTLE,
+            },
+            aborted: None,
+            samples: None,
+            rows: 0,
+            rows_lost: 0,
+            repeated: false,
+            stall_s: None,
+            joints: joints.collect(),
+            others: toml::Table::new(),
+        }
+    }
+
+    fn words(trials: Vec<TrialSummary>) -> Option<String> {
+        let report = SeriesReport {
+            aborted: None,
+            stop: None,
+        };
+        Outcome::of(trials, report, None).nothing_words()
+    }
+
+    #[test]
+    fn trials_of_which_nothing_is_known_are_no_result_and_the_joints_are_named() {
+        let none = trial(&[(Dof::Index, None), (Dof::Ring, None)]);
+        let said = words(vec![none.clone(), none.clone()]).unwrap();
+        assert_eq!(
+            said,
+            "nothing was measured of ring: its force was hardly read; index: its force was hardly read"
+        );
+        let some = trial(&[(Dof::Index, Some(0.5)), (Dof::Ring, None)]);
+        assert_eq!(words(vec![none, some]), None);
+    }
+
+    #[test]
+    fn a_trial_that_is_repeated_says_why() {
+        let mut gap = trial(&[]);
+        (gap.repeated, gap.stall_s) = (true, Some(0.31));
+        let said = trial_lines(&gap, 1).join(" ");
+        assert!(said.contains("does not count and is repeated"), "{said}");
+        assert!(said.contains("did not run for 0.31 s"), "{said}");
+        gap.stall_s = None;
+        let said = trial_lines(&gap, 1).join(" ");
+        assert!(said.contains("the hand sent none for a while"), "{said}");
+    }
+}

@@ -309,6 +309,31 @@ fn of_nothing_nothing_is_known() {
         .map(|(key, _)| key)
         .collect();
     assert_eq!(known, ["joint"]);
+    assert_eq!(metrics.why_empty(), Some("its force was hardly read"));
+}
+
+#[test]
+fn a_close_of_which_something_is_known_is_not_empty() {
+    let whole = PLAIN.curves(|_| true);
+    let free = JointCurves {
+        force: whole.force.points().iter().map(|p| (p.t, REST_G)).collect(),
+        normal: TimeSeries::default(),
+        ..whole.clone()
+    };
+    assert_eq!(measured(&whole).why_empty(), None);
+    assert_eq!(measured(&free).why_empty(), None, "it stopped");
+    let moves_on = JointCurves {
+        angle: free
+            .angle
+            .points()
+            .iter()
+            .map(|p| (p.t, 900.0 - 50.0 * p.t))
+            .collect(),
+        status: TimeSeries::default(),
+        ..free
+    };
+    let why = measured(&moves_on).why_empty().unwrap();
+    assert!(why.contains("was not seen to stop"), "{why}");
 }
 
 #[test]
