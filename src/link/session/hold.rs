@@ -29,6 +29,8 @@ pub(crate) struct HoldWatch {
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
     moved: bool,
+    /// The pose was read, or tried to, since the last frame.
+    looked: bool,
 }
 
 impl HoldWatch {
@@ -43,12 +45,20 @@ impl HoldWatch {
             last_sent: None,
             still_since: None,
             moved,
+            looked: false,
         }
     }
 
     /// When the next hold frame is due.
     pub(crate) fn next_frame(&self, now: Moment) -> Moment {
         self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT))
+    }
+
+    /// True, once a frame, if nothing is known that it could hold the hand to: the pose is to be read first.
+    pub(crate) fn needs_pose(&mut self, newest: &PerDof<Target>) -> bool {
+        let nothing = PerDof::splat(Target::Leave);
+        let is_blind = self.pose == nothing && *newest == nothing;
+        is_blind && !std::mem::replace(&mut self.looked, true)
     }
 
     /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
@@ -59,6 +69,7 @@ impl HoldWatch {
                 *target = newest[dof];
             }
         }
+        self.looked = false;
         self.sent = self.sent.saturating_add(1);
         self.first_sent.get_or_insert(now);
         self.last_sent = Some(now);
@@ -190,6 +201,20 @@ mod tests {
         assert_eq!(watch.next_frame(ms(7)), ms(7));
         watch.frame(&PerDof::splat(Target::Leave), ms(9));
         assert_eq!(watch.next_frame(ms(10)), ms(49));
+    }
+
+    #[test]
+    fn the_pose_is_read_once_before_each_frame_that_would_hold_nothing() {
+        let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
+        let unknown = PerDof::splat(Target::Leave);
+        let mut watch = HoldWatch::new(ms(0), true);
+        assert!(watch.needs_pose(&unknown));
+        assert!(!watch.needs_pose(&unknown), "it could not be read");
+        watch.frame(&unknown, ms(60));
+        assert!(watch.needs_pose(&unknown));
+        assert!(!watch.needs_pose(&pose(500)));
+        watch.frame(&pose(500), ms(100));
+        assert!(!watch.needs_pose(&unknown), "it is known by now");
     }
 
     #[test]
