@@ -18,6 +18,7 @@ use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::rest::RestWatch;
 use crate::link::session::watch::feedback::FeedbackWatch;
+use crate::link::session::watch::heat::HeatWatch;
 use crate::link::session::watch::other_controller::OtherController;
 use crate::link::session::watch::save::SaveWatch;
 use crate::link::status::{Dialling, LinkStatus, LinkTrouble};
@@ -63,6 +64,7 @@ pub(crate) struct Session {
     pub(crate) motion: Motion,
     pub(crate) moving: RestWatch,
     pub(crate) feedback: FeedbackWatch,
+    pub(crate) heat: HeatWatch,
     pub(crate) job: Option<SessionJob>,
     /// The line is left to a hand that saves or calibrates.
     pub(crate) leaves_line: bool,
@@ -103,6 +105,7 @@ impl Session {
             motion: Motion::default(),
             moving: RestWatch::default(),
             feedback: FeedbackWatch::default(),
+            heat: HeatWatch::default(),
             job: None,
             leaves_line: false,
             broken_off: None,
@@ -224,6 +227,7 @@ impl Session {
         }
         self.moving = RestWatch::default();
         self.feedback = FeedbackWatch::default();
+        self.heat = HeatWatch::default();
         self.status.feedback_in_doubt = false;
         self.ticks = Ticks::default();
         self.motion = Motion::after(self.motion.last_epoch);
@@ -249,6 +253,7 @@ impl Session {
         }
         self.status.line_left = false;
         self.status.rest = Rest::Unknown;
+        self.status.heat = None;
         self.go(LinkState::Offline);
         self.ends.image.send_replace(RegisterImage::default());
         if let Some(answer) = self.broken_off.take() {
@@ -278,7 +283,8 @@ impl Session {
     /// Waits before the next try; true if the handle is gone meanwhile.
     async fn wait_for_retry(&mut self, attempt: u32) -> bool {
         let doublings = attempt.saturating_sub(1).min(8);
-        let wait = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
+        let usual = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
+        let wait = self.config.dial.retry_delay(attempt).unwrap_or(usual);
         let until = self.now().plus(wait);
         self.status.dialling = Dialling::Waiting { attempt, until };
         self.publish();
