@@ -23,6 +23,8 @@ mod inputs;
 mod interop;
 #[cfg(unix)]
 mod loss;
+#[cfg(target_os = "linux")]
+mod outputs;
 #[cfg(unix)]
 mod overshoot;
 mod params;
