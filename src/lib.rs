@@ -44,7 +44,8 @@
 //! * Only [`hand::HandCommand`], [`hand::Setting`] and [`hand::Trigger`] make register writes, and none leaves the manual's addresses and ranges.
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while the user has armed the hand;
 //!   a stop, faults, heat, link loss, old feedback, another controller and sleep disarm it.
-//! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not.
+//! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not. It never
+//!   moves a joint back whose angle may be frozen, and ends for a joint in doubt once it had time to obey.
 //! * One owner at a time may move a hand, by a [`link::Lease`] that the user granted; a stop, a fault, a lost link and silence end it,
 //!   and what the one before asked for is dropped.
 //! * A hand that follows another program, a gamepad or another hand begins where it is, and stays within a lead and a rate.
@@ -53,7 +54,7 @@
 //! * A value is never invented: what was not read is `None`, and a reply that may be late or doubled is not taken as fresh.
 //! * Whatever ends the program stops the hands first ([`link::guard`]); where it cannot, as it is killed, a process of its own does
 //!   ([`link::holder`]).
-//! * No request outlives a lost link.
+//! * No request outlives a lost link but a stop, which stays pending for [`link::STOP_PENDING`].
 //! * A fault stays unseen until the user acknowledges it; what happened around it is kept in memory, bounded, and in the session.
 //! * An exhibition plays what its file names, within its limits, and only after staff armed it with their PIN, or a visitor
 //!   held a tile where the file allows that; a stop, a lost link, a page that is not drawn or

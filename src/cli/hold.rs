@@ -130,7 +130,7 @@ async fn held(link: &LinkHandle) {
         match link.status().hold {
             Hold::Confirmed { .. } => return,
             Hold::Asked { .. } | Hold::Alarm { .. } => {}
-            Hold::None => link.stop(),
+            Hold::None => drop(link.stop()),
         }
         sleep(LOOK_EACH).await;
     }

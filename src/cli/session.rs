@@ -3,11 +3,12 @@
 use crate::app::connect::SimDial;
 use crate::cli::out::say;
 use crate::hand::heat::HOT;
+use crate::link::Stop;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
 };
 use crate::record::Disarmed;
-use crate::tasks::series::{self, STOP_LOST, Stop};
+use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;
@@ -135,8 +136,8 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
 }
 
 /// Stops the hand, and waits until feedback shows that it rests. The error says what to do where it does not.
-pub(crate) async fn stopped(link: &LinkHandle, records: &mut Records) -> anyhow::Result<()> {
-    match series::hold(link, records).await {
+pub(crate) async fn stopped(link: &LinkHandle) -> anyhow::Result<()> {
+    match link.stop().await {
         Stop::Confirmed { .. } => Ok(()),
         Stop::NotConfirmed => bail!(NOT_CONFIRMED),
         Stop::LinkLost => bail!(STOP_LOST),

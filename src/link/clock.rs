@@ -1,23 +1,30 @@
 //! The program's one clock. Sessions and shells read it; everything else is given moments.
 
 use crate::hand::Moment;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 use tokio::time::Instant;
 
-/// A wall clock that runs this much ahead of the monotonic one means that the computer slept.
+/// A shorter sleep is one that nobody notices.
 const SLEPT_AFTER: Duration = Duration::from_secs(1);
 
 /// A clock that never goes back, counted from its start. Copies count from the same start.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     start: Instant,
+    asleep: fn() -> Option<Duration>,
 }
 
 impl Clock {
     /// Starts counting now. Inside a paused tokio runtime this is virtual time.
     pub fn start() -> Self {
+        Self::with_sleep(asleep)
+    }
+
+    /// The same, with a source of its own for how long the computer was asleep since it was started; `None` where that is not known.
+    pub fn with_sleep(asleep: fn() -> Option<Duration>) -> Self {
         Self {
             start: Instant::now(),
+            asleep,
         }
     }
 
@@ -32,33 +39,48 @@ impl Clock {
     }
 }
 
-/// Notices that the computer slept: the monotonic clock may stand still then, the wall clock does not. It looks at the
-/// system's own monotonic clock: virtual time stands still while a picture is drawn, and that is no sleep.
+/// Notices that the computer slept: of the system's two clocks that nobody sets, one goes on during sleep and the other does not.
+/// A step of the wall clock, by hand or by NTP, is no sleep.
 #[derive(Debug)]
 pub(crate) struct SleepWatch {
-    wall: SystemTime,
-    at: std::time::Instant,
+    source: fn() -> Option<Duration>,
+    asleep: Option<Duration>,
 }
 
 impl SleepWatch {
-    pub(crate) fn start() -> Self {
+    pub(crate) fn start(clock: Clock) -> Self {
         Self {
-            wall: SystemTime::now(),
-            at: std::time::Instant::now(),
+            source: clock.asleep,
+            asleep: (clock.asleep)(),
         }
     }
 
-    /// How long the computer slept since the last call, if it did. A clock that was set back says nothing.
+    /// How long the computer slept since the last call, if it did and the system tells.
     pub(crate) fn slept(&mut self) -> Option<Duration> {
-        self.slept_at(SystemTime::now(), std::time::Instant::now())
+        self.slept_at((self.source)())
     }
 
-    fn slept_at(&mut self, wall: SystemTime, at: std::time::Instant) -> Option<Duration> {
-        let by_wall = wall.duration_since(self.wall).unwrap_or_default();
-        let slept = by_wall.saturating_sub(at.saturating_duration_since(self.at));
-        *self = Self { wall, at };
+    fn slept_at(&mut self, asleep: Option<Duration>) -> Option<Duration> {
+        let before = std::mem::replace(&mut self.asleep, asleep)?;
+        let slept = asleep?.saturating_sub(before);
         (slept > SLEPT_AFTER).then_some(slept)
     }
+}
+
+/// How long the computer was asleep since it was started.
+#[cfg(target_os = "linux")]
+fn asleep() -> Option<Duration> {
+    use nix::time::{ClockId, clock_gettime};
+    // In this order, what passes between the two calls is no sleep.
+    let awake = Duration::from(clock_gettime(ClockId::CLOCK_MONOTONIC).ok()?);
+    let all = Duration::from(clock_gettime(ClockId::CLOCK_BOOTTIME).ok()?);
+    Some(all.saturating_sub(awake))
+}
+
+/// This system has no pair of such clocks: a computer that slept is one that stalled.
+#[cfg(not(target_os = "linux"))]
+fn asleep() -> Option<Duration> {
+    None
 }
 
 #[cfg(test)]
@@ -66,23 +88,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_a_wall_clock_that_runs_ahead_means_sleep() {
-        let mut watch = SleepWatch::start();
-        let (wall, now) = (watch.wall, watch.at);
-        let step = Duration::from_millis(20);
-        assert_eq!(watch.slept_at(wall + step, now + step), None);
-        let week = Duration::from_secs(7 * 86_400);
-        let woken = wall + step + week;
-        assert_eq!(watch.slept_at(woken, now + step * 2), Some(week - step));
-        assert_eq!(watch.slept_at(woken - week, now + step * 3), None);
+    fn only_what_the_clock_that_goes_on_during_sleep_gained_is_sleep() {
+        let mut watch = SleepWatch::start(Clock::start());
+        let day = Duration::from_secs(86_400);
+        watch.asleep = Some(day);
+        let drift = Duration::from_millis(3);
+        assert_eq!(watch.slept_at(Some(day + drift)), None);
+        assert_eq!(watch.slept_at(Some(day * 8)), Some(day * 7 - drift));
+        assert_eq!(watch.slept_at(Some(day * 8)), None);
+        assert_eq!(watch.slept_at(None), None, "the system does not tell");
+        assert_eq!(watch.slept_at(Some(day * 9)), None, "nor did it before");
     }
 
-    #[tokio::test(start_paused = true)]
-    async fn virtual_time_that_stands_still_is_no_sleep() {
-        let clock = Clock::start();
-        let mut watch = SleepWatch::start();
+    #[test]
+    fn a_thread_that_stands_still_is_no_sleep() {
+        let mut watch = SleepWatch::start(Clock::start());
         std::thread::sleep(SLEPT_AFTER + Duration::from_millis(50));
-        assert_eq!(clock.now(), Moment::ZERO);
         assert_eq!(watch.slept(), None);
     }
 }

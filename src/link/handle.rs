@@ -11,9 +11,10 @@ use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::Session;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
+use crate::link::stop::StopRequest;
 use crate::link::tap::WireTap;
 use crate::link::wanted::{Ends, PendingControl};
-use crate::record::{Calibrated, Disarmed, Record, Reset, Saved, Written};
+use crate::record::{Calibrated, Disarmed, Hold, Record, Reset, Saved, Written};
 use std::sync::{Arc, Weak};
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
@@ -119,9 +120,30 @@ impl LinkHandle {
     }
 
     /// Stops the hand where it is, before anything else, and disarms. Everything not yet sent is dropped, and whoever might move
-    /// the hand may no more.
-    pub fn stop(&self) {
+    /// the hand may no more. It acts at once, also if the request is dropped; awaited, it ends with what feedback says of the stop.
+    /// Without a live link it stays pending for [`STOP_PENDING`].
+    ///
+    /// [`STOP_PENDING`]: crate::link::STOP_PENDING
+    pub fn stop(&self) -> StopRequest {
+        let pressed = self.0.clock.now();
         self.end(Disarmed::Stop, PendingControl::stop);
+        let link = self.clone();
+        StopRequest { link, pressed }
+    }
+
+    /// The status, in which no stop is confirmed by rest that was seen before `pressed`, or while the session has not taken the stop.
+    pub(crate) fn status_since(&self, pressed: Moment) -> LinkStatus {
+        let is_waiting = self.0.wanted.borrow().stop;
+        let mut status = self.status();
+        if let Hold::Confirmed { rest, .. } = status.hold
+            && (is_waiting || rest < pressed)
+        {
+            status.hold = Hold::Asked {
+                at: pressed,
+                sent: 0,
+            };
+        }
+        status
     }
 
     /// Disarms: no more setpoints pass, and whoever might move the hand may no more. The hand keeps its last targets.
@@ -388,6 +410,7 @@ impl LinkStopper {
     pub fn stop_if_moved(&self) -> bool {
         let link = self.0.upgrade().map(LinkHandle);
         let moved = link.filter(|link| link.status().holder.is_some());
-        moved.inspect(LinkHandle::stop).is_some()
+        let stop = moved.map(|link| link.stop());
+        stop.is_some()
     }
 }

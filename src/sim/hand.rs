@@ -1,6 +1,6 @@
 //! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
 
-use crate::hand::register::{FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
+use crate::hand::register::{ANGLE_ACT, FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
 use crate::sim::body_params::BodyParams;
@@ -134,6 +134,8 @@ pub struct SimHand {
     pub(crate) order: Option<Order>,
     /// What it tells stands still; the joints go on.
     frozen: bool,
+    /// ANGLE_ACT of the joints whose angle alone is unchanged, whatever they do.
+    frozen_angles: PerDof<Option<i16>>,
     /// Where the joints were when it was switched on.
     began_at: PerDof<f64>,
     /// It says what was recorded: no body, no script, and writes change nothing.
@@ -170,6 +172,7 @@ impl SimHand {
             pressed_g: PerFinger::splat(0.0),
             order: None,
             frozen: false,
+            frozen_angles: PerDof::splat(None),
             began_at: PerDof::splat(0.0),
             follows_recording: false,
             pull: None,
@@ -324,6 +327,7 @@ impl SimHand {
             self.body.drive_mut(dof).power_cycle();
         }
         self.frozen = false;
+        self.frozen_angles = PerDof::splat(None);
         self.began_at = PerDof::from_fn(|dof| self.body.drives()[dof].position());
         self.target_actual();
     }
@@ -406,6 +410,18 @@ impl SimHand {
         self.advance_to(now);
         self.publish();
         self.frozen = frozen;
+        self.published_ms = None;
+    }
+
+    /// Lets the angles of these joints alone stand still from now on, and those of the others live: current, force, touch and status of
+    /// all joints live on. A power cycle ends it.
+    pub fn freeze_angles(&mut self, frozen: PerDof<bool>, now: Moment) {
+        self.advance_to(now);
+        self.publish();
+        self.frozen_angles = PerDof::from_fn(|dof| {
+            let shown = self.memory.short(&ANGLE_ACT, element(dof));
+            frozen[dof].then_some(shown)
+        });
         self.published_ms = None;
     }
 
@@ -613,6 +629,11 @@ impl SimHand {
         }
         self.published_ms = Some(self.now_ms);
         live::publish_drives(&mut self.memory, &self.body);
+        for (dof, angle) in self.frozen_angles.iter() {
+            if let Some(angle) = angle {
+                self.memory.put_short(&ANGLE_ACT, element(dof), *angle);
+            }
+        }
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
         let slip = self.slip(measured_ms);
         for finger in Finger::ALL {

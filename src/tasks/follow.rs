@@ -243,18 +243,12 @@ impl<H: TaskHand> FollowRun<'_, H> {
         let _done = self.hand.give_back(self.start.lease, why);
     }
 
-    /// What ended the lease has disarmed the hand, which goes on to its last target. It is stopped, unless that was done, somebody
-    /// else moves it, or nothing reaches it.
+    /// What ended the lease has disarmed the hand, which goes on to its last target. It is stopped, unless that was done or somebody
+    /// else moves it. Where nothing reaches it, the stop waits for it.
     fn lease_ended(&self, refused: LeaseRefusal) {
         let is_over = match refused {
             LeaseRefusal::Taken(_) => true,
-            LeaseRefusal::Ended(why) => {
-                why.is_asked_for()
-                    || matches!(
-                        why,
-                        Disarmed::LinkLost | Disarmed::Resume | Disarmed::OtherController
-                    )
-            }
+            LeaseRefusal::Ended(why) => why.is_asked_for() || why == Disarmed::OtherController,
         };
         if !is_over {
             self.hand.stop();

@@ -7,13 +7,13 @@ use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Force, Group, Groups, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
+use crate::link::Stop;
 use crate::link::{Clock, Lease};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{WayPart, pinch_way};
 use crate::record::{Disarmed, Record, Rest, SetpointRegister};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
-use crate::tasks::series::{self, Stop};
 use std::collections::VecDeque;
 use std::pin::pin;
 use std::time::Duration;
@@ -141,7 +141,7 @@ pub async fn grip<H: TaskHand>(
         | GripEnd::Late
         | GripEnd::Person
         | GripEnd::OtherWrote
-        | GripEnd::Broken(_) => Some(series::hold(hand, &mut records).await),
+        | GripEnd::Broken(_) => Some(hand.stopped().await),
     };
     GripReport {
         end,

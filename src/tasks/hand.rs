@@ -3,7 +3,7 @@
 use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::{
     ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, PollRates, Records,
-    RequestError,
+    RequestError, Stop, stop::until_rest,
 };
 use crate::record::{Calibrated, Disarmed, LinkState, NotSent, Reset, Rest, Saved, Written};
 use crate::transport::Endpoint;
@@ -45,6 +45,13 @@ pub trait TaskHand: Clone + Send + Sync + 'static {
     fn calibrate(&self) -> impl Future<Output = Result<Calibrated, RequestError>> + Send;
     /// Holds before anything else, and disarms.
     fn stop(&self);
+    /// The same, and waits for what feedback says of it.
+    fn stopped(&self) -> impl Future<Output = Stop> + Send {
+        async {
+            self.stop();
+            until_rest(|| self.status()).await
+        }
+    }
     /// Lets no setpoint pass any more.
     fn disarm(&self);
     /// Grants the right to move the hand. The user must have asked for it.
@@ -96,7 +103,10 @@ impl TaskHand for LinkHandle {
         Self::calibrate(self).await
     }
     fn stop(&self) {
-        Self::stop(self);
+        let _acts_unawaited = Self::stop(self);
+    }
+    async fn stopped(&self) -> Stop {
+        Self::stop(self).await
     }
     fn disarm(&self) {
         Self::disarm(self);

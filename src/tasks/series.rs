@@ -2,8 +2,8 @@
 //! every stop looked after until feedback shows rest. Decides nothing about trials.
 
 use crate::hand::{HandSample, PerDof, Speed};
-use crate::link::{Clock, Lease, LinkStatus, PollRates, Records};
-use crate::record::{Hold, Record};
+use crate::link::{Clock, Lease, LinkStatus, PollRates, Stop};
+use crate::record::Record;
 use crate::tasks::hand::TaskHand;
 use crate::trials::limits::{Abort, LinkView};
 use crate::trials::plan::TrialPlan;
@@ -12,7 +12,7 @@ use crate::trials::series::{Series, SeriesOrder, SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use std::pin::pin;
 use std::time::Duration;
-use tokio::time::{Instant, timeout};
+use tokio::time::timeout;
 
 /// How often a series wants the hand to be read; no line is slower for it than it can be.
 pub const RATES: PollRates = PollRates {
@@ -22,9 +22,6 @@ pub const RATES: PollRates = PollRates {
 };
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(5);
-/// How long feedback may take to show rest; the link raises its alarm after half a second.
-const REST_WITHIN: Duration = Duration::from_secs(3);
-
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesStep {
@@ -34,20 +31,6 @@ pub enum SeriesStep {
     Trial(Box<Trial>),
     /// What a search makes of its trials: at its start, and after each.
     Search(Box<SearchProgress>),
-}
-
-/// What feedback says after a stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stop {
-    /// The hand rests, so long after the stop.
-    Confirmed {
-        /// From the stop to rest.
-        after: Duration,
-    },
-    /// It does not show rest.
-    NotConfirmed,
-    /// The link is gone.
-    LinkLost,
 }
 
 /// How a series ended.
@@ -135,7 +118,7 @@ pub async fn run<H: TaskHand, S: Series>(
             order = series.end(Abort::NotKept, clock.now()).or(order);
         }
         if order == Some(SeriesOrder::Stop) {
-            stop = Some(hold(hand, &mut records).await);
+            stop = Some(hand.stopped().await);
         }
     }
     tell(&mut series);
@@ -186,26 +169,6 @@ pub fn stop_words(stop: Option<Stop>) -> String {
         Some(Stop::NotConfirmed) => "; the stop is not confirmed by feedback".into(),
         Some(Stop::LinkLost) => format!("; {STOP_LOST}"),
     }
-}
-
-/// Holds, and waits for what feedback says of it.
-pub async fn hold<H: TaskHand>(hand: &H, records: &mut Records) -> Stop {
-    hand.stop();
-    let begun = Instant::now();
-    while begun.elapsed() < REST_WITHIN {
-        let status = hand.status();
-        if !status.state.is_live() {
-            return Stop::LinkLost;
-        }
-        if let Hold::Confirmed { at, rest } = status.hold
-            && status.armed.is_none()
-        {
-            let after = rest.since(at);
-            return Stop::Confirmed { after };
-        }
-        let _record = timeout(TICK, records.next()).await;
-    }
-    Stop::NotConfirmed
 }
 
 /// The limits that a hand is armed with for a plan: gentle, and no stronger than its smallest threshold.

@@ -170,10 +170,10 @@ impl Connection {
         }
     }
 
-    /// Holds now. Whatever was armed is not any more, at once. False without a live link: nothing could be sent.
+    /// Holds now. Whatever was armed is not any more, at once. False without a live link: then the stop waits for the hand for a while.
     pub(crate) fn stop(&mut self, now: Moment) -> bool {
-        let link = self.link().filter(|_| self.is_live());
-        let is_sent = link.map(LinkHandle::stop).is_some();
+        let _acts_unawaited = self.link().map(LinkHandle::stop);
+        let is_sent = self.is_live();
         self.mark_disarmed(LinkState::Holding, now);
         is_sent
     }

@@ -40,7 +40,7 @@ impl HandInputs {
             place,
             side,
             clock: env.clock,
-            stop: Arc::new(move || link.stop()),
+            stop: Arc::new(move || drop(link.stop())),
             wake: Arc::clone(&env.wake),
         };
         match StreamSource::open(config, &env.runtime) {
@@ -72,7 +72,7 @@ impl HandInputs {
                     input: PadInput::new(settings.pad_map()),
                     records: link.records(),
                     clock,
-                    stop: Arc::new(move || link.stop()),
+                    stop: Arc::new(move || drop(link.stop())),
                     wake: Arc::clone(&env.wake),
                 });
                 self.pad = Some(source);

@@ -139,7 +139,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
     };
     drop(at);
     let done = if args.arm {
-        leave(ended, session::stopped(&link, &mut link.records()).await)
+        leave(ended, session::stopped(&link).await)
     } else {
         ended
     };

@@ -131,7 +131,7 @@ impl FollowSource {
             return Self::on_dds(node, card, (link, clock), allowed).await;
         }
         let stops = link.clone();
-        let stop = Arc::new(move || stops.stop());
+        let stop = Arc::new(move || drop(stops.stop()));
         let udp = args.udp.map(StreamPlace::Udp);
         let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
             let input = pad_input(args.map.as_deref())?;

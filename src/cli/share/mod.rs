@@ -152,7 +152,7 @@ async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
     if !moved && link.status().state != LinkState::Holding {
         return Ok(());
     }
-    session::stopped(link, &mut link.records()).await
+    session::stopped(link).await
 }
 
 fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Result<Gateway> {

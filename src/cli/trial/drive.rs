@@ -7,10 +7,11 @@ use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{ArmEpoch, HandSample};
+use crate::link::Stop;
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::record::Record;
 use crate::shell::interrupt::Interrupt;
-use crate::tasks::series::{self, SeriesReport, SeriesStart, Stop, stop_words};
+use crate::tasks::series::{self, SeriesReport, SeriesStart, stop_words};
 use crate::transport::Endpoint;
 use crate::trials::series::Series;
 use crate::trials::{Abort, TrialPlan, TrialSeries};
@@ -66,7 +67,7 @@ impl ArmedHand {
         };
         let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
             // Arming may have been under way.
-            let stop = series::hold(&link, &mut records).await;
+            let stop = link.stop().await;
             bail!(
                 "ended by a person before anything moved{}",
                 stop_words(Some(stop))

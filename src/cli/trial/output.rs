@@ -2,7 +2,8 @@
 
 use crate::cli::trial::args::TrialArgs;
 use crate::hand::Dof;
-use crate::tasks::series::{SeriesReport, Stop};
+use crate::link::Stop;
+use crate::tasks::series::SeriesReport;
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
 use crate::trials::{Criterion, JointMetrics, TrialPlan, TrialSetting, TrialSummary};

@@ -1,8 +1,9 @@
 //! What a search came to as JSON, a contract with scripts, and as lines of text. Pure.
 
 use crate::cli::tune::args::TuneArgs;
+use crate::link::Stop;
+use crate::tasks::series::SeriesReport;
 use crate::tasks::series::stop_words;
-use crate::tasks::series::{SeriesReport, Stop};
 use crate::trials::search::{Claim, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 

@@ -233,7 +233,8 @@ fn lock(pipe: &Mutex<HolderPipe>) -> MutexGuard<'_, HolderPipe> {
     pipe.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use super::*;
     use nix::sys::signal::{Signal, kill};

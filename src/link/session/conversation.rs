@@ -16,6 +16,7 @@ use crate::link::session::adapter::KnownAdapter;
 use crate::link::session::counters::Counters;
 use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
+use crate::link::session::pending::PendingStop;
 use crate::link::session::rest::RestWatch;
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::heat::HeatWatch;
@@ -62,6 +63,8 @@ pub(crate) struct Session {
     pub(crate) sample: HandSample,
     pub(crate) plan: PollPlan,
     pub(crate) motion: Motion,
+    /// What outlives a lost link, and nothing else does.
+    pub(crate) pending_stop: Option<PendingStop>,
     pub(crate) moving: RestWatch,
     pub(crate) feedback: FeedbackWatch,
     pub(crate) heat: HeatWatch,
@@ -92,7 +95,7 @@ impl Session {
         Self {
             guard: MotionGuard::enter(Arc::clone(&ends.wanted)),
             plan: PollPlan::new(config.rates, WireCost::default(), now),
-            sleep: SleepWatch::start(),
+            sleep: SleepWatch::start(config.clock),
             dialled: config.endpoint.clone(),
             config,
             ends,
@@ -103,6 +106,7 @@ impl Session {
             counters: Counters::default(),
             sample: HandSample::default(),
             motion: Motion::default(),
+            pending_stop: None,
             moving: RestWatch::default(),
             feedback: FeedbackWatch::default(),
             heat: HeatWatch::default(),
@@ -153,6 +157,7 @@ impl Session {
             () = closed => return (WireEnd::Closed, false),
             dialled = self.dial() => dialled,
         };
+        self.keep_pressed_stop();
         let late = std::mem::take(&mut self.late);
         let (endpoint, wire) = match dialled {
             Ok(dialled) => dialled,
@@ -163,7 +168,7 @@ impl Session {
         let wire = Box::new(TappedWire::new(wire, tap, clock));
         let mut bus = bus::on_wire(&self.dialled, wire, late, clock);
         self.heard();
-        self.sleep = SleepWatch::start();
+        self.sleep = SleepWatch::start(self.config.clock);
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(bus.as_mut()).await {
             Err(end) => (self.explained(end, bus.as_ref()), false),
@@ -213,7 +218,7 @@ impl Session {
     }
 
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
-    /// A stop that came while the link got to know the hand is kept; nothing else is.
+    /// A stop that came while there was no live link is kept; nothing else is.
     fn begin(&mut self, bus: &dyn Bus) {
         self.forget_wishes_but(|wanted| wanted.stop);
         if self.sample != HandSample::default() {
@@ -238,11 +243,16 @@ impl Session {
         self.ends.image.send_replace(image);
         self.guard.reaches(true);
         self.go(LinkState::Monitoring);
+        self.resume_stop();
     }
 
-    /// The link is gone: nothing stays armed, nothing stays queued.
+    /// The link is gone: nothing stays armed, nothing stays queued but a stop that feedback did not confirm.
     fn lost(&mut self, trouble: LinkTrouble) {
         self.disarm(Disarmed::LinkLost);
+        self.keep_pressed_stop();
+        if let Some(hold) = self.motion.hold {
+            self.keep_stop(hold.at);
+        }
         self.motion.forget();
         self.guard.reaches(false);
         self.status.trouble = Some(trouble);
@@ -282,17 +292,30 @@ impl Session {
 
     /// Waits before the next try; true if the handle is gone meanwhile.
     async fn wait_for_retry(&mut self, attempt: u32) -> bool {
+        let begun = self.now();
         let doublings = attempt.saturating_sub(1).min(8);
         let usual = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
-        let wait = self.config.dial.retry_delay(attempt).unwrap_or(usual);
-        let until = self.now().plus(wait);
-        self.status.dialling = Dialling::Waiting { attempt, until };
-        self.publish();
-        let closed = closed(Arc::clone(&self.ends.wanted));
-        tokio::select! {
-            biased;
-            () = closed => true,
-            () = sleep_until(self.config.clock.instant(until)) => false,
+        loop {
+            // A stop waits for nothing but the pause that the hand needs.
+            let asked = self.config.dial.retry_delay(attempt);
+            let wait = match self.has_pending_stop() {
+                true => asked.unwrap_or(RETRY_FIRST),
+                false => asked.unwrap_or(usual),
+            };
+            let until = begun.plus(wait);
+            self.status.dialling = Dialling::Waiting { attempt, until };
+            self.publish();
+            let pressed = stopped(Arc::clone(&self.ends.wanted));
+            tokio::select! {
+                biased;
+                () = pressed => {
+                    if self.ends.wanted.borrow().closed {
+                        return true;
+                    }
+                    self.keep_pressed_stop();
+                }
+                () = sleep_until(self.config.clock.instant(until)) => return false,
+            }
         }
     }
 

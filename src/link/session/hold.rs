@@ -17,6 +17,9 @@ const REST_OVER: Duration = Duration::from_millis(100);
 /// A hand that moved when it was stopped is not called at rest before this has passed since the first hold frame. Should feedback
 /// have frozen around the stop, the joints go on for the dead time and come back to where they were seen last: by then they are there.
 const MOVED_REST_AFTER: Duration = Duration::from_millis(250);
+/// A joint in doubt is told where it must be for this long, counted in acknowledged frames. If it obeys, it stands there by then; if
+/// it is deaf and its angle is true, any further frame would move it once it wakes.
+const DOUBTED_HOLD: Duration = Duration::from_millis(250);
 
 /// One stop, from the press until feedback shows rest.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +27,7 @@ pub(crate) struct HoldWatch {
     pub(crate) at: Moment,
     pub(crate) sent: u32,
     pub(crate) alarmed: bool,
+    follows_from: Moment,
     pose: PerDof<Target>,
     first_sent: Option<Moment>,
     last_sent: Option<Moment>,
@@ -31,6 +35,10 @@ pub(crate) struct HoldWatch {
     moved: bool,
     /// The pose was read, or tried to, since the last frame.
     looked: bool,
+    /// The first frame for joints in doubt that the hand acknowledged, and the newest.
+    doubted_acknowledged: Option<(Moment, Moment)>,
+    /// All that can be done was done: joints in doubt were told where to stay, and the others rest.
+    has_ceased: bool,
 }
 
 impl HoldWatch {
@@ -40,18 +48,58 @@ impl HoldWatch {
             at,
             sent: 0,
             alarmed: false,
+            follows_from: at,
             pose: PerDof::splat(Target::Leave),
             first_sent: None,
             last_sent: None,
             still_since: None,
             moved,
             looked: false,
+            doubted_acknowledged: None,
+            has_ceased: false,
         }
     }
 
-    /// When the next hold frame is due.
-    pub(crate) fn next_frame(&self, now: Moment) -> Moment {
-        self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT))
+    /// A stop that was asked for at `at` over a link that was lost, of a hand that answers again now.
+    pub(crate) const fn resumed(at: Moment, now: Moment) -> Self {
+        Self {
+            alarmed: true,
+            follows_from: now,
+            ..Self::new(at, true)
+        }
+    }
+
+    /// The same stop, begun anew: it became known where a joint is.
+    pub(crate) const fn again(&self, now: Moment) -> Self {
+        Self {
+            sent: self.sent,
+            alarmed: self.alarmed,
+            follows_from: now,
+            ..Self::new(self.at, true)
+        }
+    }
+
+    /// When the next hold frame is due; `None` once none is.
+    pub(crate) fn next_frame(&self, now: Moment) -> Option<Moment> {
+        let next = self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT));
+        (!self.has_ceased).then_some(next)
+    }
+
+    /// The hand acknowledged a frame while joints were in doubt.
+    pub(crate) fn doubted_acknowledged(&mut self, now: Moment) {
+        let (_, newest) = self.doubted_acknowledged.get_or_insert((now, now));
+        *newest = now;
+    }
+
+    /// The joints that are trusted rest: nothing more is sent once the others were told for long enough where to stay.
+    pub(crate) fn trusted_rest(&mut self) {
+        let told = self.doubted_acknowledged;
+        self.has_ceased |= told.is_some_and(|(first, newest)| newest.since(first) >= DOUBTED_HOLD);
+    }
+
+    /// True once nothing more is sent, though rest was not seen.
+    pub(crate) const fn has_ceased(&self) -> bool {
+        self.has_ceased
     }
 
     /// True, once a frame, if nothing is known that it could hold the hand to: the pose is to be read first.
@@ -63,7 +111,7 @@ impl HoldWatch {
 
     /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
     pub(crate) fn frame(&mut self, newest: &PerDof<Target>, now: Moment) -> PerDof<Target> {
-        let follows = now.since(self.at) <= HOLD_FOLLOWS;
+        let follows = now.since(self.follows_from) <= HOLD_FOLLOWS;
         for (dof, target) in self.pose.iter_mut() {
             if follows || *target == Target::Leave {
                 *target = newest[dof];
@@ -81,9 +129,14 @@ impl HoldWatch {
         !self.alarmed && now.since(self.at) >= HOLD_ALARM_AFTER
     }
 
-    /// Takes a sample; true if it shows that all six joints rest. Only angles that were asked for
+    /// Applies a sample; true if it shows that all joints but those in doubt rest. Only angles that were asked for
     /// after the first hold frame count, and an angle that makes no sense is not at rest.
-    pub(crate) fn rests(&mut self, sample: &HandSample, fresh: Groups) -> bool {
+    pub(crate) fn rests(
+        &mut self,
+        sample: &HandSample,
+        fresh: Groups,
+        doubted: &PerDof<bool>,
+    ) -> bool {
         let (Some(first_sent), Some(angle)) = (self.first_sent, sample.angle) else {
             return false;
         };
@@ -92,13 +145,13 @@ impl HoldWatch {
         }
         if Dof::ALL
             .iter()
-            .any(|dof| angle.value[*dof].hold().is_none())
+            .any(|dof| !doubted[*dof] && angle.value[*dof].hold().is_none())
         {
             self.still_since = None;
             return false;
         }
         match self.still_since {
-            Some((since, from)) if near(&from, &angle.value) => {
+            Some((since, from)) if near(&from, &angle.value, doubted) => {
                 let is_back = angle.asked.since(first_sent) >= MOVED_REST_AFTER;
                 angle.asked.since(since) >= REST_OVER && (is_back || !self.moved)
             }
@@ -110,10 +163,11 @@ impl HoldWatch {
     }
 }
 
-fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>) -> bool {
+fn near(a: &PerDof<AngleReading>, b: &PerDof<AngleReading>, doubted: &PerDof<bool>) -> bool {
+    let apart = |dof: Dof| (i32::from(a[dof].raw()) - i32::from(b[dof].raw())).abs();
     Dof::ALL
         .iter()
-        .all(|dof| (i32::from(a[*dof].raw()) - i32::from(b[*dof].raw())).abs() <= REST_COUNTS)
+        .all(|dof| doubted[*dof] || apart(*dof) <= REST_COUNTS)
 }
 
 #[cfg(test)]
@@ -154,7 +208,7 @@ mod tests {
                 watch.frame(&PerDof::splat(Target::Leave), ms(*t));
             }
             let (sample, fresh) = sample(ms(*t), angle_at(*t));
-            watch.rests(&sample, fresh)
+            watch.rests(&sample, fresh, &PerDof::splat(false))
         })
     }
 
@@ -198,9 +252,24 @@ mod tests {
     #[test]
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
         let mut watch = HoldWatch::new(ms(7), false);
-        assert_eq!(watch.next_frame(ms(7)), ms(7));
+        assert_eq!(watch.next_frame(ms(7)), Some(ms(7)));
         watch.frame(&PerDof::splat(Target::Leave), ms(9));
-        assert_eq!(watch.next_frame(ms(10)), ms(49));
+        assert_eq!(watch.next_frame(ms(10)), Some(ms(49)));
+    }
+
+    #[test]
+    fn frames_for_joints_in_doubt_cease_once_the_hand_had_time_to_obey_and_the_others_rest() {
+        let mut watch = HoldWatch::new(ms(0), true);
+        for t in (0..=240).step_by(40) {
+            watch.frame(&PerDof::splat(Target::Leave), ms(t));
+            watch.doubted_acknowledged(ms(t));
+            watch.trusted_rest();
+        }
+        assert!(!watch.has_ceased());
+        watch.doubted_acknowledged(ms(280));
+        assert_eq!(watch.next_frame(ms(270)), Some(ms(280)), "others may move");
+        watch.trusted_rest();
+        assert_eq!(watch.next_frame(ms(300)), None);
     }
 
     #[test]

@@ -76,8 +76,10 @@ impl Session {
 
     async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let id = self.first_answer(bus).await?;
-        // A stop from here on belongs to this hand; what was wished before does not.
+        // Of what was wished before, only a stop belongs to this hand.
+        self.keep_pressed_stop();
         self.forget_wishes();
+        let known = self.status.quirks;
         let until = self.now().plus(WITHIN);
         let packing = self.ask_packing(bus, id.as_ref(), until).await?;
         bus.set_packing(packing);
@@ -86,6 +88,11 @@ impl Session {
             hand_id: id.as_ref().and_then(|id| first_byte(id, packing)),
             ..self.ask_rest(bus, until).await?
         };
+        // A stop cut the questions short: what was known of this hand stays.
+        if self.is_stop_wanted() && known.hand_id == self.status.quirks.hand_id {
+            bus.set_packing(known.packing);
+            self.status.quirks = known;
+        }
         Ok(())
     }
 
@@ -250,7 +257,11 @@ impl Session {
 
     /// True if there is no time for another question.
     fn hurried(&self, until: Moment) -> bool {
-        self.now() >= until || self.ends.wanted.borrow().stop
+        self.now() >= until || self.is_stop_wanted()
+    }
+
+    fn is_stop_wanted(&self) -> bool {
+        self.ends.wanted.borrow().stop || self.has_pending_stop()
     }
 }
 

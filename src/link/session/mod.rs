@@ -7,6 +7,7 @@ pub(crate) mod hold;
 pub(crate) mod identify;
 pub(crate) mod job;
 pub mod motion;
+pub(crate) mod pending;
 pub(crate) mod polling;
 pub(crate) mod requests;
 pub(crate) mod rest;

@@ -75,7 +75,7 @@ impl Motion {
     /// When something can be sent next, if anything waits.
     pub(crate) fn next_send(&self, now: Moment) -> Option<Moment> {
         if let Some(hold) = &self.hold {
-            return Some(hold.next_frame(now));
+            return hold.next_frame(now);
         }
         if !self.round.is_empty() {
             return Some(now);

@@ -131,8 +131,9 @@ impl Session {
             self.plan.doubt_setpoints(now);
         }
         self.moving.take(&self.sample, fresh, now);
+        let doubted = self.feedback.doubted();
         self.feedback.take(&self.sample, fresh);
-        self.watch_feedback();
+        self.watch_feedback(&doubted);
         self.heat.take(&self.sample, fresh, now);
         let heat = DriveHeat::warmest(&self.sample, now);
         if self.status.heat != heat {
@@ -145,10 +146,7 @@ impl Session {
         if fresh.contains(Group::Faults) {
             self.watch_faults();
         }
-        let hold = self.motion.hold.as_mut();
-        if hold.is_some_and(|hold| hold.rests(&self.sample, fresh)) && !self.feedback.is_doubted() {
-            self.hold_confirmed();
-        }
+        self.watch_hold(fresh);
     }
 
     /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.

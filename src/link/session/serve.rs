@@ -1,7 +1,7 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{ArmEpoch, HandCommand, Moment, PerDof, RegisterWrite, Target};
+use crate::hand::{ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, RegisterWrite, Target};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::HolderState;
@@ -48,6 +48,10 @@ impl Session {
         let Some(slept) = self.sleep.slept() else {
             return Ok(());
         };
+        if self.status.armed.is_some() {
+            // Nobody watched what became of its move.
+            self.keep_stop(self.now());
+        }
         self.disarm(Disarmed::Resume);
         let slept_s = slept.as_secs();
         Err(WireEnd::Lost(LinkTrouble::Suspended { slept_s }))
@@ -85,15 +89,12 @@ impl Session {
         self.watch_heat();
         let now = self.now();
         let hold = self.motion.hold;
-        if hold.is_some_and(|hold| hold.next_frame(now) <= now) {
+        let is_due = |hold: &HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
+        if hold.as_ref().is_some_and(is_due) {
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
             let newest = self.hold_targets(now);
-            if self
-                .motion
-                .hold
-                .as_mut()
-                .is_some_and(|hold| hold.needs_pose(&newest))
-            {
+            let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
+            if self.motion.hold.as_mut().is_some_and(is_blind) {
                 return self.read_pose(bus).await.map(|()| true);
             }
             self.send_hold(bus).await?;
@@ -113,7 +114,7 @@ impl Session {
     /// Says whether the hand rests, and whether the line is left to it.
     pub(crate) fn tell_rest(&mut self) {
         self.watch_holder();
-        let rest = if self.feedback.is_doubted() {
+        let rest = if self.feedback.is_doubted() || self.feedback.is_frozen() {
             Rest::Unknown
         } else {
             self.moving.rest(&self.sample, self.now())
@@ -125,6 +126,7 @@ impl Session {
         }
         let is_left_alone = self.status.armed.is_none() && self.motion.hold.is_none();
         if is_left_alone && rest == Rest::Resting {
+            self.end_late_alarm();
             self.guard.rests();
         }
     }
@@ -160,10 +162,10 @@ impl Session {
             false
         });
         self.status.holder = wishes.book.holder();
-        self.publish();
         if wishes.stop {
             self.begin_hold(wishes.why.unwrap_or(Disarmed::Stop));
         }
+        self.publish();
         if wishes.closed {
             return Err(WireEnd::Closed);
         }
@@ -360,7 +362,8 @@ impl Session {
         if let Some(job) = self.job.take_if(|job| job.is_motion()) {
             job.fail(RequestError::NotArmed);
         }
-        if self.motion.hold.is_none_or(|hold| hold.alarmed) {
+        // Joints in doubt that were told where to stay are not told again: a deaf one that woke would move.
+        if (self.motion.hold).is_none_or(|hold| hold.alarmed && !hold.has_ceased()) {
             self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }
@@ -370,7 +373,7 @@ impl Session {
         self.go(LinkState::Holding);
     }
 
-    /// What is read counts for nothing until it changes: the hold that is asked for cannot be confirmed by it.
+    /// What is read of suspect joints counts for nothing until it changes: the hold that is asked for cannot be confirmed by it.
     fn doubt_feedback(&mut self) {
         self.feedback.doubt();
         self.status.feedback_in_doubt = true;
@@ -380,28 +383,45 @@ impl Session {
         self.publish();
     }
 
-    /// Feedback that stands still while motion was asked for ends arming, and confirms no stop.
-    pub(crate) fn watch_feedback(&mut self) {
+    /// An angle that is unchanged where motion was commanded ends arming, and confirms no stop.
+    pub(crate) fn watch_feedback(&mut self, doubted_before: &PerDof<bool>) {
+        let doubted = self.feedback.doubted();
+        let is_trusted_again = |dof: &Dof| doubted_before[*dof] && !doubted[*dof];
+        if Dof::ALL.iter().any(is_trusted_again)
+            && let Some(hold) = &mut self.motion.hold
+        {
+            // Now it is known where it is to be held.
+            *hold = hold.again(self.config.clock.now());
+        }
         if self.status.feedback_in_doubt && !self.feedback.is_doubted() {
             self.status.feedback_in_doubt = false;
             self.publish();
         }
-        if self.feedback.is_doubted() {
-            return;
-        }
         if self.status.armed.is_some() && self.feedback.is_frozen() {
             self.begin_hold(Disarmed::FrozenFeedback);
-        } else if self.motion.hold.is_some() && self.feedback.is_suspect() {
+        } else if self.motion.hold.is_some() && self.feedback.is_suspect_in_stop() {
             self.doubt_feedback();
         }
     }
 
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
-        if self.feedback.is_doubted() {
-            self.feedback.hold_targets(now)
-        } else {
-            hold_targets(&self.sample, now)
+        let seen = hold_targets(&self.sample, now);
+        PerDof::from_fn(|dof| self.feedback.hold_target(dof, now).unwrap_or(seen[dof]))
+    }
+
+    /// Whether the trusted joints rest, and so the hand.
+    pub(crate) fn watch_hold(&mut self, fresh: Groups) {
+        let doubted = self.feedback.doubted();
+        let Some(hold) = &mut self.motion.hold else {
+            return;
+        };
+        if !hold.rests(&self.sample, fresh, &doubted) {
+            return;
+        }
+        hold.trusted_rest();
+        if !self.feedback.is_doubted() {
+            self.hold_confirmed();
         }
     }
 
@@ -418,10 +438,18 @@ impl Session {
                 sent: hold.sent,
             };
         }
+        let mut is_acknowledged = true;
         for write in command.writes() {
             if let Err(error) = self.write(bus, &write, WriteCause::Hold).await {
+                is_acknowledged = false;
                 self.failed(bus, &error).await?;
             }
+        }
+        if let Some(hold) = &mut self.motion.hold
+            && is_acknowledged
+            && self.feedback.is_doubted()
+        {
+            hold.doubted_acknowledged(now);
         }
         self.publish();
         Ok(())

@@ -1,10 +1,11 @@
 //! What a series sends and what ends it, on a hand that only notes what it is told.
 
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
+use crate::link::Stop;
 use crate::link::{Owner, PollRates};
 use crate::record::LinkState;
 use crate::tasks::TaskHand;
-use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, Stop, trials};
+use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, trials};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::limits::Abort;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};

@@ -9,8 +9,8 @@ use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::hand::Setpoints;
 use handscope::hand::{Angle, Dof, Target, register};
-use handscope::link::{LinkStatus, LinkTrouble};
-use handscope::record::{Disarmed, LinkState};
+use handscope::link::{Clock, LinkConfig, LinkStatus, LinkTrouble, STOP_PENDING, Stop};
+use handscope::record::{Disarmed, Hold, LinkState};
 use handscope::sim::serve::{rs485, slcan};
 use handscope::sim::{Personality, SharedHand};
 use handscope::transport::{Dial, Endpoint, PortFound, TransportError, UsbFound, Wire, pair};
@@ -36,10 +36,14 @@ struct Computer {
     hand: SharedHand,
     state: Mutex<Plugged>,
     mute: watch::Sender<bool>,
+    /// Nothing passes either way.
+    cut: watch::Sender<bool>,
 }
 
 #[derive(Default)]
 struct Plugged {
+    /// So many connections are accepted and closed at once.
+    refuses: usize,
     ports: Vec<PortFound>,
     wires: Vec<JoinHandle<()>>,
     /// Paths that were opened.
@@ -65,6 +69,7 @@ impl Computer {
             hand,
             state: Mutex::default(),
             mute: watch::Sender::new(false),
+            cut: watch::Sender::new(false),
         });
         computer.plug(&[usb("/dev/ttyT0", Some("A5"), "1-2:1.0")]);
         computer
@@ -88,6 +93,17 @@ impl Computer {
 
     fn mute(&self, mute: bool) {
         self.mute.send_replace(mute);
+    }
+
+    fn cut(&self, cut: bool) {
+        self.cut.send_replace(cut);
+    }
+
+    fn index(&self) -> f64 {
+        self.hand.with(|hand, now| {
+            hand.advance_to(now);
+            hand.true_angles()[Dof::Index]
+        })
     }
 }
 
@@ -120,7 +136,16 @@ impl Dial for Computer {
         let open = open.count();
         state.open_then.push(open);
         let (near, far) = pair();
-        let (far, hand) = (Mutable::new(far, self.mute.subscribe()), self.hand.clone());
+        if state.refuses > 0 {
+            state.refuses -= 1;
+            return link::opened(near);
+        }
+        let far = Mutable {
+            wire: far,
+            mute: self.mute.subscribe(),
+            cut: self.cut.subscribe(),
+        };
+        let hand = self.hand.clone();
         let quirks = Quirks::default();
         let wire = match endpoint {
             Endpoint::Rtu(_) => tokio::spawn(device::modbus_rtu(hand, far, quirks, 1)),
@@ -138,16 +163,11 @@ impl Dial for Computer {
     }
 }
 
-/// A hand's end of a wire that says nothing while it is muted.
+/// A hand's end of a wire that says nothing while it is muted, and hears nothing either while it is cut.
 struct Mutable<W> {
     wire: W,
     mute: watch::Receiver<bool>,
-}
-
-impl<W: Wire> Mutable<W> {
-    fn new(wire: W, mute: watch::Receiver<bool>) -> Self {
-        Self { wire, mute }
-    }
+    cut: watch::Receiver<bool>,
 }
 
 impl<W: Wire> tokio::io::AsyncRead for Mutable<W> {
@@ -156,7 +176,14 @@ impl<W: Wire> tokio::io::AsyncRead for Mutable<W> {
         cx: &mut std::task::Context<'_>,
         buf: &mut tokio::io::ReadBuf<'_>,
     ) -> std::task::Poll<std::io::Result<()>> {
-        std::pin::Pin::new(&mut self.wire).poll_read(cx, buf)
+        loop {
+            let before = buf.filled().len();
+            let read = std::pin::Pin::new(&mut self.wire).poll_read(cx, buf);
+            if read.is_pending() || buf.filled().len() == before || !*self.cut.borrow() {
+                return read;
+            }
+            buf.set_filled(before);
+        }
     }
 }
 
@@ -166,7 +193,7 @@ impl<W: Wire> tokio::io::AsyncWrite for Mutable<W> {
         cx: &mut std::task::Context<'_>,
         buf: &[u8],
     ) -> std::task::Poll<std::io::Result<usize>> {
-        if *self.mute.borrow() {
+        if *self.mute.borrow() || *self.cut.borrow() {
             return std::task::Poll::Ready(Ok(buf.len()));
         }
         std::pin::Pin::new(&mut self.wire).poll_write(cx, buf)
@@ -279,6 +306,131 @@ async fn silence_is_noticed_in_300_ms_and_an_answer_within_2_s() {
         computer.mute(false);
         let before = writes(&computer);
         back(&mut link, &computer, before).await;
+    }
+}
+
+/// The writes since `writes`, as addresses.
+fn written(computer: &Computer, writes: usize) -> Vec<u16> {
+    computer.hand.with(|hand, _| {
+        let written = hand.journal().iter().skip(writes);
+        written.map(|own| own.address).collect()
+    })
+}
+
+/// The hand was stopped on its way, by holds alone.
+fn check_held(computer: &Computer, writes: usize, was: f64, name: &str) {
+    let written = written(computer, writes);
+    assert!(
+        !written.is_empty() && written.iter().all(|address| [1486, 1494].contains(address)),
+        "{name}: {written:?}"
+    );
+    let rests = computer.index();
+    assert!(was - rests < 60.0 && rests > 350.0, "{name}: {was} {rests}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_pressed_before_a_loss_is_noticed_is_sent_first_when_the_hand_is_back_in_time() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.cut(true);
+        sleep(Duration::from_millis(100)).await;
+        assert!(
+            link.status().state.is_live(),
+            "{wire}: not known to be lost"
+        );
+        let stop = link.begin(|link| async move { link.stop().await });
+        let (_, status) = until(&mut link, SILENCE_WITHIN, is_lost).await;
+        assert!(
+            matches!(status.hold, Hold::Alarm { .. }),
+            "{wire}: {status:?}"
+        );
+        computer.cut(false);
+        let before = writes(&computer);
+        until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+        let was = computer.index();
+        let stop = stop.await.unwrap();
+        assert!(matches!(stop, Stop::Confirmed { .. }), "{wire}: {stop:?}");
+        check_held(&computer, before, was, wire);
+        assert_eq!(link.status().state, LinkState::Monitoring, "{wire}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_of_a_hand_that_comes_back_late_is_not_sent_and_its_alarm_ends_with_rest() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.cut(true);
+        let stop = link.begin(|link| async move { link.stop().await });
+        sleep(STOP_PENDING + Duration::from_secs(2)).await;
+        assert_eq!(stop.await.unwrap(), Stop::LinkLost, "{wire}");
+        let status = link.status();
+        let before = writes(&computer);
+        computer.cut(false);
+        assert!(
+            matches!(status.hold, Hold::Alarm { .. }),
+            "{wire}: {status:?}"
+        );
+        let confirmed = |status: &LinkStatus| matches!(status.hold, Hold::Confirmed { .. });
+        until(&mut link, BACK_WITHIN, confirmed).await;
+        assert!(written(&computer, before).is_empty(), "{wire}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_pressed_while_the_hand_is_gone_outlives_connections_that_are_closed_at_once() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = open(&computer, wire);
+        armed(&mut link).await;
+        computer.unplug();
+        until(&mut link, UNPLUG_WITHIN, is_lost).await;
+        sleep(Duration::from_millis(50)).await;
+        let stop = link.begin(|link| async move { link.stop().await });
+        sleep(Duration::from_millis(20)).await;
+        let alarm = |status: &LinkStatus| matches!(status.hold, Hold::Alarm { .. });
+        until(&mut link, UNPLUG_WITHIN, alarm).await;
+        let before = writes(&computer);
+        computer.state.lock().unwrap().refuses = 3;
+        computer.plug(&[usb("/dev/ttyT0", Some("A5"), "1-2:1.0")]);
+        until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+        let was = computer.index();
+        let stop = stop.await.unwrap();
+        assert!(matches!(stop, Stop::Confirmed { .. }), "{wire}: {stop:?}");
+        check_held(&computer, before, was, wire);
+    }
+}
+
+thread_local! {
+    static ASLEEP: std::cell::Cell<Duration> = const { std::cell::Cell::new(Duration::ZERO) };
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_moved_when_the_computer_slept_is_stopped_first() {
+    for wire in WIRES {
+        let computer = Computer::new();
+        let mut link = link::open(LinkConfig {
+            clock: Clock::with_sleep(|| Some(ASLEEP.get())),
+            ..link::config(wire, Arc::clone(&computer) as Arc<dyn Dial>)
+        });
+        armed(&mut link).await;
+        ASLEEP.set(ASLEEP.get() + Duration::from_millis(900));
+        sleep(Duration::from_millis(100)).await;
+        assert!(link.status().armed.is_some(), "{wire}: too short to matter");
+        let before = writes(&computer);
+        ASLEEP.set(ASLEEP.get() + Duration::from_secs(5));
+        let (_, status) = until(&mut link, UNPLUG_WITHIN, is_lost).await;
+        let slept = LinkTrouble::Suspended { slept_s: 5 };
+        assert_eq!(status.trouble, Some(slept), "{wire}");
+        assert_eq!(status.disarmed, Some(Disarmed::Resume), "{wire}");
+        until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+        let was = computer.index();
+        let confirmed = |status: &LinkStatus| matches!(status.hold, Hold::Confirmed { .. });
+        until(&mut link, BACK_WITHIN, confirmed).await;
+        check_held(&computer, before, was, wire);
     }
 }
 

@@ -4,13 +4,11 @@ use crate::setup::hand;
 use crate::setup::link;
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
-use handscope::link::{LinkConfig, Owner};
+use handscope::link::{LinkConfig, Owner, Stop};
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::tasks::series::{
-    RATES, SeriesReport, SeriesStart, SeriesStep, Stop, arm_limits, trials,
-};
+use handscope::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, arm_limits, trials};
 use handscope::trials::search::{Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch};
 use handscope::trials::{Abort, TrialSeries};
 use std::time::Duration;

@@ -194,7 +194,7 @@ impl Script<'_> {
         let is_lost = self.owes_stop && !status.state.is_live();
         let may_move = is_lost || self.is_to_stop() || status.state == LinkState::Holding;
         let done = if may_move {
-            session::stopped(link, &mut link.records()).await
+            session::stopped(link).await
         } else {
             Ok(())
         };
@@ -273,6 +273,10 @@ impl Script<'_> {
             why.kind,
             RefusalKind::Ended(Disarmed::LinkLost | Disarmed::Resume)
         );
+        if self.owes_stop {
+            // The hand goes on to where it was sent. The stop waits for its link.
+            drop(self.hand.link.stop());
+        }
         self.told
             .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
@@ -390,8 +394,7 @@ impl Script<'_> {
         // Until it is confirmed.
         (self.right, self.owes_stop) = (None, true);
         let link = self.hand.link.clone();
-        let stopping =
-            async move { Done::Stopped(session::stopped(&link, &mut link.records()).await) };
+        let stopping = async move { Done::Stopped(session::stopped(&link).await) };
         self.begin(Task::of(id, stopping))
     }
 

@@ -1,22 +1,26 @@
 //! Whether feedback lives, and where the joints must be if it does not. Pure; what follows from it is the session's.
 //!
-//! A hand that moves changes something in angle, force, current or touch at each look. Where the joints must have moved visibly
-//! by what they were told, and nothing at all changes, frames may be valid and their values old all the same.
+//! Each joint is judged by itself: where it must have moved visibly by what it was told, its drive does not say why it could not,
+//! and its own angle is unchanged, frames may be valid and the angle old all the same, whatever else in the hand changes.
 
 use crate::hand::{Angle, AngleReading, Dof, Finger, Group, Groups, HandSample, Moment, PerDof};
 use crate::hand::{RegisterWrite, Speed, Status, Target, register};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Feedback that stands still for so long, counted from where motion should have been seen, is in doubt: about half a second from
+/// An angle that is unchanged for this long, counted from where motion should have been seen, is in doubt: about half a second from
 /// the last change or the command.
 pub(crate) const FROZEN_AFTER: Duration = Duration::from_millis(450);
-/// Looks at the angles in this time at least: a pause in reading says nothing.
-const LOOKS_MIN: u32 = 5;
-/// Looks after which a stop already counts on nothing that is read.
-const LOOKS_SUSPECT: u32 = 2;
+/// Readings of the angles in this time at least: a pause in reading says nothing.
+const READINGS_MIN: u32 = 5;
+/// Readings after which a stop already relies on nothing that this joint reports …
+const SUSPECT_READINGS: u32 = 2;
+/// … over this time: a hand that acts later than most is not frozen.
+const SUSPECT_AFTER: Duration = Duration::from_millis(30);
 /// So many counts of ANGLE_ACT are a visible move: more than noise, and more than a joint may rest beside its target.
 const VISIBLE: f64 = 25.0;
+/// A drive that reports that it arrived may rest this many counts beside its target: some joints end before the range does.
+const ARRIVED_WITHIN: f64 = 50.0;
 /// From a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
 /// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
@@ -30,25 +34,38 @@ struct Command {
     speeds: PerDof<Option<i16>>,
 }
 
-/// Where the joints were when feedback was last seen to live.
+/// Readings of one joint that should have shown motion and did not.
 #[derive(Debug, Clone, Copy)]
-struct Base {
+struct Unchanged {
+    since: Moment,
+    last: Moment,
+    readings: u32,
+    /// Something else that the hand reports changed meanwhile.
+    hand_lives: bool,
+}
+
+/// One joint: where it was seen, and where it must be.
+#[derive(Debug, Clone, Copy)]
+struct Joint {
+    seen: i16,
+    /// Where it must be at `at`, by what it was told since it was last seen to live.
+    estimate: f64,
     at: Moment,
-    angles: PerDof<i16>,
+    unchanged: Option<Unchanged>,
+    /// It moved, or its drive reported that it does, since it was last at rest where it belongs.
+    began: bool,
+    /// What is read of it counts for nothing until its angle changes.
+    doubted: bool,
 }
 
 /// Watches feedback of one conversation.
 #[derive(Debug, Default)]
 pub(crate) struct FeedbackWatch {
     last: HandSample,
-    base: Option<Base>,
-    /// Oldest first; the first is in force at the base.
+    joints: PerDof<Option<Joint>>,
+    /// Oldest first.
     commands: VecDeque<Command>,
     speeds_written: Option<Moment>,
-    /// The first look that should have shown motion and did not, the newest one, and how many there were.
-    still: Option<(Moment, Moment, u32)>,
-    /// What is read counts for nothing until it changes.
-    doubted: bool,
 }
 
 impl FeedbackWatch {
@@ -87,33 +104,93 @@ impl FeedbackWatch {
         self.commands.push_back(command);
     }
 
-    /// Takes what was read.
+    /// Applies what was read.
     pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups) {
         self.take_speeds(sample, fresh);
         let before = std::mem::replace(&mut self.last, *sample);
         if has_changed(&before, sample, fresh) {
-            self.still = None;
-            self.doubted = false;
-            self.base = base(sample);
-            self.forget_old();
-            return;
+            let unchanged = self
+                .joints
+                .iter_mut()
+                .filter_map(|(_, joint)| joint.as_mut());
+            for unchanged in unchanged.filter_map(|joint| joint.unchanged.as_mut()) {
+                unchanged.hand_lives = true;
+            }
         }
         let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
             return;
         };
-        if self.base.is_none() {
-            self.base = base(sample);
+        for dof in Dof::ALL {
+            // An angle that makes no sense says nothing of where the joint is.
+            if angle.value[dof].hold().is_some() {
+                self.joints[dof] = Some(self.judged(dof, angle.value[dof], angle.asked));
+            }
         }
-        let should_move = |dof: &Dof| {
-            let Some(reckoned) = self.reckoned(*dof, angle.asked) else {
-                return false;
+        self.forget_old(angle.asked);
+    }
+
+    /// A joint after this reading of its angle.
+    fn judged(&self, dof: Dof, angle: AngleReading, asked: Moment) -> Joint {
+        let seen = angle.raw();
+        let status = self.last.status.map(|status| status.value[dof]);
+        let is_stopped = status.is_some_and(Status::is_stopped);
+        let known = self.joints[dof].filter(|joint| joint.seen == seen);
+        let Some(mut joint) = known else {
+            return Joint {
+                seen,
+                estimate: f64::from(seen),
+                at: asked,
+                unchanged: None,
+                began: !is_stopped && self.joints[dof].is_some(),
+                doubted: false,
             };
-            let way = reckoned - f64::from(angle.value[*dof].raw());
-            way.abs() >= VISIBLE && !(way < 0.0 && is_blocked(sample, *dof))
         };
-        if self.still.is_some() || Dof::ALL.iter().any(should_move) {
-            let (since, _, looks) = self.still.unwrap_or((angle.asked, angle.asked, 0));
-            self.still = Some((since, angle.asked, looks.saturating_add(1)));
+        joint.estimate = self.estimate(dof, &joint, asked);
+        joint.at = asked;
+        let way = joint.estimate - f64::from(seen);
+        if self.has_reason(dof, &joint) {
+            joint.estimate = f64::from(seen);
+            joint.unchanged = None;
+            joint.began = false;
+            return joint;
+        }
+        let is_visible = way.abs() >= VISIBLE;
+        joint.began |= status.is_some_and(Status::is_moving);
+        joint.began &= is_visible || !is_stopped;
+        // Back where it is seen, it may have been there all the time, unless nothing in the hand changes.
+        if !is_visible
+            && joint
+                .unchanged
+                .is_some_and(|unchanged| unchanged.hand_lives)
+        {
+            joint.unchanged = None;
+        }
+        if is_visible || joint.unchanged.is_some() {
+            let unchanged = joint.unchanged.get_or_insert(Unchanged {
+                since: asked,
+                last: asked,
+                readings: 0,
+                hand_lives: false,
+            });
+            unchanged.last = asked;
+            unchanged.readings = unchanged.readings.saturating_add(1);
+        }
+        joint
+    }
+
+    /// True if the drive itself reports why the joint does not go further the way it was told.
+    fn has_reason(&self, dof: Dof, joint: &Joint) -> bool {
+        let Some(status) = self.last.status.map(|status| status.value[dof]) else {
+            return false;
+        };
+        let target = self.commands.back().and_then(|told| told.targets[dof]);
+        match status {
+            Status::ForceReached => joint.estimate < f64::from(joint.seen),
+            Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
+            Status::PositionReached => target.is_some_and(|target| {
+                (f64::from(target) - f64::from(joint.seen)).abs() <= ARRIVED_WITHIN
+            }),
+            Status::Releasing | Status::Grasping | Status::Unknown(_) => false,
         }
     }
 
@@ -129,49 +206,96 @@ impl FeedbackWatch {
         }
     }
 
-    fn forget_old(&mut self) {
-        let Some(base) = self.base else { return };
+    /// Forgets commands that others have replaced in every estimate.
+    fn forget_old(&mut self, asked: Moment) {
+        let at = self
+            .joints
+            .iter()
+            .filter_map(|(_, joint)| Some(joint.as_ref()?.at))
+            .min();
+        let at = at.unwrap_or(asked);
         while let Some(second) = self.commands.get(1)
-            && second.at.plus(DEAD_TIME) <= base.at
+            && second.at.plus(DEAD_TIME) <= at
         {
             self.commands.pop_front();
         }
     }
 
-    /// True if motion was asked for, and nothing changed for so long that feedback must be taken for frozen.
+    fn unchanged(&self) -> impl Iterator<Item = (&Joint, &Unchanged)> {
+        let joints = self.joints.iter().filter_map(|(_, joint)| joint.as_ref());
+        joints.filter_map(|joint| Some((joint, joint.unchanged.as_ref()?)))
+    }
+
+    /// True if a joint was told to move, and its angle is unchanged for so long that it must be taken for frozen. A joint that never
+    /// began and whose drive reports that it rests is a dead drive as likely, while the rest of the hand lives: that is no reason to
+    /// end what goes on.
     pub(crate) fn is_frozen(&self) -> bool {
-        self.still.is_some_and(|(since, last, looks)| {
-            looks >= LOOKS_MIN && last.since(since) >= FROZEN_AFTER
+        let is_stopped = |(dof, _): &(Dof, Joint)| {
+            let status = self.last.status.map(|status| status.value[*dof]);
+            status.is_some_and(Status::is_stopped)
+        };
+        let joints = self
+            .joints
+            .iter()
+            .filter_map(|(dof, joint)| Some((dof, (*joint)?)));
+        let mut frozen = joints.filter(|(_, joint)| joint.unchanged.is_some_and(|it| it.is_long()));
+        frozen.any(|own| {
+            let hand_lives = own
+                .1
+                .unchanged
+                .is_some_and(|unchanged| unchanged.hand_lives);
+            !hand_lives || own.1.began || !is_stopped(&own)
         })
     }
 
-    /// True if motion should have been seen and was not: no proof yet, but a stop must not count on what is read.
+    /// True if motion should have been seen in a joint and was not: no proof yet, but a stop must not rely on what is read.
     pub(crate) fn is_suspect(&self) -> bool {
-        self.still
-            .is_some_and(|(_, _, looks)| looks >= LOOKS_SUSPECT)
+        self.unchanged()
+            .any(|(_, unchanged)| unchanged.is_suspect())
     }
 
-    /// From now on, until something changes, what is read counts for nothing.
-    pub(crate) const fn doubt(&mut self) {
-        self.doubted = true;
-    }
-
-    pub(crate) const fn is_doubted(&self) -> bool {
-        self.doubted
-    }
-
-    /// The targets that hold the joints where they must be at this time; a joint of which that is not known is left alone.
-    pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
-        PerDof::from_fn(|dof| {
-            self.reckoned(dof, now)
-                .map_or(Target::Leave, |angle| Target::Go(nearest(angle)))
+    /// True if a stop that goes on must not rely on what is read either: nothing in the hand changes, or a joint does not for long.
+    pub(crate) fn is_suspect_in_stop(&self) -> bool {
+        let is_new = |joint: &Joint| !joint.doubted;
+        self.unchanged().any(|(joint, unchanged)| {
+            is_new(joint)
+                && (unchanged.is_long() || unchanged.is_suspect() && !unchanged.hand_lives)
         })
     }
 
-    /// Where a joint must be: from where it was last seen on to what it was told, as fast as it was told, and never beyond.
-    fn reckoned(&self, dof: Dof, now: Moment) -> Option<f64> {
-        let base = self.base?;
-        let mut angle = f64::from(base.angles[dof]);
+    /// From now on, until their angles change, what is read of the suspect joints counts for nothing.
+    pub(crate) fn doubt(&mut self) {
+        for joint in self
+            .joints
+            .iter_mut()
+            .filter_map(|(_, joint)| joint.as_mut())
+        {
+            joint.doubted |= joint
+                .unchanged
+                .is_some_and(|unchanged| unchanged.is_suspect());
+        }
+    }
+
+    /// True if any joint is in doubt.
+    pub(crate) fn is_doubted(&self) -> bool {
+        self.doubted().iter().any(|(_, doubted)| *doubted)
+    }
+
+    /// The joints in doubt.
+    pub(crate) fn doubted(&self) -> PerDof<bool> {
+        self.joints
+            .map(|joint| joint.is_some_and(|joint| joint.doubted))
+    }
+
+    /// Where a joint in doubt must be at this time; `None` for one that is not in doubt.
+    pub(crate) fn hold_target(&self, dof: Dof, now: Moment) -> Option<Target> {
+        let joint = self.joints[dof].filter(|joint| joint.doubted)?;
+        Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
+    }
+
+    /// Where a joint must be: from where it was on to what it was told, as fast as it was told, and never beyond.
+    fn estimate(&self, dof: Dof, joint: &Joint, now: Moment) -> f64 {
+        let mut angle = joint.estimate;
         let begins = self
             .commands
             .iter()
@@ -181,11 +305,21 @@ impl FeedbackWatch {
             let (Some(target), Some(speed)) = (command.targets[dof], command.speeds[dof]) else {
                 continue;
             };
-            let lasts = end.min(now).since(begin.max(base.at)).as_secs_f64();
+            let lasts = end.min(now).since(begin.max(joint.at)).as_secs_f64();
             let most = f64::from(speed) * Speed::ANGLE_PER_UNIT * lasts;
             angle += (f64::from(target) - angle).clamp(-most, most);
         }
-        Some(angle)
+        angle
+    }
+}
+
+impl Unchanged {
+    fn is_suspect(&self) -> bool {
+        self.readings >= SUSPECT_READINGS && self.last.since(self.since) >= SUSPECT_AFTER
+    }
+
+    fn is_long(&self) -> bool {
+        self.readings >= READINGS_MIN && self.last.since(self.since) >= FROZEN_AFTER
     }
 }
 
@@ -197,37 +331,12 @@ fn put(into: &mut PerDof<Option<i16>>, newer: &PerDof<Option<i16>>) {
     }
 }
 
-/// The joints as they were read, if all of that makes sense.
-fn base(sample: &HandSample) -> Option<Base> {
-    let angle = sample.angle?;
-    let is_sensible = Dof::ALL
-        .iter()
-        .all(|dof| angle.value[*dof].hold().is_some());
-    is_sensible.then(|| Base {
-        at: angle.asked,
-        angles: angle.value.map(AngleReading::raw),
-    })
-}
-
 /// True if any measured value differs from the one before, or is the first.
 fn has_changed(before: &HandSample, now: &HandSample, fresh: Groups) -> bool {
     let differs = |group: Group| fresh.contains(group) && before.memory(group) != now.memory(group);
     let measured = [Group::Angle, Group::Force, Group::Current].into_iter();
     let touch = Finger::ALL.map(Group::Tactile);
     measured.chain(touch).any(differs)
-}
-
-/// True if the drive itself says why it does not close further.
-fn is_blocked(sample: &HandSample, dof: Dof) -> bool {
-    let stopped = |status: Status| {
-        matches!(
-            status,
-            Status::ForceReached | Status::CurrentProtection | Status::Stalled | Status::DriveFault
-        )
-    };
-    sample
-        .status
-        .is_some_and(|status| stopped(status.value[dof]))
 }
 
 fn nearest(angle: f64) -> Angle {
@@ -388,14 +497,14 @@ mod tests {
                 frozen: None,
             },
             Case {
-                name: "pushes: only its force changes",
+                name: "pushes without a word of its drive: only its force changes",
                 speed: 250,
                 target: go(0),
                 tells: |t| Told {
                     force: i16::try_from(t / 100 % 3).unwrap(),
                     ..at(1000, 1)
                 },
-                frozen: None,
+                frozen: Some(500..650),
             },
         ];
         for case in cases {
@@ -427,7 +536,10 @@ mod tests {
     #[test]
     fn the_joints_are_reckoned_from_where_they_were_seen_to_what_they_were_told_and_not_beyond() {
         let mut watch = watch(500, go(200));
-        let held = |watch: &FeedbackWatch, t| watch.hold_targets(ms(t))[Dof::Index];
+        let held = |watch: &FeedbackWatch, t| {
+            let joint = watch.joints[Dof::Index].unwrap();
+            go(nearest(watch.estimate(Dof::Index, &joint, ms(t))).get())
+        };
         assert_eq!(held(&watch, 64), go(1000));
         // 760 counts a second after the dead time.
         assert_eq!(held(&watch, 564), go(620));
@@ -440,7 +552,10 @@ mod tests {
         watch.wrote(&hold.writes()[0], ms(300));
         assert_eq!(held(&watch, 364), go(775));
         assert_eq!(held(&watch, 1000), go(824));
-        let nothing = FeedbackWatch::default();
-        assert_eq!(nothing.hold_targets(ms(5))[Dof::Index], Target::Leave);
+        assert_eq!(
+            watch.hold_target(Dof::Index, ms(1000)),
+            None,
+            "it is not in doubt"
+        );
     }
 }

@@ -89,6 +89,7 @@ fn every_seeded_schedule_keeps_the_rules() {
     assert!(seen.wishes > schedules / 2, "{seen:?}");
     assert!(seen.setpoint_frames > schedules / 2, "{seen:?}");
     assert!(seen.stops_seen > schedules / 2, "{seen:?}");
+    assert!(seen.stops_kept > schedules / 20, "{seen:?}");
     assert!(seen.confirmed > schedules / 8, "{seen:?}");
     assert!(seen.losses > schedules / 2, "{seen:?}");
     assert!(seen.reconnects > schedules / 2, "{seen:?}");

@@ -9,7 +9,7 @@ use handscope::hand::{
     AngleReading, Dof, Finger, Group, Groups, HandCommand, HandSample, Moment, PerDof, Span,
     Target, Timed,
 };
-use handscope::link::{Lease, LinkHandle, LinkStatus, RequestError};
+use handscope::link::{Lease, LinkHandle, LinkStatus, RequestError, STOP_PENDING};
 use handscope::record::{Disarmed, Hold, LinkState, Record};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -70,6 +70,7 @@ pub(crate) struct Seen {
     pub(crate) armed: u64,
     pub(crate) stops_pressed: u64,
     pub(crate) stops_seen: u64,
+    pub(crate) stops_kept: u64,
     pub(crate) confirmed: u64,
     pub(crate) losses: u64,
     pub(crate) reconnects: u64,
@@ -98,6 +99,7 @@ impl Seen {
         self.armed += more.armed;
         self.stops_pressed += more.stops_pressed;
         self.stops_seen += more.stops_seen;
+        self.stops_kept += more.stops_kept;
         self.confirmed += more.confirmed;
         self.losses += more.losses;
         self.reconnects += more.reconnects;
@@ -122,6 +124,8 @@ pub(crate) struct Witness {
     poses: Vec<(Moment, PerDof<AngleReading>)>,
     newest: HandSample,
     stops: Vec<Moment>,
+    /// All presses, also those without a live hand.
+    presses: Vec<Moment>,
     open: BTreeMap<u64, (Moment, Request)>,
     jobs: Vec<(Moment, Moment)>,
     wishes: Vec<Wish>,
@@ -153,6 +157,7 @@ impl Witness {
             poses: Vec::new(),
             newest: HandSample::default(),
             stops: Vec::new(),
+            presses: Vec::new(),
             open: BTreeMap::new(),
             jobs: Vec::new(),
             wishes: Vec::new(),
@@ -272,6 +277,7 @@ impl Witness {
     }
 
     pub(crate) fn stop_pressed(&mut self, link: &Client, now: Moment) {
+        self.presses.push(now);
         if link.status().state.is_live() {
             self.stops.push(now);
             self.seen.stops_pressed += 1;
@@ -388,6 +394,7 @@ impl Witness {
             self.check_motion(frame);
         }
         self.check_stops(&sent);
+        self.check_kept_stops(&sent);
         self.check_recovery(link, now);
         self.check_rests(&sent);
         self.story(&sent, now).check();
@@ -535,6 +542,52 @@ impl Witness {
             }
             self.seen.stops_seen += 1;
             self.check_repeats(pressed, lost, sent);
+        }
+    }
+
+    /// A stop that feedback had not confirmed when the link was lost, or that was pressed while it was, comes first when the hand is
+    /// back in time.
+    fn check_kept_stops(&mut self, sent: &[Sent]) {
+        for pressed in self.presses.clone() {
+            let from = self.states.partition_point(|(at, _)| *at <= pressed);
+            let before = from.saturating_sub(1);
+            let is_confirmed =
+                |two: &[(Moment, LinkState)]| two[0].1 == LinkState::Holding && two[1].1.is_live();
+            let lost = self.states[before..]
+                .iter()
+                .position(|(_, state)| !state.is_live());
+            let Some(lost) = lost.map(|lost| before + lost) else {
+                continue;
+            };
+            if self.states[before..lost].windows(2).any(is_confirmed) {
+                continue;
+            }
+            let since = self.states[lost].0.max(pressed);
+            let back = self.states[lost..]
+                .iter()
+                .position(|(_, state)| state.is_live());
+            let Some(back) = back.map(|back| lost + back) else {
+                continue;
+            };
+            let (at, _) = self.states[back];
+            if at.since(since) > STOP_PENDING {
+                continue;
+            }
+            let next = self.states.get(back + 1);
+            assert!(
+                next.is_some_and(|(then, state)| *then == at && *state == LinkState::Holding),
+                "seed {}: the stop at {pressed:?} is forgotten at {at:?}: {next:?}",
+                self.seed
+            );
+            let written = sent
+                .iter()
+                .find(|frame| frame.at >= at && frame.written.is_some());
+            assert!(
+                written.is_none_or(|frame| frame.address == 1486),
+                "seed {}: the stop at {pressed:?} does not come first at {at:?}: {written:?}",
+                self.seed
+            );
+            self.seen.stops_kept += 1;
         }
     }
 
