@@ -55,7 +55,10 @@ fn lines(hand: &Endpoint, sheet: QuirkSheet) -> Vec<String> {
         ),
         None => format!("{code} (no meaning in the manual PRJ-02-TS-U-001 V1.0.0)"),
     });
-    let is_packed = matches!(hand, Endpoint::Tcp { .. } | Endpoint::Rtu(_));
+    let is_packed = matches!(
+        hand,
+        Endpoint::Tcp { .. } | Endpoint::Rtu(_) | Endpoint::RtuTcp(_)
+    );
     let packing = is_packed.then(|| row("packing", sheet.packing));
     let head = [
         row("hand", Some(hand.to_string())),

@@ -7,7 +7,7 @@ use crate::link::Stop;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
 };
-use crate::record::Disarmed;
+use crate::record::{Disarmed, LinkState};
 use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
@@ -17,6 +17,8 @@ use tokio::time::{Instant, sleep};
 
 /// A hand that is there answers long before; after this the user is told why nothing comes.
 pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+/// While something answers and is being identified, the wait lasts this long: a way to a hand may be slow.
+const IDENTIFIED_WITHIN: Duration = Duration::from_secs(6);
 /// How often the wait checks.
 const LOOK_EACH: Duration = Duration::from_millis(10);
 
@@ -119,7 +121,7 @@ impl HeatLevel {
 
 /// Waits until the hand answers. The error says why it does not.
 pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::Result<()> {
-    let until = Instant::now() + ANSWER_WITHIN;
+    let begun = Instant::now();
     loop {
         let status = link.status();
         if status.state.is_live() {
@@ -128,10 +130,18 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
         if let Some(trouble) = status.trouble {
             bail!(no_hand(endpoint, &trouble));
         }
-        if Instant::now() >= until {
+        if begun.elapsed() >= patience(&status) {
             bail!(unanswered(endpoint));
         }
         sleep(LOOK_EACH).await;
+    }
+}
+
+/// How long a link in this state is waited for.
+pub(crate) fn patience(status: &LinkStatus) -> Duration {
+    match status.state {
+        LinkState::Identifying => IDENTIFIED_WITHIN,
+        _ => ANSWER_WITHIN,
     }
 }
 

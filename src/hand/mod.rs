@@ -37,7 +37,7 @@ pub use feedback::undocumented::Undocumented;
 pub use heat::DriveHeat;
 pub use moment::{Moment, Timed};
 pub use quantity::{Quantity, QuantityRow, Touch};
-pub use refusal::{ModbusException, Refusal};
+pub use refusal::{ModbusException, Presence, Refusal};
 pub use register::{REGISTERS, Register, Span};
 pub use setpoints::{ArmEpoch, Setpoints};
 pub use setting::{Setting, Trigger};

@@ -1,7 +1,9 @@
 //! Why a hand does not do what it is asked: its own exception (manual 2.4, 2.5), or the rule against unsafe writes.
 
 /// Why a Modbus server does not do what it was asked, as the standard numbers it. Unknown codes are kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error, serde::Serialize, serde::Deserialize,
+)]
 pub enum ModbusException {
     /// 1: it does not know this function.
     #[error("Illegal function")]
@@ -69,6 +71,32 @@ impl ModbusException {
     }
 }
 
+/// What an exception tells of the hand that was asked. It is an answer to a request, never feedback.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Presence {
+    /// The hand itself refused: it is there.
+    Answers,
+    /// Whoever refused has too much to do. If that lasts, the hand does not answer.
+    Busy,
+    /// A gateway answered for a hand that does not.
+    Absent,
+}
+
+impl ModbusException {
+    /// What this exception tells of the hand.
+    pub const fn presence(self) -> Presence {
+        match self {
+            Self::IllegalFunction
+            | Self::IllegalAddress
+            | Self::IllegalValue
+            | Self::MemoryParity
+            | Self::Other(_) => Presence::Answers,
+            Self::Acknowledge | Self::Busy => Presence::Busy,
+            Self::Failure | Self::NoPath | Self::NoAnswer => Presence::Absent,
+        }
+    }
+}
+
 /// Why the hand, or the rule against unsafe writes, said no.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Refusal {
@@ -85,6 +113,18 @@ pub enum Refusal {
         "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"
     )]
     PackingUnsafe,
+    /// Nothing was sent: too little was read to know that this is a hand of the manual's series.
+    #[error(
+        "it is not known yet whether this is a hand of this series, and nothing is written before"
+    )]
+    NotIdentified,
+}
+
+impl Refusal {
+    /// True if the hand itself refused.
+    pub fn is_by_the_hand(self) -> bool {
+        matches!(self, Self::Exception(exception) if exception.presence() == Presence::Answers)
+    }
 }
 
 #[cfg(test)]
@@ -110,6 +150,18 @@ mod tests {
             assert_eq!(exception.code(), code);
             assert_eq!(exception.to_string(), words);
             assert_eq!(Refusal::from(exception).to_string(), words);
+        }
+    }
+
+    #[test]
+    fn what_gateways_say_for_a_hand_is_no_answer_of_the_hand() {
+        for code in 0..=u8::MAX {
+            let presence = match code {
+                4 | 10 | 11 => Presence::Absent,
+                5 | 6 => Presence::Busy,
+                _ => Presence::Answers,
+            };
+            assert_eq!(ModbusException::of(code).presence(), presence, "{code}");
         }
     }
 }

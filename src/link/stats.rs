@@ -25,12 +25,18 @@ pub struct LinkStats {
     pub checksum_errors: u64,
     /// Times that noise was skipped.
     pub resyncs: u64,
-    /// Replies that belonged to no open request: late, doubled, or someone else's.
+    /// Replies that belonged to no open request: doubled, someone else's, or late where that cannot be known.
     pub foreign_replies: u64,
+    /// Replies that came after their request was given up, where that can be known.
+    pub late_replies: u64,
     /// Requests of another controller, and setpoints that it changed.
     pub foreign_requests: u64,
     /// Requests that the hand refused.
     pub refusals: u64,
+    /// Replies that held values.
+    pub readings: u64,
+    /// Those of them with a value that no hand should send.
+    pub implausible: u64,
     /// Times the wire was opened again.
     pub reconnects: u64,
     /// Register writes sent.

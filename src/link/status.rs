@@ -1,8 +1,9 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
-use crate::hand::{ArmEpoch, DriveHeat, Force, Moment, PerDof, Speed};
+use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Speed};
 use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
+use crate::link::series::Series;
 use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 
@@ -24,6 +25,8 @@ pub struct LinkStatus {
     pub holder: Option<LeaseHolder>,
     /// What the hand answers in its own way, as found when the wire was opened.
     pub quirks: Quirks,
+    /// Whether it is a hand of this series; only such a hand is written to.
+    pub series: Series,
     /// True if the adapter gives back what is sent.
     pub echoes: bool,
     /// Another controller talks to this hand, noticed in the last seconds.
@@ -42,6 +45,8 @@ pub struct LinkStatus {
     pub latency_timer_ms: Option<u16>,
     /// Round trips stand at the ticks of such a timer, where the system does not tell.
     pub latency_ticks: bool,
+    /// How long replies take, milliseconds, where that is longer than a hand takes: the way to it is slow.
+    pub slow_ms: Option<u16>,
     /// The line is left to a hand that saves or calibrates: values grow old meanwhile. A stop still passes.
     pub line_left: bool,
     /// The drive with the highest temperature, if that is warm or implausible.
@@ -116,6 +121,33 @@ pub enum LinkTrouble {
         place: String,
         /// Unit that was asked.
         unit: u16,
+    },
+    /// Exceptions come in place of answers: a gateway is there, and the hand behind it is not.
+    #[error(
+        "{place} answers, but the hand behind it does not: {exception} (Modbus exception {code:02X}); check the hand's power and its cable to the gateway",
+        code = exception.code()
+    )]
+    Gateway {
+        /// Address or port of the gateway.
+        place: String,
+        /// What it said last.
+        exception: ModbusException,
+    },
+    /// What answers is no hand of this series: the manual's addresses hold other things there.
+    #[error(
+        "{place} answers like a hand, but not of this series: its registers hold other things, so nothing is shown and nothing is written"
+    )]
+    OtherSeries {
+        /// Address, port or interface.
+        place: String,
+    },
+    /// Nothing but what was sent came back.
+    #[error(
+        "{place} only gives back what is sent: the adapter echoes, and no hand answers behind it; check the hand's power and cable"
+    )]
+    OnlyEcho {
+        /// Port or address.
+        place: String,
     },
     /// The hand answered and then fell silent for several requests in a row.
     #[error("the hand stopped answering: {silent} requests without a reply")]

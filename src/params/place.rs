@@ -94,7 +94,9 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
     let byte = u8::try_from(number).ok()?;
     let mut place = hand.clone();
     match (&mut place, id) {
-        (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::HandId) => line.id = byte,
+        (Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line), ParamId::HandId) => {
+            line.id = byte
+        }
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::ReduRatio) => {
             line.baud = SerialSpeed::of_code(byte.into())?.baud();
         }
@@ -123,6 +125,8 @@ pub fn factory_place(hand: &Endpoint) -> Endpoint {
             line.id = id;
             line.baud = SerialSpeed::Baud115200.baud();
         }
+        // The speed behind a device server is set there.
+        Endpoint::RtuTcp(line) => line.id = id,
         Endpoint::Can { id: at, .. }
         | Endpoint::Slcan { id: at, .. }
         | Endpoint::UsbCan { id: at, .. } => *at = u16::from(id),

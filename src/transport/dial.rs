@@ -23,8 +23,9 @@ impl Dial for SystemDial {
                 Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
                     Ok(Box::new(serial::open(&line)?) as BoxedWire)
                 }
-                Endpoint::Tcp { host, port, .. } => {
-                    Ok(Box::new(tcp::connect(&host, port).await?) as BoxedWire)
+                Endpoint::Tcp { .. } | Endpoint::RtuTcp(_) => {
+                    let (host, port) = endpoint.host().unwrap_or_default();
+                    Ok(Box::new(tcp::connect(host, port).await?) as BoxedWire)
                 }
                 Endpoint::Slcan { port, .. } => {
                     Ok(Box::new(serial::open(&adapter(port, ADAPTER_BAUD))?) as BoxedWire)

@@ -25,6 +25,15 @@ mod idle;
 #[cfg(unix)]
 mod line;
 mod memory;
+#[path = "../it/trials/other_hand.rs"]
+#[expect(
+    dead_code,
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "it is a file of the tests, which use more of it and may stop at what is wrong"
+)]
+mod other_hand;
 mod pictures;
 mod plain;
 mod press;

@@ -1,8 +1,9 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
 use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
+use crate::link::LinkStats;
 use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
-use crate::transport::{PortFacts, Route};
+use crate::transport::{Endpoint, PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -12,6 +13,16 @@ const TIMER_MS: u16 = 2;
 const TIMEOUTS_PER_MILLE: u64 = 10;
 /// Too many wrong checksums, per thousand (hazards: more than 1 in 1000 is a bad line).
 const CHECKSUMS_PER_MILLE: u64 = 1;
+/// Too many bursts of noise, per thousand.
+const NOISE_PER_MILLE: u64 = 10;
+/// Too many replies that nobody asked for, per thousand: a hand that doubles one in sixteen is odd, not two.
+const FOREIGN_PER_MILLE: u64 = 100;
+/// Too many refusals, per thousand.
+const REFUSALS_PER_MILLE: u64 = 10;
+/// Too many readings with an impossible value, per thousand.
+const IMPLAUSIBLE_PER_MILLE: u64 = 10;
+/// What to do about another controller.
+const OTHER_MASTER: &str = "close the other program, or take the other master off the bus";
 /// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
 
@@ -48,7 +59,7 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     match &checkup.answer {
         // The sentence says itself what to do.
         Err(why) => found.push(wrong(why, "")),
-        Ok(measured) => answers(measured, &mut found),
+        Ok(measured) => answers(checkup, measured, &mut found),
     }
     let measured = checkup.answer.as_ref().ok();
     match &checkup.connection {
@@ -61,45 +72,31 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     found
 }
 
-fn answers(measured: &Measured, found: &mut Vec<Finding>) {
+fn answers(checkup: &Checkup, measured: &Measured, found: &mut Vec<Finding>) {
     if let Some(why) = &measured.lost {
         found.push(wrong(
             format!("the link was lost during the check: {why}"),
             "check plug, cable and the hand's power",
         ));
     }
-    let requests = measured.requests().max(1);
-    let per_mille = |count: u64| count * 1000 / requests;
-    let stats = &measured.stats;
-    if per_mille(stats.timeouts) > TIMEOUTS_PER_MILLE {
-        found.push(wrong(
-            format!(
-                "{} of {requests} requests went without a reply",
-                stats.timeouts
-            ),
-            "check the cable, the termination, and whether two devices share an id",
-        ));
+    let id = id_of(&checkup.endpoint);
+    counters(measured, id, found);
+    if measured.status.other_controller && measured.stats.foreign_requests == 0 {
+        found.push(wrong("another controller talks to this hand", OTHER_MASTER));
     }
-    if per_mille(stats.checksum_errors) > CHECKSUMS_PER_MILLE {
-        found.push(wrong(
-            format!("{} replies had a wrong checksum", stats.checksum_errors),
-            "check termination, ground and cable length; on RS485, Modbus RTU has a better check than the maker's framing",
-        ));
-    }
-    if measured.status.other_controller || stats.foreign_requests > 0 {
-        found.push(wrong(
-            format!(
-                "another controller talks to this hand ({} times noticed)",
-                stats.foreign_requests
-            ),
-            "close the other program, or take the other master off the bus",
+    if let Some(ms) = measured.status.slow_ms {
+        found.push(hint(
+            format!("replies take up to {ms} ms: feedback and a stop come as much later"),
+            "check what the way to the hand leads through: relays, tunnels, wireless; 'handscope help wiring' says what a delay means for moving the hand",
         ));
     }
     let slowest = measured
         .windows
         .iter()
         .filter_map(|window| window.percentile(50));
-    if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW) {
+    // A way that is known to be slow has been named.
+    let is_named = measured.status.slow_ms.is_some();
+    if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW && !is_named) {
         found.push(wrong(
             format!("a reply takes {} ms", trip.as_millis()),
             "choose a higher baud rate, or check the latency of adapter and network",
@@ -110,6 +107,135 @@ fn answers(measured: &Measured, found: &mut Vec<Finding>) {
             "the adapter echoes what is sent; the echo is ignored",
             "nothing to do; switching the echo off would free the line",
         ));
+    }
+}
+
+/// A verdict on every count of the link. All fields are named here, so that a new one does not compile without a verdict.
+fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
+    let LinkStats {
+        timeouts,
+        checksum_errors,
+        resyncs,
+        foreign_replies,
+        late_replies,
+        foreign_requests,
+        refusals,
+        readings,
+        implausible,
+        reconnects,
+        writes,
+        dropped_events,
+        // What goes well, and what is judged as a round trip.
+        state_reads: _,
+        tactile_reads: _,
+        state_hz: _,
+        tactile_hz: _,
+        rtt_p50: _,
+        rtt_p99: _,
+        line: _,
+    } = measured.stats;
+    let requests = measured.requests().max(1);
+    let is_over = |count: u64, per_mille: u64| count * 1000 / requests > per_mille;
+    let mut judge = |is_found: bool, finding: Finding| {
+        if is_found {
+            found.push(finding);
+        }
+    };
+    judge(
+        is_over(timeouts, TIMEOUTS_PER_MILLE),
+        wrong(
+            format!("{timeouts} of {requests} requests went without a reply"),
+            "check the cable, the termination, and whether two devices share an id",
+        ),
+    );
+    judge(
+        is_over(checksum_errors, CHECKSUMS_PER_MILLE),
+        wrong(
+            format!("{checksum_errors} replies had a wrong checksum"),
+            "check termination, ground and cable length; on RS485, Modbus RTU has a better check than the maker's framing",
+        ),
+    );
+    judge(
+        is_over(resyncs, NOISE_PER_MILLE),
+        wrong(
+            format!("bytes that belong to no frame came {resyncs} times in {requests} requests"),
+            "check termination and ground, and that nothing else talks on this line",
+        ),
+    );
+    judge(
+        is_over(foreign_replies, FOREIGN_PER_MILLE),
+        two_devices(id, foreign_replies, requests),
+    );
+    judge(
+        is_over(late_replies, TIMEOUTS_PER_MILLE),
+        hint(
+            format!("{late_replies} replies came after they had been given up"),
+            "check what the way to the hand leads through: relays, tunnels, wireless",
+        ),
+    );
+    judge(
+        foreign_requests > 0,
+        wrong(
+            format!("another controller talks to this hand ({foreign_requests} times noticed)"),
+            OTHER_MASTER,
+        ),
+    );
+    judge(
+        is_over(refusals, REFUSALS_PER_MILLE),
+        refused(measured, refusals, requests),
+    );
+    judge(
+        implausible * 1000 > readings * IMPLAUSIBLE_PER_MILLE,
+        wrong(
+            format!("{implausible} of {readings} readings hold values that no hand should send"),
+            "check cable and ground, and that this is a hand of this series: 'handscope watch --json' shows the values",
+        ),
+    );
+    judge(
+        reconnects > 0,
+        wrong(
+            format!("the link was lost and came back {reconnects} times"),
+            "check plug, cable and the hand's power",
+        ),
+    );
+    judge(
+        writes > 0 || dropped_events > 0,
+        hint(
+            format!(
+                "{writes} writes were sent and {dropped_events} records dropped, which this check never does"
+            ),
+            "report this as an error of the program",
+        ),
+    );
+}
+
+fn two_devices(id: u16, replies: u64, requests: u64) -> Finding {
+    wrong(
+        format!(
+            "two devices answer as id {id}: {replies} replies came to {requests} requests that nobody had asked for"
+        ),
+        "take one of the two off the line and give it another id; if there is only one, it or its adapter sends replies twice or too late",
+    )
+}
+
+fn refused(measured: &Measured, refusals: u64, requests: u64) -> Finding {
+    let blocks = whole_blocks(measured);
+    wrong(
+        format!("{refusals} of {requests} requests were refused{blocks}"),
+        "a gateway that refuses now and then loses frames on the hand's side: check that cable; a hand that refuses the same registers always has none there",
+    )
+}
+
+/// Names the blocks that were refused each time.
+fn whole_blocks(measured: &Measured) -> String {
+    let refused = measured.windows.iter();
+    let names: Vec<&str> = refused
+        .filter(|window| window.refused > 0 && window.reads == 0)
+        .map(|window| window.name)
+        .collect();
+    match names.as_slice() {
+        [] => String::new(),
+        names => format!(", always those for {}", names.join(" and ")),
     }
 }
 
@@ -135,6 +261,11 @@ fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut 
         )),
         None => {}
     }
+}
+
+/// The id or unit that is asked.
+fn id_of(endpoint: &Endpoint) -> u16 {
+    endpoint.place_and_id().1
 }
 
 /// The command that fixes it.
@@ -210,8 +341,8 @@ mod tests {
     use super::*;
     use crate::cli::doctor::checkup::BlockTiming;
     use crate::hand::Span;
-    use crate::link::{LinkStats, LinkStatus};
-    use crate::transport::{Endpoint, UsbFound};
+    use crate::link::LinkStatus;
+    use crate::transport::UsbFound;
 
     fn healthy(endpoint: &Endpoint) -> Measured {
         let mut window = BlockTiming::new("angles", Span::new(1546, 12), endpoint);
@@ -338,6 +469,81 @@ mod tests {
             assert_eq!(*wrong, is_wrong, "{words}");
             assert!(words.contains(part), "{words}");
         }
+    }
+
+    #[test]
+    fn every_count_that_is_large_has_a_verdict() {
+        type Count = fn(&mut LinkStats) -> &mut u64;
+        // Named one by one: a count that is not here does not compile.
+        let LinkStats {
+            state_reads: _,
+            tactile_reads: _,
+            state_hz: _,
+            tactile_hz: _,
+            rtt_p50: _,
+            rtt_p99: _,
+            timeouts: _,
+            checksum_errors: _,
+            resyncs: _,
+            foreign_replies: _,
+            late_replies: _,
+            foreign_requests: _,
+            refusals: _,
+            readings: _,
+            implausible: _,
+            reconnects: _,
+            writes: _,
+            dropped_events: _,
+            line: _,
+        } = LinkStats::default();
+        let counts: [(Count, bool, &str); 11] = [
+            (|stats| &mut stats.timeouts, true, "without a reply"),
+            (|stats| &mut stats.checksum_errors, true, "wrong checksum"),
+            (|stats| &mut stats.resyncs, true, "no frame"),
+            (
+                |stats| &mut stats.foreign_replies,
+                true,
+                "two devices answer as id 1",
+            ),
+            (|stats| &mut stats.late_replies, false, "given up"),
+            (
+                |stats| &mut stats.foreign_requests,
+                true,
+                "another controller",
+            ),
+            (|stats| &mut stats.refusals, true, "were refused"),
+            (|stats| &mut stats.implausible, true, "no hand should send"),
+            (|stats| &mut stats.reconnects, true, "came back"),
+            (|stats| &mut stats.writes, false, "writes were sent"),
+            (|stats| &mut stats.dropped_events, false, "dropped"),
+        ];
+        for (count, is_wrong, part) in counts {
+            let found = told(ConnectionFacts::BuiltIn, |measured| {
+                measured.stats.readings = 1000;
+                *count(&mut measured.stats) = 564;
+            });
+            let [(wrong, words)] = found.as_slice() else {
+                unreachable!("{part}: {found:?}");
+            };
+            assert_eq!((*wrong, words.contains(part)), (is_wrong, true), "{words}");
+        }
+    }
+
+    #[test]
+    fn a_few_of_a_thousand_are_no_finding() {
+        let found = told(ConnectionFacts::BuiltIn, |measured| {
+            measured.stats = LinkStats {
+                timeouts: 3,
+                resyncs: 3,
+                foreign_replies: 60,
+                late_replies: 3,
+                refusals: 3,
+                readings: 1000,
+                implausible: 3,
+                ..LinkStats::default()
+            };
+        });
+        assert_eq!(found, []);
     }
 
     #[test]

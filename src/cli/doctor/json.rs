@@ -37,6 +37,7 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
         "other_controller": status.map(|status| status.other_controller),
         "foreign_setpoint": status.and_then(|status| status.foreign_setpoint),
         "latency_ticks": measured.map(|measured| measured.ticks_seen),
+        "slow_ms": status.and_then(|status| status.slow_ms),
         "windows": measured.map(|measured| measured.windows.iter().map(window_json).collect::<Vec<_>>()),
         "errors": measured.map(errors_json),
         "findings": found,
@@ -76,8 +77,12 @@ fn errors_json(measured: &Measured) -> Value {
         "checksum_errors": stats.checksum_errors,
         "resyncs": stats.resyncs,
         "foreign_replies": stats.foreign_replies,
+        "late_replies": stats.late_replies,
         "foreign_requests": stats.foreign_requests,
         "refusals": stats.refusals,
+        "readings": stats.readings,
+        "implausible": stats.implausible,
+        "reconnects": stats.reconnects,
     })
 }
 

@@ -78,7 +78,10 @@ async fn connection(endpoint: &Endpoint) -> ConnectionFacts {
             ConnectionFacts::Port(port_facts(port, &Sysfs::default()))
         }
         // A name that cannot be resolved is told again, with its reason, when it is dialled.
-        Endpoint::Tcp { host, port, .. } => ConnectionFacts::Net(route(host, *port).await.ok()),
+        Endpoint::Tcp { .. } | Endpoint::RtuTcp(_) => {
+            let (host, port) = endpoint.host().unwrap_or_default();
+            ConnectionFacts::Net(route(host, port).await.ok())
+        }
         Endpoint::Can { interface, .. } => {
             ConnectionFacts::Can(can_facts(interface, Path::new("/sys")))
         }

@@ -124,6 +124,10 @@ fn answer(measured: &Measured) -> Vec<String> {
         row("others", if others { "another controller" } else { "none" }),
         row("errors", errors(measured)),
     ]);
+    let slow = status
+        .slow_ms
+        .map(|ms| format!("replies take up to {ms} ms"));
+    lines.extend(slow.map(|slow| row("delay", slow)));
     lines.extend([
         String::new(),
         format!(
@@ -146,14 +150,18 @@ fn answer(measured: &Measured) -> Vec<String> {
 fn errors(measured: &Measured) -> String {
     let stats = &measured.stats;
     format!(
-        "of {} requests: {} without a reply, {} wrong checksums, {} bursts of noise, {} foreign replies, {} foreign requests, {} refused",
+        "of {} requests: {} without a reply, {} wrong checksums, {} bursts of noise, {} foreign replies, {} late replies, {} foreign requests, {} refused, {} of {} readings implausible, {} reconnects",
         measured.requests(),
         stats.timeouts,
         stats.checksum_errors,
         stats.resyncs,
         stats.foreign_replies,
+        stats.late_replies,
         stats.foreign_requests,
-        stats.refusals
+        stats.refusals,
+        stats.implausible,
+        stats.readings,
+        stats.reconnects
     )
 }
 

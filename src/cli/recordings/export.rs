@@ -381,10 +381,15 @@ impl Done {
         }
         if is_standard(&args.out) {
             say(&format!("{} {}", all.rows, form.rows()));
-            Ok(())
         } else {
-            out.result(args.json, &object, [line])
+            out.result(args.json, &object, [line])?;
         }
+        if all.rows == 0 {
+            bail!(
+                "nothing was exported: there is nothing to export in this stretch; 'handscope info' shows what a recording holds"
+            );
+        }
+        Ok(())
     }
 }
 

@@ -99,8 +99,16 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
             done = &mut recording => done,
         }
     };
+    let status = link.status();
+    let lost = session::trouble(&status).map(|trouble| {
+        anyhow!(
+            "the link to {} is lost: {trouble}; the recording ends before that",
+            args.hand
+        )
+    });
     drop(link);
     let _ended = timeout(LINK_ENDS_WITHIN, pump).await;
+    let done = done.and(lost.map_or(Ok(()), Err));
     finish(out, &path, &recorder.end(), done)
 }
 
@@ -241,8 +249,16 @@ fn finish(
     let file = RecordingFile::open(path)
         .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()));
     let object = statistics(path, file.as_ref().ok(), status);
-    // What it failed of says more than that the file cannot be read.
-    let failed = done.and(written).and(file.map(|_| ()));
+    // What it failed of says more than that the file cannot be read, or is empty.
+    let failed = done.and(written).and(file.and_then(|file| {
+        if file.overview().counts.states > 0 {
+            return Ok(());
+        }
+        Err(anyhow!(
+            "no state of the hand was read: {} holds none",
+            path.display()
+        ))
+    }));
     let told = out.object(&object);
     failed.and(told)
 }

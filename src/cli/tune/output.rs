@@ -4,7 +4,7 @@ use crate::cli::tune::args::TuneArgs;
 use crate::link::Stop;
 use crate::tasks::series::SeriesReport;
 use crate::tasks::series::stop_words;
-use crate::trials::search::{Claim, Finding, FoundApproach, Tried, Untold};
+use crate::trials::search::{Claim, ComparedThreshold, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 
 /// How a search ended.
@@ -48,6 +48,7 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "peaks_g": claim.map(peaks),
         "joints": claim.map(|claim| &claim.joints),
         "tried": report.tried,
+        "compared": report.finding.as_ref().map(|finding| &finding.compared),
         "untold": untold(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
         "aborted": report.series.aborted.map(|why| why.to_string()),
         "stop": stop,
@@ -105,6 +106,7 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
             report.tried.len()
         ),
     ];
+    lines.extend(compared(report).map(ToString::to_string));
     lines.extend(untold(report).iter().map(|own| format!("not told: {own}")));
     lines
 }
@@ -137,6 +139,12 @@ fn untold(report: &SearchReport) -> &[Untold] {
         .finding
         .as_ref()
         .map_or(&[], |finding| &finding.untold)
+}
+
+/// What was found out of the drives, where there is an offset that it matters for.
+fn compared(report: &SearchReport) -> impl Iterator<Item = &ComparedThreshold> {
+    let all = report.finding.iter().flat_map(|finding| &finding.compared);
+    all.filter(|own| own.is_notable() && own.compared.is_some())
 }
 
 /// Of each confirming close the highest of its joints, g.

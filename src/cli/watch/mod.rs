@@ -7,7 +7,7 @@ mod wire;
 pub(crate) use args::WatchArgs;
 
 use crate::cli::out::{Out, say};
-use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::cli::session;
 use crate::cli::watch::datagrams::Datagrams;
 use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
 use crate::cli::watch::wire::FramePrinter;
@@ -27,7 +27,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// People read no more than ten lines a second.
 const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 
-/// Watches until the time is up or the user ends it. Fails if the hand never answered.
+/// Watches until the time is up or the user ends it. Fails if nothing was read, and if the link is lost at the end.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
     Watch::new(out, args)?.run(interrupt).await
@@ -45,7 +45,7 @@ struct Watch<'a> {
     frames: Option<FramePrinter>,
     /// What the hand grips, from all readings.
     grip: GripEstimator,
-    /// State reads taken so far; each of them is a line of JSON.
+    /// State reads taken so far; each of them is a line of JSON, unless frames are printed.
     taken: u64,
     last_text: Option<Moment>,
     answered: bool,
@@ -116,7 +116,10 @@ impl<'a> Watch<'a> {
         }
         if let Some(trouble) = session::trouble(&status) {
             self.tell(trouble)
-        } else if !self.answered && self.told.is_none() && self.elapsed() >= ANSWER_WITHIN {
+        } else if !self.answered
+            && self.told.is_none()
+            && self.elapsed() >= session::patience(&status)
+        {
             self.give_up(&session::unanswered(&self.args.hand))
         } else {
             Ok(())
@@ -163,10 +166,10 @@ impl<'a> Watch<'a> {
             return Ok(());
         };
         self.answered = true;
+        self.taken += 1;
         if self.frames.is_some() {
             return Ok(());
         }
-        self.taken += 1;
         let at = angle.received;
         if let Some(datagrams) = &mut self.datagrams {
             datagrams.send(&sample_json(&sample, &grip, at));
@@ -184,14 +187,20 @@ impl<'a> Watch<'a> {
     }
 
     fn finish(mut self) -> anyhow::Result<()> {
-        self.answered |= self.link.status().state.is_live();
+        let status = self.link.status();
+        self.answered |= status.state.is_live();
         self.statistics()?;
-        if self.answered {
-            return Ok(());
-        }
-        match self.told {
-            Some(trouble) => bail!("the hand never answered; last: {trouble}"),
-            None => bail!("the hand did not answer in time"),
+        let hand = &self.args.hand;
+        match (session::trouble(&status).or(self.told.as_ref()), self.taken) {
+            (Some(trouble), 1..) if !status.state.is_live() => {
+                bail!("the link to {hand} is lost: {trouble}")
+            }
+            (_, 1..) => Ok(()),
+            (Some(trouble), 0) => bail!("the hand never answered; last: {trouble}"),
+            (None, 0) if self.answered => {
+                bail!("{hand} answers, but no state of it was read: watch for longer")
+            }
+            (None, 0) => bail!("the hand did not answer in time"),
         }
     }
 

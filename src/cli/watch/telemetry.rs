@@ -76,8 +76,10 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
         "checksum_errors": stats.checksum_errors,
         "resyncs": stats.resyncs,
         "foreign_replies": stats.foreign_replies,
+        "late_replies": stats.late_replies,
         "foreign_requests": stats.foreign_requests,
         "refusals": stats.refusals,
+        "implausible": stats.implausible,
         "reconnects": stats.reconnects,
         "writes": stats.writes,
         "dropped_samples": stats.dropped_events,
@@ -166,7 +168,7 @@ pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
     };
     format!(
         "{:.1} s: {} states ({:.1} a second), {} touch sweeps ({:.1} a second), round trip {} (99 %: {})\n\
-         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} refusals, {} reconnects\n\
+         {} timeouts, {} checksum errors, {} resyncs, {} foreign replies, {} late replies, {} refusals, {} implausible, {} reconnects\n\
          {}",
         elapsed.as_secs_f64(),
         stats.state_reads,
@@ -179,7 +181,9 @@ pub(crate) fn stats_text(stats: &LinkStats, elapsed: Duration) -> String {
         stats.checksum_errors,
         stats.resyncs,
         stats.foreign_replies,
+        stats.late_replies,
         stats.refusals,
+        stats.implausible,
         stats.reconnects,
         line_text(&stats.line),
     )

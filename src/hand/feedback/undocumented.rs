@@ -2,6 +2,7 @@
 
 use crate::hand::dof::Dof;
 use crate::hand::feedback::group::{Group, Groups};
+use crate::hand::feedback::reading::AngleReading;
 use crate::hand::feedback::sample::HandSample;
 use std::fmt;
 
@@ -33,7 +34,33 @@ impl HandSample {
     }
 }
 
+/// How far past the manual's range real hands are seen to report positions and currents.
+const SLACK: i16 = 100;
+/// What a hand sends for a temperature or a status that it does not know.
+const NOT_KNOWN: i16 = 255;
+
+impl HandSample {
+    /// True if one of these groups holds a value that no hand should send: further out than real hands are seen to go, and no word
+    /// for "not known".
+    pub fn is_implausible(&self, fresh: Groups) -> bool {
+        self.undocumented(fresh).any(Undocumented::is_implausible)
+    }
+}
+
 impl Undocumented {
+    fn is_implausible(self) -> bool {
+        let Some(raw) = self.raw else {
+            return true;
+        };
+        match self.group {
+            Group::Angle => AngleReading::new(raw).hold().is_none(),
+            Group::Position => !(-SLACK..=2000 + SLACK).contains(&raw),
+            Group::Current => !(-SLACK..=2000 + SLACK).contains(&raw),
+            Group::Temperature | Group::Status => raw != NOT_KNOWN,
+            _ => true,
+        }
+    }
+
     /// Its name without what was sent.
     pub fn name(&self) -> String {
         format!("{}[{}]", self.group.name(), self.dof.index())
@@ -62,5 +89,40 @@ impl fmt::Display for Undocumented {
             Some(raw) => write!(out, "={raw}"),
             None => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_real_hands_report_past_the_manual_is_not_implausible() {
+        let implausible = |group, raw| {
+            let dof = Dof::Index;
+            Undocumented { group, dof, raw }.is_implausible()
+        };
+        for (group, raw) in [
+            (Group::Position, -12),
+            (Group::Angle, 1013),
+            (Group::Angle, -7),
+            (Group::Current, -3),
+            (Group::Temperature, 255),
+            (Group::Status, 255),
+        ] {
+            assert!(!implausible(group, Some(raw)), "{group:?} {raw}");
+        }
+        for (group, raw) in [
+            (Group::Position, 2500),
+            (Group::Angle, 2000),
+            (Group::Force, 4001),
+            (Group::Current, i16::MAX),
+            (Group::Temperature, 128),
+            (Group::Status, 8),
+            (Group::Faults, 0x20),
+        ] {
+            assert!(implausible(group, Some(raw)), "{group:?} {raw}");
+        }
+        assert!(implausible(Group::SpeedSet, None));
     }
 }

@@ -8,13 +8,14 @@
 use crate::codec::can::{
     CanData, CanFrame, CanFunction, CanId, ReadPieces, may_cut, read_request, split, write_requests,
 };
-use crate::hand::{RegisterWrite, Span, register};
+use crate::hand::{Span, register};
 use crate::link::bus::can_port::CanPort;
 use crate::link::bus::client::{Bus, Urgent};
 use crate::link::bus::error::{BusCounts, BusError, Bytes, READ_MAX, id_of};
 use crate::link::bus::late_replies::LateReplies;
 use crate::link::clock::Clock;
 use crate::link::poll::cost::{WireCost, packets_time};
+use crate::link::series::PermittedWrite;
 use crate::transport::endpoint::DEFAULT_BITRATE;
 use crate::transport::{BoxedWire, Endpoint};
 use arrayvec::ArrayVec;
@@ -242,7 +243,7 @@ impl Can {
 
 #[async_trait]
 impl Bus for Can {
-    async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
+    async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError> {
         self.write_unless(write, limit, &|| false).await
     }
 
@@ -278,11 +279,11 @@ impl Bus for Can {
 
     async fn write_unless(
         &mut self,
-        write: &RegisterWrite,
+        write: PermittedWrite<'_>,
         limit: Duration,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
-        let requests = write_requests(self.hand, write).ok_or(BusError::TooLong)?;
+        let requests = write_requests(self.hand, &write).ok_or(BusError::TooLong)?;
         self.open(limit).await?;
         for (nth, request) in requests.iter().enumerate() {
             if nth > 0 && urgent() {
@@ -331,6 +332,7 @@ impl Bus for Can {
             resyncs: noise.resyncs,
             foreign_replies: self.foreign,
             foreign_requests: self.foreign_requests,
+            ..BusCounts::default()
         }
     }
 

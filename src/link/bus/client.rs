@@ -1,11 +1,12 @@
 //! What a session asks of a wire, whichever protocol it speaks.
 
 use crate::codec::rs485::SaveResult;
+use crate::hand::Span;
 use crate::hand::register::BytePacking;
-use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::error::{BusCounts, BusError, Bytes};
-use crate::link::bus::late_replies::LateReplies;
+use crate::link::bus::late_replies::{LateReplies, LateReply};
 use crate::link::poll::cost::WireCost;
+use crate::link::series::PermittedWrite;
 use async_trait::async_trait;
 use std::time::Duration;
 
@@ -28,7 +29,7 @@ pub(crate) trait Bus: Send {
     async fn read(&mut self, span: Span, limit: Duration) -> Result<Bytes, BusError>;
 
     /// Writes, and waits for the acknowledgement.
-    async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError>;
+    async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError>;
 
     /// The first of these spans whose reply cannot be mistaken for a late one; none if all could.
     fn choose(&mut self, shapes: &[Span]) -> Option<Span>;
@@ -39,8 +40,8 @@ pub(crate) trait Bus: Send {
     /// What was counted since the wire was opened.
     fn counts(&self) -> BusCounts;
 
-    /// Reads, unless something more urgent comes up between two of its pieces, where it has some. `None` if it did: what
-    /// was read until then is forgotten.
+    /// Reads, unless something more urgent comes up between two of its pieces, or while a reply is late on a wire with
+    /// numbers. `None` if it did: what was read until then is forgotten.
     async fn read_unless(
         &mut self,
         span: Span,
@@ -50,10 +51,11 @@ pub(crate) trait Bus: Send {
         self.read(span, limit).await.map(Some)
     }
 
-    /// Writes, unless something urgent comes up between two pieces: for what a stop overrides anyway.
+    /// Writes, unless something urgent comes up between two pieces, or while the acknowledgement is late on a wire with
+    /// numbers: for what a stop overrides anyway.
     async fn write_unless(
         &mut self,
-        write: &RegisterWrite,
+        write: PermittedWrite<'_>,
         limit: Duration,
         _urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
@@ -79,6 +81,21 @@ pub(crate) trait Bus: Send {
     /// True if the adapter was found to give back what is sent.
     fn echoes(&self) -> bool {
         false
+    }
+
+    /// How often what was sent came back, whoever answered then.
+    fn own_frames(&self) -> u64 {
+        0
+    }
+
+    /// True where replies carry the number of their request, so that a late one is known as such.
+    fn has_numbers(&self) -> bool {
+        false
+    }
+
+    /// The slowest of the late replies that came since this was asked last.
+    fn take_late(&mut self) -> Option<LateReply> {
+        None
     }
 
     /// True where single bytes travel in words.

@@ -36,6 +36,8 @@ pub(crate) struct BusCounts {
     pub(crate) checksum_errors: u64,
     pub(crate) resyncs: u64,
     pub(crate) foreign_replies: u64,
+    /// Replies to requests that had been given up, where that can be known.
+    pub(crate) late_replies: u64,
     pub(crate) foreign_requests: u64,
 }
 
@@ -45,6 +47,7 @@ impl BusCounts {
             checksum_errors: self.checksum_errors + more.checksum_errors,
             resyncs: self.resyncs + more.resyncs,
             foreign_replies: self.foreign_replies + more.foreign_replies,
+            late_replies: self.late_replies + more.late_replies,
             foreign_requests: self.foreign_requests + more.foreign_requests,
         }
     }
@@ -76,7 +79,7 @@ pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
 pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
     match endpoint {
         Endpoint::Sim { .. } => 1,
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => u16::from(line.id),
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => u16::from(line.id),
         Endpoint::Tcp { unit, .. } => u16::from(*unit),
         Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => *id,
     }

@@ -1,26 +1,57 @@
 //! A wire that lets only the reply to the newest request through. Modbus TCP replies carry the number of
-//! their request; late, doubled and foreign ones are counted and dropped before the client sees them.
+//! their request; late, doubled and foreign ones are counted and dropped before the client sees them. How late a late one
+//! is, is kept.
 
 use crate::codec::mbap::MbapSplitter;
+use crate::hand::ModbusException;
+use crate::link::bus::late_replies::LateReply;
 use crate::transport::BoxedWire;
+use arrayvec::ArrayVec;
 use std::collections::VecDeque;
 use std::io;
 use std::pin::Pin;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::time::Instant;
 
 /// Bytes taken from the socket at once.
 const CHUNK: usize = 512;
 /// Bytes of a header: transaction, protocol, length, unit (manual 2.5).
 const HEADER: usize = 7;
 
+/// Requests that were given up and may still be answered: those of a second at the shortest wait, and some more.
+const ABANDONED_MAX: usize = 32;
+
 /// What the filter saw; shared with the bus, because the client owns the filter.
 #[derive(Debug, Default)]
 pub(crate) struct FilterCounts {
     pub(crate) foreign: AtomicU64,
+    pub(crate) late: AtomicU64,
     pub(crate) closed: AtomicBool,
+    slowest: Mutex<Option<LateReply>>,
+}
+
+impl FilterCounts {
+    fn came_late(&self, late: LateReply) {
+        self.late.fetch_add(1, Ordering::Relaxed);
+        let mut slowest = self.slowest.lock().unwrap_or_else(PoisonError::into_inner);
+        if slowest.is_none_or(|slowest| slowest.took <= late.took) {
+            *slowest = Some(late);
+        }
+    }
+
+    /// The slowest late reply since they were taken last.
+    pub(crate) fn slowest(&self) -> Option<LateReply> {
+        *self.slowest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes it.
+    pub(crate) fn take_slowest(&self) -> Option<LateReply> {
+        let mut slowest = self.slowest.lock().unwrap_or_else(PoisonError::into_inner);
+        slowest.take()
+    }
 }
 
 /// Request number and unit that the next reply must carry.
@@ -31,7 +62,8 @@ pub(crate) struct ReplyFilter {
     wire: BoxedWire,
     splitter: MbapSplitter,
     counts: Arc<FilterCounts>,
-    open: Option<ReadKey>,
+    open: Option<(ReadKey, Instant)>,
+    abandoned: ArrayVec<(ReadKey, Instant), ABANDONED_MAX>,
     /// Bytes of the request that were not written yet, when the wire took only a part.
     rest_of_request: usize,
     passed: VecDeque<u8>,
@@ -44,6 +76,7 @@ impl ReplyFilter {
             splitter: MbapSplitter::default(),
             counts,
             open: None,
+            abandoned: ArrayVec::new(),
             rest_of_request: 0,
             passed: VecDeque::new(),
         }
@@ -56,15 +89,27 @@ impl ReplyFilter {
             bytes = bytes.get(taken..).unwrap_or_default();
             let broken = |error| io::Error::new(io::ErrorKind::InvalidData, error);
             while let Some(adu) = self.splitter.next().map_err(broken)? {
-                if self.open == Some((adu.transaction, adu.unit)) {
+                let key = (adu.transaction, adu.unit);
+                if self.open.is_some_and(|(open, _)| open == key) {
                     self.open = None;
                     self.passed.extend(adu.bytes);
+                } else if let Some(sent) = self.given_up(key) {
+                    self.counts.came_late(LateReply {
+                        took: sent.elapsed(),
+                        exception: exception(&adu.bytes),
+                    });
                 } else {
                     self.counts.foreign.fetch_add(1, Ordering::Relaxed);
                 }
             }
         }
         Ok(())
+    }
+
+    /// When the request of this number was sent, if it was given up and not answered since.
+    fn given_up(&mut self, key: ReadKey) -> Option<Instant> {
+        let at = self.abandoned.iter().position(|(asked, _)| *asked == key)?;
+        Some(self.abandoned.remove(at).1)
     }
 
     /// Notes the number of the request whose first bytes are being written.
@@ -74,10 +119,24 @@ impl ReplyFilter {
             return;
         }
         if let Some([t0, t1, _, _, _, _, unit]) = request.first_chunk::<HEADER>() {
-            self.open = Some((u16::from_be_bytes([*t0, *t1]), *unit));
+            let key = (u16::from_be_bytes([*t0, *t1]), *unit);
+            if let Some(given_up) = self.open.replace((key, Instant::now())) {
+                if self.abandoned.is_full() {
+                    self.abandoned.remove(0);
+                }
+                self.abandoned.push(given_up);
+            }
             self.passed.clear();
         }
         self.rest_of_request = request.len().saturating_sub(written);
+    }
+}
+
+/// The exception in a reply, if it is one.
+fn exception(adu: &[u8]) -> Option<ModbusException> {
+    match adu.get(HEADER..) {
+        Some([function, code, ..]) if *function >= 0x80 => Some(ModbusException::of(*code)),
+        _ => None,
     }
 }
 
@@ -140,6 +199,7 @@ impl std::fmt::Debug for ReplyFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 
     fn adu(transaction: u16, unit: u8, pdu: &[u8]) -> Vec<u8> {
@@ -183,8 +243,34 @@ mod tests {
         assert_eq!(got, right);
         drop(far);
         assert_eq!(filter.read(&mut got).await.unwrap(), 0);
-        assert_eq!(counts.foreign.load(Ordering::Relaxed), 4);
+        assert_eq!(counts.foreign.load(Ordering::Relaxed), 3);
+        assert_eq!(counts.late.load(Ordering::Relaxed), 1);
         assert!(counts.closed.load(Ordering::Relaxed));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_late_reply_tells_how_late_it_is_and_its_exception_by_its_number() {
+        let (near, mut far) = tokio::io::duplex(4096);
+        let counts = Arc::new(FilterCounts::default());
+        let mut filter = ReplyFilter::new(Box::new(near), Arc::clone(&counts));
+        for number in 1..=3 {
+            let request = adu(number, 255, &[3, 0, 1, 0, 1]);
+            filter.write_all(&request).await.unwrap();
+            tokio::time::sleep(Duration::from_millis(100)).await;
+        }
+        far.write_all(&adu(2, 255, &[0x83, 11])).await.unwrap();
+        far.write_all(&adu(1, 255, &[3, 2, 0, 0])).await.unwrap();
+        far.write_all(&adu(3, 255, &[3, 2, 0, 0])).await.unwrap();
+        let mut got = vec![0; 11];
+        filter.read_exact(&mut got).await.unwrap();
+        assert_eq!(got, adu(3, 255, &[3, 2, 0, 0]));
+        let slowest = counts.take_slowest().unwrap();
+        assert_eq!(slowest.took, Duration::from_millis(300));
+        assert_eq!(slowest.exception, None);
+        assert_eq!(counts.take_slowest(), None);
+        assert_eq!(counts.late.load(Ordering::Relaxed), 2);
+        let gateway = exception(&adu(2, 255, &[0x83, 11]));
+        assert_eq!(gateway, Some(ModbusException::NoAnswer));
     }
 
     #[tokio::test]

@@ -1,7 +1,7 @@
 //! Questions that may still be answered: given up, or answered once and perhaps once more. On lines without
 //! sequence numbers such an answer cannot be told from a fresh one, so the question is not asked again for a while.
 
-use crate::hand::{Moment, Span};
+use crate::hand::{ModbusException, Moment, Span};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
@@ -12,6 +12,25 @@ const QUESTIONS_MAX: usize = 32;
 
 /// Answers that a doubled run of replies may hold: more than fit into what an adapter passes on at once.
 const ANSWERED_MAX: usize = 6;
+
+/// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
+pub(crate) const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
+/// Longest wait for a reply that is known to come late: two of them show silence within a second.
+const SLOW_LIMIT_MAX: Duration = Duration::from_millis(450);
+
+/// A reply that came after its request was given up. Only where replies carry numbers is it known as that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LateReply {
+    /// From the request to the reply.
+    pub(crate) took: Duration,
+    /// What it says, if it is an exception.
+    pub(crate) exception: Option<ModbusException>,
+}
+
+/// How long to wait where a reply took so long before.
+pub(crate) fn slow_limit(took: Duration) -> Duration {
+    (took + took / 4 + REPLY_LIMIT_MIN).min(SLOW_LIMIT_MAX)
+}
 
 /// The spans that a late reply may still answer.
 #[derive(Debug, Default)]

@@ -36,7 +36,9 @@ pub(crate) fn on_wire(
             Box::new(Rs485::new(wire, endpoint, late, clock))
         }
         Endpoint::Tcp { unit, .. } => Box::new(ModbusTcp::new(wire, *unit, endpoint)),
-        Endpoint::Rtu(line) => Box::new(ModbusRtu::new(wire, line.baud, endpoint, late, clock)),
+        Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
+            Box::new(ModbusRtu::new(wire, line.baud, endpoint, late, clock))
+        }
         Endpoint::Can { .. } | Endpoint::Slcan { .. } | Endpoint::UsbCan { .. } => {
             Box::new(Can::new(wire, endpoint, late, clock))
         }

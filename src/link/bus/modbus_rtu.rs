@@ -4,7 +4,7 @@
 use crate::codec::modbus::words_for;
 use crate::codec::modbus::words_per_group;
 use crate::hand::register::BytePacking;
-use crate::hand::{HandId, RegisterWrite, Span};
+use crate::hand::{HandId, Span};
 use crate::link::bus::late_replies::LateReplies;
 
 use crate::link::bus::client::Bus;
@@ -15,6 +15,7 @@ use crate::link::bus::rtu_line::RtuLine;
 use crate::link::clock::Clock;
 use crate::link::poll::cost::{WireCost, byte_time, rtu_gap};
 use crate::link::poll::window::SHAPES_MAX;
+use crate::link::series::PermittedWrite;
 use crate::transport::{BoxedWire, Endpoint, Timer, TransportError};
 use arrayvec::ArrayVec;
 use async_trait::async_trait;
@@ -188,10 +189,10 @@ impl Bus for ModbusRtu {
         Ok(bytes)
     }
 
-    async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
-        self.word_use.allows(write)?;
-        let response = self.call(modbus::write_request(write), limit).await?;
-        modbus::write_response(write, &response)?;
+    async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError> {
+        self.word_use.allows(&write)?;
+        let response = self.call(modbus::write_request(&write), limit).await?;
+        modbus::write_response(&write, &response)?;
         self.late.answered(None);
         self.note_strays();
         Ok(())
@@ -264,11 +265,16 @@ impl Bus for ModbusRtu {
             resyncs: noise.resyncs,
             foreign_replies: self.line.foreign(),
             foreign_requests: self.line.foreign_requests(),
+            ..BusCounts::default()
         }
     }
 
     fn echoes(&self) -> bool {
         self.line.echoes()
+    }
+
+    fn own_frames(&self) -> u64 {
+        self.line.own_frames()
     }
 
     fn close(self: Box<Self>) -> LateReplies {
@@ -288,6 +294,8 @@ mod tests {
     use crate::hand::register::STATE;
     use crate::hand::{Angle, HandCommand, PerDof, Target};
     use crate::link::poll::cost::FIXED_GAP;
+    use crate::link::series::Series;
+    use crate::record::WriteCause;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
 
     const LIMIT: Duration = Duration::from_millis(50);
@@ -364,7 +372,10 @@ mod tests {
                 assert_eq!(heard(&mut far).await, checked(asked));
                 far.write_all(&checked(answered)).await.unwrap();
             };
-            let (written, ()) = tokio::join!(bus.write(&write[0], LIMIT), answer);
+            let permitted = Series::Ours
+                .permit(&write[0], WriteCause::Setpoint)
+                .unwrap();
+            let (written, ()) = tokio::join!(bus.write(permitted, LIMIT), answer);
             assert_eq!(written, Ok(()), "{answered}");
         }
     }

@@ -101,7 +101,7 @@ impl WordUse {
 pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
     match endpoint {
         Endpoint::Tcp { packing, .. } => *packing,
-        Endpoint::Rtu(line) => line.packing,
+        Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => line.packing,
         _ => None,
     }
 }

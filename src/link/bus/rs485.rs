@@ -4,7 +4,7 @@ use crate::codec::rs485::{
     ReplyDecoder, Rs485Frame, Rs485Reply, SaveResult, encode_read, encode_write,
 };
 use crate::hand::register::HAND_ID;
-use crate::hand::{HandId, RegisterWrite, Span};
+use crate::hand::{HandId, Span};
 use crate::link::bus::echo::Echo;
 use crate::link::bus::late_replies::LateReplies;
 
@@ -12,6 +12,7 @@ use crate::link::bus::client::{Bus, ResultFrame};
 use crate::link::bus::error::{BusCounts, BusError, Bytes, id_of, lost};
 use crate::link::clock::Clock;
 use crate::link::poll::cost::WireCost;
+use crate::link::series::PermittedWrite;
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use arrayvec::ArrayVec;
 use async_trait::async_trait;
@@ -47,6 +48,7 @@ pub(crate) struct Rs485 {
     /// The request that went out last: what comes back like it is an echo.
     sent: Rs485Frame,
     echo: Echo,
+    own_frames: u64,
     foreign_requests: u64,
     save_results: ArrayVec<SaveResult, RESULTS_MAX>,
     is_calibrated: bool,
@@ -96,6 +98,7 @@ impl Rs485 {
             foreign: 0,
             sent: Rs485Frame::new(),
             echo: Echo::default(),
+            own_frames: 0,
             foreign_requests: 0,
             save_results: ArrayVec::new(),
             is_calibrated: false,
@@ -153,6 +156,7 @@ impl Rs485 {
     fn sort_overheard(&mut self) {
         while let Some(request) = self.decoder.overheard() {
             if request == self.sent {
+                self.own_frames += 1;
                 self.echo.came_back();
             } else {
                 self.foreign_requests += 1;
@@ -281,8 +285,8 @@ impl Bus for Rs485 {
         }
     }
 
-    async fn write(&mut self, write: &RegisterWrite, limit: Duration) -> Result<(), BusError> {
-        let frame = encode_write(self.id, write);
+    async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError> {
+        let frame = encode_write(self.id, &write);
         let address = write.address();
         let is_id = address == HAND_ID.address;
         let new_id = write.bytes().first().copied().filter(|_| is_id);
@@ -344,11 +348,16 @@ impl Bus for Rs485 {
             resyncs: noise.resyncs,
             foreign_replies: self.foreign,
             foreign_requests: self.foreign_requests,
+            ..BusCounts::default()
         }
     }
 
     fn echoes(&self) -> bool {
         self.echo.is_sure()
+    }
+
+    fn own_frames(&self) -> u64 {
+        self.own_frames
     }
 
     fn close(self: Box<Self>) -> LateReplies {

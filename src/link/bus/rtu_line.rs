@@ -128,6 +128,11 @@ impl RtuLine {
         self.line().echo.is_sure()
     }
 
+    /// How often what was sent came back since the line was opened.
+    pub(crate) fn own_frames(&self) -> u64 {
+        self.line().splitter.requests().echoes
+    }
+
     /// What was skipped since the line was opened.
     pub(crate) fn noise(&self) -> NoiseCounts {
         self.line().splitter.noise()

@@ -10,7 +10,9 @@ pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
     let cost = match endpoint {
         Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,
         Endpoint::Rs485(line) => WireCost::rs485(Some(line.baud)),
-        Endpoint::Rtu(line) => WireCost::rtu(line.baud, rtu_gap(line.baud)),
+        Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
+            WireCost::rtu(line.baud, rtu_gap(line.baud))
+        }
         // Manual: 2.3 gives the rate as delivered; that of an interface is set outside of this program.
         Endpoint::Can { .. } => WireCost::can(DEFAULT_BITRATE),
         Endpoint::Slcan { bitrate, .. } => WireCost::can(*bitrate),

@@ -28,6 +28,13 @@ pub enum ScanHint {
         /// What its HAND_ID reads.
         hand_id: u8,
     },
+    /// Something answers with the id that was asked, but its other registers are not those of this series.
+    OtherSeries {
+        /// Endpoint that was tried.
+        endpoint: Endpoint,
+        /// What its HAND_ID reads.
+        hand_id: u8,
+    },
     /// Something answers, and will not tell its HAND_ID.
     Refuses {
         /// Endpoint that was tried.
@@ -56,6 +63,7 @@ impl ScanHint {
     pub fn place(&self) -> String {
         match self {
             Self::OtherId { endpoint, .. }
+            | Self::OtherSeries { endpoint, .. }
             | Self::Refuses { endpoint, .. }
             | Self::OtherTalk { endpoint } => endpoint.place(),
             Self::Garbled { place, .. } => place.clone(),
@@ -69,6 +77,10 @@ impl fmt::Display for ScanHint {
             Self::OtherId { endpoint, hand_id } => write!(
                 f,
                 "something answers at {endpoint}, but its HAND_ID reads {hand_id}: most likely it is no hand"
+            ),
+            Self::OtherSeries { endpoint, hand_id } => write!(
+                f,
+                "what answers at {endpoint} says HAND_ID {hand_id} like a hand, but is not of this series: its registers hold other things"
             ),
             Self::Refuses { endpoint, reason } => write!(
                 f,

@@ -4,12 +4,13 @@
 use crate::hand::Refusal;
 use crate::hand::register::HAND_ID;
 use crate::link::bus::late_replies::LateReplies;
-use crate::link::bus::{self, BusError};
+use crate::link::bus::{self, Bus, BusError};
 use crate::link::clock::Clock;
 use crate::link::scan::board::Board;
 use crate::link::scan::event::{FoundHand, ScanEvent, ScanHint};
 use crate::link::scan::heard::LentWire;
 use crate::link::scan::plan::{Lane, LaneKind, Try, same_line};
+use crate::link::series::{Series, SeriesEvidence, SeriesQuestion};
 use crate::transport::{Dial, Endpoint, TransportError};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,6 +50,7 @@ enum ProbeAnswer {
     },
     Silence,
     OtherId(u8),
+    OtherSeries(u8),
     Refused(Refusal),
     /// The wire could not be opened.
     Shut(TransportError),
@@ -59,6 +61,7 @@ enum ProbeAnswer {
 /// What was noticed at a place where no hand answered.
 #[derive(Default)]
 struct Noticed {
+    series: Option<(Endpoint, u8)>,
     other: Option<(Endpoint, u8)>,
     refused: Option<(Endpoint, Refusal)>,
     foreign: Option<Endpoint>,
@@ -69,6 +72,9 @@ struct Noticed {
 impl Noticed {
     /// The most telling of it.
     fn hint(self, place: &str) -> Option<ScanHint> {
+        let series = self
+            .series
+            .map(|(endpoint, hand_id)| ScanHint::OtherSeries { endpoint, hand_id });
         let other = self
             .other
             .map(|(endpoint, hand_id)| ScanHint::OtherId { endpoint, hand_id });
@@ -83,7 +89,7 @@ impl Noticed {
             bauds: self.garbled,
             bytes: self.bytes,
         });
-        other.or(refused).or(foreign).or(garbled)
+        series.or(other).or(refused).or(foreign).or(garbled)
     }
 }
 
@@ -133,6 +139,9 @@ impl LaneScan {
                 }
                 ProbeAnswer::OtherId(hand_id) => {
                     self.noticed.other.get_or_insert((one.endpoint, hand_id));
+                }
+                ProbeAnswer::OtherSeries(hand_id) => {
+                    self.noticed.series.get_or_insert((one.endpoint, hand_id));
                 }
                 ProbeAnswer::Refused(reason) => {
                     self.noticed.refused.get_or_insert((one.endpoint, reason));
@@ -224,6 +233,12 @@ impl LaneScan {
         let begun = Instant::now();
         let read = bus.read(HAND_ID.span(), one.limit).await;
         let round_trip = begun.elapsed();
+        let series = match &read {
+            Ok(bytes) if is_expected_of(&one.endpoint, bytes) => {
+                series(bus.as_mut(), one.limit).await
+            }
+            _ => Series::Unknown,
+        };
         let heard = wire.take_heard();
         let foreign = bus.counts().foreign_replies > 0;
         if heard > 0 && !matches!(read, Err(BusError::Lost(_))) {
@@ -233,6 +248,7 @@ impl LaneScan {
         bus.close();
         match read {
             Ok(bytes) => match bytes.first() {
+                Some(hand_id) if series == Series::Other => ProbeAnswer::OtherSeries(*hand_id),
                 Some(hand_id) if is_expected(&one.endpoint, *hand_id) => ProbeAnswer::Hand {
                     hand_id: *hand_id,
                     round_trip,
@@ -283,6 +299,34 @@ impl LaneScan {
     }
 }
 
+/// What answers, asked until that is clear or nothing more is to be asked.
+async fn series(bus: &mut dyn Bus, limit: Duration) -> Series {
+    let mut evidence = SeriesEvidence::default();
+    for question in SeriesQuestion::ALL {
+        if !evidence.needs(question) || bus.turn().await.is_err() {
+            continue;
+        }
+        let Some(span) = bus.choose(question.shapes()) else {
+            continue;
+        };
+        match bus.read(span, limit).await {
+            Ok(bytes) => evidence.read(question, span, &bytes),
+            Err(BusError::Refused { reason }) if reason.is_by_the_hand() => {
+                evidence.refused(question);
+            }
+            // The serial framing has no word for no.
+            Err(_) => {
+                let _broken = bus.quiet().await;
+            }
+        }
+    }
+    evidence.verdict()
+}
+
+fn is_expected_of(endpoint: &Endpoint, id: &[u8]) -> bool {
+    id.first().is_some_and(|id| is_expected(endpoint, *id))
+}
+
 /// True if both are reached over one opening of a wire. A CAN interface listens for one id only, and over TCP a late
 /// answer to one unit could be taken for another's: there each has its own.
 fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
@@ -299,7 +343,7 @@ fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
 /// A hand on a bus says the id by which it was asked; at a network address any id that a hand can have will do.
 fn is_expected(endpoint: &Endpoint, hand_id: u8) -> bool {
     match endpoint {
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => line.id == hand_id,
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => line.id == hand_id,
         Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
             *id == u16::from(hand_id)
         }

@@ -114,7 +114,7 @@ impl ScanPlan {
         }
         for hosts in &places.hosts {
             for host in hosts.iter() {
-                plan.add(host_lane(host, hosts), held);
+                plan.add(host_lane(host, hosts, ids), held);
             }
         }
         plan
@@ -197,7 +197,9 @@ pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
     let line = |endpoint: &Endpoint| {
         let mut line = endpoint.clone();
         match &mut line {
-            Endpoint::Rs485(line) | Endpoint::Rtu(line) => line.id = DEFAULT_ID,
+            Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
+                line.id = DEFAULT_ID;
+            }
             Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
                 *id = u16::from(DEFAULT_ID)
             }
@@ -270,25 +272,41 @@ fn can_lane(interface: &str, ids: &[HandId]) -> Lane {
     }
 }
 
-fn host_lane(host: &str, hosts: &Hosts) -> Lane {
-    let tries = UNITS.map(|unit| Try {
-        endpoint: Endpoint::Tcp {
-            packing: None,
-            host: host.into(),
-            port: hosts.port(),
-            unit,
-        },
-        limit: TCP_REPLY_WAIT,
-        // A host that does not take the call costs the time to call, and is not called again.
-        cost: CONNECT_DEADLINE / 2,
-    });
+/// Modbus TCP first; at a single address then Modbus RTU over TCP, as a serial device server carries it.
+fn host_lane(host: &str, hosts: &Hosts, ids: &[HandId]) -> Lane {
+    let mut tries: Vec<Try> = UNITS
+        .map(|unit| Try {
+            endpoint: Endpoint::Tcp {
+                packing: None,
+                host: host.into(),
+                port: hosts.port(),
+                unit,
+            },
+            limit: TCP_REPLY_WAIT,
+            // A host that does not take the call costs the time to call, and is not called again.
+            cost: CONNECT_DEADLINE / 2,
+        })
+        .into();
     let place = tries.first().map(|one| one.endpoint.place());
+    let place = place.unwrap_or_default();
+    if !hosts.is_range() {
+        tries.extend(ids.iter().map(|id| Try {
+            endpoint: Endpoint::RtuTcp(SerialLine {
+                port: place.clone(),
+                baud: DEFAULT_BAUD,
+                id: id.get(),
+                packing: None,
+            }),
+            limit: TCP_REPLY_WAIT,
+            cost: TCP_REPLY_WAIT,
+        }));
+    }
     Lane {
         kind: LaneKind::Host,
-        place: place.unwrap_or_default(),
+        place,
         usb: None,
         is_one_of_many: hosts.is_range(),
-        tries: tries.into(),
+        tries,
     }
 }
 
@@ -415,9 +433,14 @@ mod tests {
         assert_eq!(spelled(&plan.lanes[2]), ["can:can0?id=1", "can:can0?id=2"]);
         assert_eq!(
             spelled(&plan.lanes[3]),
-            ["tcp:127.0.0.1:6001?unit=255", "tcp:127.0.0.1:6001?unit=1"]
+            [
+                "tcp:127.0.0.1:6001?unit=255",
+                "tcp:127.0.0.1:6001?unit=1",
+                "rtu+tcp:127.0.0.1:6001?baud=115200&id=1",
+                "rtu+tcp:127.0.0.1:6001?baud=115200&id=2"
+            ]
         );
-        assert_eq!(plan.tries(), 4 + (4 + 16) + 2 + 2);
+        assert_eq!(plan.tries(), 4 + (4 + 16) + 2 + 4);
     }
 
     #[test]
@@ -439,8 +462,10 @@ mod tests {
 
     #[test]
     fn addresses_take_one_call_each_sixty_four_at_a_time() {
+        // One that is named alone is asked for Modbus RTU too.
+        let alone = ScanPlan::new(&hosts("127.0.0.1"), &ids(10), &[]);
+        assert_eq!(alone.estimate(), CONNECT_DEADLINE + TCP_REPLY_WAIT * 10);
         for (range, calls) in [
-            ("127.0.0.1", 1),
             ("127.0.0.0/26", 1),
             ("127.0.0.0/25", 2),
             ("127.0.0.0/24", 4),

@@ -1,8 +1,8 @@
 //! The task that owns one wire: dials, identifies, serves, and comes back after a loss. It decides what goes
 //! on the wire next: stop, then hold, setpoints, requests, reads. Nothing that was asked survives a lost link.
 
-use crate::hand::{HandSample, Moment};
-use crate::link::bus::late_replies::LateReplies;
+use crate::hand::{HandSample, ModbusException, Moment, Refusal};
+use crate::link::bus::late_replies::{LateReplies, REPLY_LIMIT_MIN};
 use crate::link::bus::{self, Bus, BusCounts, BusError};
 use crate::link::clock::SleepWatch;
 use crate::link::config::LinkConfig;
@@ -12,12 +12,15 @@ use crate::link::latency::Ticks;
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
 use crate::link::request::RequestError;
+use crate::link::series::SeriesEvidence;
+use crate::link::session::absence::{Absence, REFUSED_PAUSE, Refused};
 use crate::link::session::adapter::KnownAdapter;
 use crate::link::session::counters::Counters;
 use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::pending::PendingStop;
 use crate::link::session::rest::RestWatch;
+use crate::link::session::slowness::Slowness;
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::heat::HeatWatch;
 use crate::link::session::watch::other_controller::OtherController;
@@ -30,7 +33,7 @@ use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
-use tokio::time::sleep_until;
+use tokio::time::{sleep_until, timeout};
 
 /// First wait before another try; some hands need 300 ms between close and connect.
 const RETRY_FIRST: Duration = Duration::from_millis(300);
@@ -42,9 +45,8 @@ pub(crate) const SILENT_MAX: u32 = 4;
 /// before the first of them, silence shows within 300 ms. A wire so slow that two requests take longer is given those two.
 const SILENCE_MAX: Duration = Duration::from_millis(288);
 const SILENT_LEAST: u32 = 2;
-/// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
-const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
-/// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows.
+/// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows. Longer
+/// only where replies are known to be late, and a stop does not wait for them.
 const REPLY_LIMIT_MAX: Duration = Duration::from_millis(120);
 /// How serving a wire ended.
 pub(crate) enum WireEnd {
@@ -78,12 +80,22 @@ pub(crate) struct Session {
     silent: u32,
     /// When the first of the unanswered requests in a row was asked.
     silent_since: Option<Moment>,
+    /// Exceptions of a gateway in place of the hand's answers.
+    pub(crate) absence: Absence,
+    /// Replies on this wire carry the number of their request.
+    has_numbers: bool,
+    /// How late replies are, over all wires to this hand.
+    pub(crate) slowness: Slowness,
     adapter: KnownAdapter,
     pub(crate) ticks: Ticks,
     /// The endpoint as it was dialled last: through the port at which the adapter is.
     pub(crate) dialled: Endpoint,
     late: LateReplies,
     pub(crate) others: OtherController,
+    /// What was read to know whether this is a hand of the series.
+    pub(crate) evidence: SeriesEvidence,
+    /// When it is asked for more.
+    pub(crate) evidence_due: Moment,
     closed_wires: BusCounts,
     /// What holds the hand if this program ends.
     pub(crate) guard: Arc<MotionGuard>,
@@ -116,10 +128,15 @@ impl Session {
             saving: SaveWatch::default(),
             silent: 0,
             silent_since: None,
+            absence: Absence::default(),
+            has_numbers: false,
+            slowness: Slowness::default(),
             adapter: KnownAdapter::default(),
             ticks: Ticks::default(),
             late: LateReplies::default(),
             others: OtherController::default(),
+            evidence: SeriesEvidence::default(),
+            evidence_due: now,
             closed_wires: BusCounts::default(),
         }
     }
@@ -167,6 +184,7 @@ impl Session {
         let (tap, clock) = (self.ends.tap.clone(), self.config.clock);
         let wire = Box::new(TappedWire::new(wire, tap, clock));
         let mut bus = bus::on_wire(&self.dialled, wire, late, clock);
+        self.has_numbers = bus.has_numbers();
         self.heard();
         self.sleep = SleepWatch::start(self.config.clock);
         self.go(LinkState::Identifying);
@@ -204,6 +222,7 @@ impl Session {
             Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
             // It has neither port nor speed that could be wrong.
             Endpoint::Sim { .. } => LinkTrouble::NoAnswer { id },
+            _ if bus.own_frames() > 0 => LinkTrouble::OnlyEcho { place },
             _ if is_noisy => LinkTrouble::Garbled { place, id },
             _ => LinkTrouble::NoAnswer { id },
         })
@@ -323,19 +342,53 @@ impl Session {
     pub(crate) fn reply_limit(&self, bus: &dyn Bus, bytes: u16) -> Duration {
         let usual = self.counters.stats.rtt_p99.unwrap_or_default() * 2;
         let on_wire = bus.wire_time(bytes);
-        let limit = on_wire + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX);
+        let least = self.slowness.least_wait();
+        let limit = on_wire + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX).max(least);
         // In a silence the requests share what is left of its time.
         let Some(since) = self.silent_since else {
             return limit;
         };
         let left = SILENCE_MAX.saturating_sub(self.now().since(since));
-        limit.min(left.max(on_wire + REPLY_LIMIT_MIN))
+        limit.min(left.max(on_wire + least))
     }
 
     /// A request was answered after `took`.
     pub(crate) fn answered(&mut self, took: Duration) {
         self.heard();
         self.counters.round_trip(took);
+        if self.has_numbers {
+            self.slowness.took(took);
+            self.show_slowness();
+        }
+    }
+
+    /// Learns from replies that came after their requests were given up.
+    pub(crate) fn learn_late(&mut self, bus: &mut dyn Bus) {
+        let Some(late) = bus.take_late() else {
+            return;
+        };
+        if let Some(exception) = late.exception {
+            // It says why nothing comes; that nothing does is counted already.
+            let _counted = self.absence.refused(exception.into(), self.now());
+            return;
+        }
+        self.counters.round_trip(late.took);
+        self.slowness.late(late);
+        self.show_slowness();
+    }
+
+    fn show_slowness(&mut self) {
+        let slowest = self.slowness.slowest();
+        let slow_ms = slowest.and_then(|took| u16::try_from(took.as_millis()).ok());
+        // A millisecond more or less is no news.
+        let is_news = match (self.status.slow_ms, slow_ms) {
+            (Some(shown), Some(now)) => shown.abs_diff(now) > shown / 8,
+            (shown, now) => shown != now,
+        };
+        if is_news {
+            self.status.slow_ms = slow_ms;
+            self.publish();
+        }
     }
 
     /// A request failed. Only a lost wire, or too many failures in a row, end the conversation.
@@ -344,22 +397,23 @@ impl Session {
         bus: &mut dyn Bus,
         error: &BusError,
     ) -> Result<(), WireEnd> {
+        self.learn_late(bus);
         match error {
             BusError::Lost(error) => return Err(WireEnd::Lost(error.clone().into())),
-            BusError::Refused { .. } => {
-                self.heard();
-                self.counters.stats.refusals += 1;
-                return Ok(());
-            }
+            BusError::Refused { reason } => return self.refused(*reason).await,
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
             // Nothing was asked.
             BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
-            return Err(WireEnd::Lost(LinkTrouble::Silent {
-                silent: self.silent,
-            }));
+            let silent = self.silent;
+            let said = self.absence.last();
+            return Err(WireEnd::Lost(
+                said.map_or(LinkTrouble::Silent { silent }, |exception| {
+                    self.gateway_alone(exception)
+                }),
+            ));
         }
         if self.motion.hold.is_some() {
             return Ok(());
@@ -373,10 +427,38 @@ impl Session {
         }
     }
 
+    /// A request was refused. Only the hand's own refusals are answers of the hand.
+    async fn refused(&mut self, reason: Refusal) -> Result<(), WireEnd> {
+        self.counters.stats.refusals += 1;
+        match self.absence.refused(reason, self.now()) {
+            Refused::ByHand => self.heard(),
+            Refused::Unsent => {}
+            Refused::Unsure if self.motion.hold.is_some() => {}
+            Refused::Unsure => self.pause_unless_stopped(REFUSED_PAUSE).await,
+            Refused::Gone(exception) => {
+                return Err(WireEnd::Lost(self.gateway_alone(exception)));
+            }
+        }
+        Ok(())
+    }
+
+    /// The trouble of a gateway that answers for a hand that does not.
+    pub(crate) fn gateway_alone(&self, exception: ModbusException) -> LinkTrouble {
+        let place = self.dialled.place();
+        LinkTrouble::Gateway { place, exception }
+    }
+
+    /// Waits, but lets a stop through at once.
+    pub(crate) async fn pause_unless_stopped(&self, length: Duration) {
+        let stop = stopped(Arc::clone(&self.ends.wanted));
+        let _either = timeout(length, stop).await;
+    }
+
     /// The hand answered.
-    fn heard(&mut self) {
+    pub(crate) fn heard(&mut self) {
         self.silent = 0;
         self.silent_since = None;
+        self.absence.answered();
     }
 
     /// A request got no usable reply; true if the hand now counts as gone.
@@ -389,8 +471,10 @@ impl Session {
         let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
         self.silent += 1;
         let since = *self.silent_since.get_or_insert(asked);
-        let one_more = now.since(since) + REPLY_LIMIT_MIN;
-        self.silent >= SILENT_MAX || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
+        let one_more = now.since(since) + self.slowness.least_wait();
+        // Over a connection nothing is lost: there a reply is late, and tells how late it is.
+        let are_many = self.silent >= SILENT_MAX && !self.has_numbers;
+        are_many || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
     }
 
     /// Goes to a state and tells the window.
@@ -431,6 +515,7 @@ impl Session {
         self.counters.stats.checksum_errors = all.checksum_errors;
         self.counters.stats.resyncs = all.resyncs;
         self.counters.stats.foreign_replies = all.foreign_replies;
+        self.counters.stats.late_replies = all.late_replies;
         self.others.overheard(all.foreign_requests, self.now());
         self.counters.stats.foreign_requests = all.foreign_requests + self.others.changes;
         let now = self.now();

@@ -1,6 +1,6 @@
 //! Counting for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
 
-use crate::hand::{Finger, Group, Groups, Moment};
+use crate::hand::{Finger, Group, Groups, HandSample, Moment};
 use crate::link::poll::meter::LineMeter;
 use crate::link::rate::EventRate;
 use crate::link::stats::{LineUse, LinkStats};
@@ -30,6 +30,15 @@ impl Counters {
             self.round_trips.pop_front();
         }
         self.round_trips.push_back(took);
+    }
+
+    /// A reply with these groups of a sample arrived.
+    pub(crate) fn judge(&mut self, sample: &HandSample, fresh: Groups) {
+        if fresh.is_empty() {
+            return;
+        }
+        self.stats.readings += 1;
+        self.stats.implausible += u64::from(sample.is_implausible(fresh));
     }
 
     /// New values of these groups arrived.

@@ -5,8 +5,10 @@ use crate::codec::modbus::{detect_packing, words_per_group};
 use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
 use crate::link::bus::error::id_of;
+use crate::link::bus::late_replies::REPLY_LIMIT_MIN;
 use crate::link::bus::{Bus, BusError, Bytes};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
+use crate::link::series::{Series, SeriesEvidence, SeriesQuestion};
 use crate::link::session::conversation::{Session, WireEnd, closed, stopped, unless_lost};
 use crate::link::status::LinkTrouble;
 use std::sync::Arc;
@@ -16,6 +18,10 @@ use std::time::Duration;
 const TRIES: u32 = 3;
 /// After the first answer, no further request starts later than this: a reconnect must not wait.
 const WITHIN: Duration = Duration::from_millis(400);
+/// Whether it is a hand of the series is asked again after this, where it is not clear.
+const EVIDENCE_EACH: Duration = Duration::from_millis(500);
+/// On a slow way there is time for this many, one after the other.
+const QUESTIONS: u32 = 8;
 /// A question without an answer is asked once more: one lost reply must not look like a quirk.
 const ASKED: u32 = 2;
 
@@ -58,6 +64,8 @@ const OTHER_TOUCH_SHAPES: [Span; 3] = [
 enum IdentityReply {
     Bytes(Bytes),
     Refused,
+    /// Something else refused: a gateway, or a device that is busy.
+    Busy,
     Silent,
     /// There was no time for it, or no way to ask that is clear.
     Unasked,
@@ -80,43 +88,144 @@ impl Session {
         self.keep_pressed_stop();
         self.forget_wishes();
         let known = self.status.quirks;
-        let until = self.now().plus(WITHIN);
+        let until = self.now().plus(self.identifies_within());
         let packing = self.ask_packing(bus, id.as_ref(), until).await?;
         bus.set_packing(packing);
+        self.evidence = SeriesEvidence::default();
+        // What was another series stays that until it shows otherwise: a stop that cuts the questions short is not for it.
+        if self.status.series == Series::Ours {
+            self.status.series = Series::Unknown;
+        }
+        self.ask_series(bus, until).await?;
         self.status.quirks = Quirks {
             packing,
             hand_id: id.as_ref().and_then(|id| first_byte(id, packing)),
             ..self.ask_rest(bus, until).await?
         };
+        self.evidence.fingertips(self.status.quirks.touch);
         // A stop cut the questions short: what was known of this hand stays.
         if self.is_stop_wanted() && known.hand_id == self.status.quirks.hand_id {
             bus.set_packing(known.packing);
             self.status.quirks = known;
         }
+        self.judge_series()
+    }
+
+    /// Reads groups until it is clear whether this is a hand of the series.
+    async fn ask_series(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
+        for question in SeriesQuestion::ALL {
+            if self.evidence.needs(question) {
+                self.ask_one(bus, question, until).await?;
+            }
+        }
+        self.judge_series()
+    }
+
+    async fn ask_one(
+        &mut self,
+        bus: &mut dyn Bus,
+        question: SeriesQuestion,
+        until: Moment,
+    ) -> Result<(), WireEnd> {
+        let shapes = question.shapes();
+        match self.ask(bus, shapes, until).await? {
+            IdentityReply::Bytes(bytes) => {
+                let is_it = |shape: &&Span| usize::from(shape.len) == bytes.len();
+                if let Some(span) = shapes.iter().find(is_it) {
+                    self.evidence.read(question, *span, &bytes);
+                }
+            }
+            IdentityReply::Refused => self.evidence.refused(question),
+            IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => {}
+        }
         Ok(())
     }
 
-    /// Asks for the id until something comes. A refusal is an answer too, without an id.
+    /// Asks for more where that is not clear yet; true if it did.
+    pub(crate) async fn identify_further(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
+        let now = self.now();
+        if self.status.series != Series::Unknown || now < self.evidence_due {
+            return Ok(false);
+        }
+        self.evidence.begin_again();
+        self.ask_series(bus, now.plus(WITHIN)).await?;
+        self.evidence_due = self.now().plus(EVIDENCE_EACH);
+        Ok(true)
+    }
+
+    fn judge_series(&mut self) -> Result<(), WireEnd> {
+        let series = match self.evidence.verdict() {
+            Series::Unknown if self.status.series == Series::Other => Series::Other,
+            verdict => verdict,
+        };
+        if self.status.series != series {
+            self.status.series = series;
+            self.publish();
+        }
+        if series == Series::Other {
+            let place = self.dialled.place();
+            return Err(WireEnd::Lost(LinkTrouble::OtherSeries { place }));
+        }
+        Ok(())
+    }
+
+    /// Asks for the id until something comes. A refusal by the hand is an answer too, without an id.
     async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, WireEnd> {
-        for _ in 0..TRIES {
+        let mut tries = 0;
+        while tries < TRIES {
+            tries += 1;
             self.turn(bus).await?;
             // Where all are open, the id may be asked in the same words again: it does not change.
             let span = bus.choose(&ID_SHAPES).unwrap_or(HAND_ID.span());
             let span = Span::new(span.address, span.len + u16::from(bus.has_words()));
-            let limit = self.reply_limit(bus, span.len) * 2;
+            let limit = self.first_limit(bus, span.len, tries);
+            let asked = self.now();
             match bus.read(span, limit).await {
-                Ok(bytes) => return Ok(Some(bytes)),
-                Err(BusError::Refused { .. } | BusError::WrongLength { .. }) => return Ok(None),
+                Ok(bytes) => {
+                    self.answered(self.now().since(asked));
+                    self.learn_late(bus);
+                    return Ok(Some(bytes));
+                }
+                Err(BusError::WrongLength { .. }) => return Ok(None),
+                // A gateway that says so for long enough ends this, so its exceptions are no tries.
+                Err(error @ BusError::Refused { .. }) => {
+                    self.failed(bus, &error).await?;
+                    if self.absence.last().is_none() {
+                        return Ok(None);
+                    }
+                    tries -= 1;
+                }
                 Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
                 Err(BusError::Timeout { .. } | BusError::TooLong | BusError::Ambiguous) => {
                     self.counters.stats.timeouts += 1;
+                    self.learn_late(bus);
                     unless_lost(bus.quiet().await)?;
                 }
             }
         }
+        if let Some(exception) = self.absence.last() {
+            return Err(WireEnd::Lost(self.gateway_alone(exception)));
+        }
         Err(WireEnd::Lost(LinkTrouble::NoAnswer {
             id: id_of(&self.config.endpoint),
         }))
+    }
+
+    /// How long the nth request for the id may take. Where a late reply is known by its number, each waits longer than the
+    /// one before, so that a slow way to the hand is found out.
+    fn first_limit(&self, bus: &dyn Bus, bytes: u16, nth: u32) -> Duration {
+        let limit = self.reply_limit(bus, bytes);
+        if bus.has_numbers() {
+            limit.max(REPLY_LIMIT_MIN * 2u32.saturating_pow(nth))
+        } else {
+            limit * 2
+        }
+    }
+
+    /// How long the questions behind the first answer may take.
+    fn identifies_within(&self) -> Duration {
+        let slow = self.slowness.slowest().unwrap_or_default();
+        WITHIN.max(slow * QUESTIONS)
     }
 
     /// How single bytes stand in words; of wires without words nothing.
@@ -126,20 +235,21 @@ impl Session {
         id: Option<&Bytes>,
         until: Moment,
     ) -> Result<Option<BytePacking>, WireEnd> {
-        for _ in 0..ASKED {
-            if self.hurried(until) {
-                break;
-            }
+        let mut unanswered = 0;
+        while unanswered < ASKED && !self.hurried(until) {
             self.turn(bus).await?;
             let limit = self.reply_limit(bus, 2 * words_per_group(BytePacking::OnePerWord));
             match bus.words(TEMP.address, limit).await {
-                Ok(Some(words)) => return Ok(judged_packing(id, &words)),
-                Ok(None) => break,
-                Err(error) => {
-                    if let IdentityReply::Refused = self.unanswered(bus, error).await? {
-                        break;
-                    }
+                Ok(Some(words)) => {
+                    self.heard();
+                    return Ok(judged_packing(id, &words));
                 }
+                Ok(None) => break,
+                Err(error) => match self.unanswered(bus, error).await? {
+                    IdentityReply::Refused => break,
+                    IdentityReply::Busy => {}
+                    _ => unanswered += 1,
+                },
             }
         }
         Ok(None)
@@ -161,7 +271,7 @@ impl Session {
             IdentityReply::Refused => Some(GapRead::Split),
             // The serial framing has no word for no: silence is one if the next question is answered.
             IdentityReply::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
-            IdentityReply::Silent | IdentityReply::Unasked => None,
+            IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => None,
         };
         Ok(Quirks {
             baud_code,
@@ -204,6 +314,9 @@ impl Session {
                 heard = self.ask_once(bus, shapes, until).await?;
             }
         }
+        while matches!(heard, IdentityReply::Busy) {
+            heard = self.ask_once(bus, shapes, until).await?;
+        }
         Ok(heard)
     }
 
@@ -238,13 +351,18 @@ impl Session {
         match error {
             BusError::Lost(error) => return Err(WireEnd::Lost(error.into())),
             BusError::Refused { .. } => {
-                self.counters.stats.refusals += 1;
-                return Ok(IdentityReply::Refused);
+                self.failed(bus, &error).await?;
+                return Ok(match self.absence.last() {
+                    None => IdentityReply::Refused,
+                    // It may answer yet.
+                    Some(_) => IdentityReply::Busy,
+                });
             }
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Ambiguous => {}
             BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
         }
+        self.learn_late(bus);
         // A stop does not wait for the line to settle.
         let stop = stopped(Arc::clone(&self.ends.wanted));
         tokio::select! {
@@ -274,7 +392,7 @@ fn judged(heard: &IdentityReply) -> Option<TouchVariant> {
     match heard {
         IdentityReply::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
         IdentityReply::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
-        IdentityReply::Silent | IdentityReply::Unasked => None,
+        IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! One conversation with one hand: owner of the wire, arming and hold, requests, reconnecting.
 
-pub(crate) mod adapter;
+mod absence;
+mod adapter;
 pub(crate) mod conversation;
 pub(crate) mod counters;
 pub(crate) mod hold;
@@ -13,4 +14,5 @@ pub(crate) mod requests;
 pub(crate) mod rest;
 pub(crate) mod serve;
 pub(crate) mod settings;
+mod slowness;
 pub(crate) mod watch;

@@ -28,6 +28,8 @@ const ROUNDS_MAX: u8 = 2;
 pub(crate) struct Motion {
     pub(crate) last_epoch: ArmEpoch,
     pub(crate) hold: Option<HoldWatch>,
+    /// A hold frame went out, and the pose was not asked for since.
+    pub(crate) waits_for_look: bool,
     /// The newest wishes that no round has taken yet.
     setpoints: Option<Setpoints>,
     /// The round that is being sent, in order.
@@ -147,6 +149,7 @@ impl Motion {
     pub(crate) const fn asked(&mut self, is_pose: bool) {
         if is_pose {
             self.pose_due = false;
+            self.waits_for_look = false;
         } else {
             self.rounds = 0;
         }

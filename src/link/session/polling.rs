@@ -8,7 +8,6 @@ use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
-use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -25,7 +24,7 @@ impl Session {
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().priority);
         // Elsewhere requests of others are heard.
-        let is_tcp = matches!(self.dialled, Endpoint::Tcp { .. });
+        let is_tcp = self.dialled.host().is_some();
         let watched = is_tcp && self.status.armed.is_some();
         self.plan.watch_setpoints(watched, now);
         if self.motion.hold.is_none() {
@@ -141,6 +140,7 @@ impl Session {
             self.publish();
         }
         self.counters.fresh(fresh, now);
+        self.counters.judge(&self.sample, fresh);
         let sample = Arc::new(self.sample);
         self.tell(Record::Reading { sample, fresh });
         if fresh.contains(Group::Faults) {

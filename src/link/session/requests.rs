@@ -1,7 +1,7 @@
 //! Commands and reads on their way: writes that go out one a step, and reads of any memory. Motion among them needs
 //! arming, like every other.
 
-use crate::hand::{HandCommand, Moment, RegisterWrite, Span, Writes};
+use crate::hand::{HandCommand, HandSample, Moment, RegisterWrite, Reply, Span, Writes};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
 use crate::link::lease::Lease;
@@ -133,9 +133,19 @@ impl Session {
                 self.job = Some(SessionJob::Read(job));
             }
             Ok(Some(bytes)) => {
-                let took = self.now().since(asked);
+                let received = self.now();
+                let took = received.since(asked);
                 self.answered(took);
                 self.watch_ticks(span.len, took);
+                let mut sample = HandSample::default();
+                let bytes = bytes.as_slice();
+                let fresh = sample.take(&Reply {
+                    span,
+                    bytes,
+                    asked,
+                    received,
+                });
+                self.counters.judge(&sample, fresh);
                 self.store_read(span, asked, Ok(bytes.to_vec()));
                 let _told = job.answer.send(Ok(bytes.to_vec()));
             }

@@ -1,15 +1,18 @@
 //! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
 //! requests at once, and the wishes of the window are looked at before each.
 
-use crate::hand::{ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, RegisterWrite, Target};
+use crate::hand::{
+    ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target,
+};
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::HolderState;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
+use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
-use crate::link::session::motion::{ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::motion::{ANGLE_FRESH, ANGLE_LOST, arm_refusal, hold_targets};
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
@@ -58,7 +61,8 @@ impl Session {
     }
 
     /// What is told after something was done.
-    pub(crate) fn after_step(&mut self, bus: &dyn Bus) {
+    pub(crate) fn after_step(&mut self, bus: &mut dyn Bus) {
+        self.learn_late(bus);
         self.tell_rest();
         self.count(bus);
         self.watch_others(bus);
@@ -67,6 +71,9 @@ impl Session {
     /// Does the most urgent thing; false if nothing is due.
     async fn step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if self.urgent_step(bus).await? {
+            return Ok(true);
+        }
+        if self.motion.hold.is_none() && self.identify_further(bus).await? {
             return Ok(true);
         }
         if self.motion.lets_jobs(self.now()) && self.next_job() {
@@ -89,8 +96,11 @@ impl Session {
         self.watch_heat();
         let now = self.now();
         let hold = self.motion.hold;
-        let is_due = |hold: &HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
-        if hold.as_ref().is_some_and(is_due) {
+        // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
+        // would never see the hand rest.
+        let waits = self.motion.waits_for_look && self.slowness.slowest().is_some();
+        let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now) && !waits;
+        if hold.is_some_and(is_due) {
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
@@ -98,6 +108,7 @@ impl Session {
                 return self.read_pose(bus).await.map(|()| true);
             }
             self.send_hold(bus).await?;
+            self.motion.waits_for_look = true;
         } else if self.motion.begins_round(now)
             && let Some(question) = self.plan.before_write(now)
         {
@@ -214,7 +225,8 @@ impl Session {
         let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
         let let_go = is_let_go.then_some(ArmRefusal::LetGo);
         let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        if let Some(reason) = busy.or(let_go).or_else(refusal) {
+        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
+        if let Some(reason) = busy.or(let_go).or_else(refusal).or(unknown) {
             self.refuse_arm(reason);
             return Ok(());
         }
@@ -365,6 +377,7 @@ impl Session {
         // Joints in doubt that were told where to stay are not told again: a deaf one that woke would move.
         if (self.motion.hold).is_none_or(|hold| hold.alarmed && !hold.has_ceased()) {
             self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
+            self.motion.waits_for_look = false;
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }
         if self.feedback.is_suspect() {
@@ -407,7 +420,14 @@ impl Session {
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
         let seen = hold_targets(&self.sample, now);
-        PerDof::from_fn(|dof| self.feedback.hold_target(dof, now).unwrap_or(seen[dof]))
+        // On a slow way the newest pose is old: where the joints must be by now follows from what they were told.
+        let is_slow = self.slowness.slowest().is_some();
+        let is_old = is_slow && !self.sample.angles_fresh(now, ANGLE_FRESH);
+        PerDof::from_fn(|dof| {
+            let doubted = self.feedback.hold_target(dof, now);
+            let expected = || self.feedback.expected(dof, now).filter(|_| is_old);
+            doubted.or_else(expected).unwrap_or(seen[dof])
+        })
     }
 
     /// Whether the trusted joints rest, and so the hand.
@@ -488,6 +508,10 @@ impl Session {
         cause: WriteCause,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
+        let reason = Refusal::NotIdentified;
+        let Some(permitted) = self.status.series.permit(write, cause) else {
+            return Err(BusError::Refused { reason });
+        };
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;
@@ -501,7 +525,7 @@ impl Session {
             cause,
             write: write.into(),
         });
-        let written = bus.write_unless(write, limit, urgent).await;
+        let written = bus.write_unless(permitted, limit, urgent).await;
         let answered = self.now();
         let took = answered.since(asked);
         self.tell(Record::Answered {

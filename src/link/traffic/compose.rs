@@ -50,7 +50,7 @@ impl SnippetFormat {
 
 fn python(hex: &str, endpoint: Option<&Endpoint>) -> String {
     let (port, baud) = match endpoint {
-        Some(tcp @ Endpoint::Tcp { .. }) => {
+        Some(tcp @ (Endpoint::Tcp { .. } | Endpoint::RtuTcp(_))) => {
             let place = tcp.place();
             let (host, port) = place.rsplit_once(':').unwrap_or((&place, "6000"));
             return format!(

@@ -27,7 +27,7 @@ impl FrameFormat {
     pub const fn of(endpoint: &Endpoint) -> Self {
         match endpoint {
             Endpoint::Sim { .. } | Endpoint::Rs485(_) => Self::Rs485,
-            Endpoint::Rtu(_) => Self::Rtu,
+            Endpoint::Rtu(_) | Endpoint::RtuTcp(_) => Self::Rtu,
             Endpoint::Tcp { .. } => Self::Tcp,
             Endpoint::Can { .. } => Self::Can,
             Endpoint::Slcan { .. } => Self::Slcan,

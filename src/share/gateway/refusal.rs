@@ -75,7 +75,9 @@ pub(crate) fn exception(error: &RequestError) -> ModbusException {
 const fn refused(reason: Refusal) -> ModbusException {
     match reason {
         Refusal::Exception(own) => own,
-        Refusal::PackingUnknown | Refusal::PackingUnsafe => ModbusException::Failure,
+        Refusal::PackingUnknown | Refusal::PackingUnsafe | Refusal::NotIdentified => {
+            ModbusException::Failure
+        }
     }
 }
 
@@ -94,7 +96,11 @@ mod tests {
             let own = Refusal::Exception(ModbusException::of(code));
             assert_eq!(told(own), [0x83, code]);
         }
-        for rule in [Refusal::PackingUnknown, Refusal::PackingUnsafe] {
+        for rule in [
+            Refusal::PackingUnknown,
+            Refusal::PackingUnsafe,
+            Refusal::NotIdentified,
+        ] {
             assert_eq!(told(rule), [0x83, 4], "{rule}");
         }
     }

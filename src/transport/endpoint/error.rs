@@ -31,7 +31,7 @@ impl fmt::Display for Want {
 pub enum EndpointError {
     /// The part before the colon is unknown or missing.
     #[error(
-        "'{text}' names no kind of link: write sim:, rs485:PORT, rtu:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
+        "'{text}' names no kind of link: write sim:, rs485:PORT, rtu:PORT, rtu+tcp:HOST:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
     )]
     Kind {
         /// What was given.

@@ -58,6 +58,9 @@ pub enum Endpoint {
     Rs485(SerialLine),
     /// `rtu:/dev/ttyUSB0?baud=115200&id=1`: Modbus RTU.
     Rtu(SerialLine),
+    /// `rtu+tcp:192.168.11.7:4001?baud=115200&id=1`: Modbus RTU through a serial device server, whose address and TCP port stand in
+    /// place of the port.
+    RtuTcp(SerialLine),
     /// `tcp:192.168.11.210:6000?unit=255`: Modbus TCP.
     Tcp {
         /// Name or address, without brackets.
@@ -131,7 +134,7 @@ impl Endpoint {
             Self::Sim { seed, body, .. } => {
                 (format!("sim:?seed={seed}{}", body_key(body.as_deref())), 1)
             }
-            Self::Rs485(line) | Self::Rtu(line) => {
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => {
                 (format!("{place}?baud={}", line.baud), u16::from(line.id))
             }
             Self::Tcp { unit, .. } => (place, u16::from(*unit)),
@@ -164,7 +167,7 @@ impl Endpoint {
     pub fn place(&self) -> String {
         match self {
             Self::Sim { .. } => "the simulated hand".into(),
-            Self::Rs485(line) | Self::Rtu(line) => line.port.clone(),
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => line.port.clone(),
             Self::Tcp { host, port, .. } if host.contains(':') => format!("[{host}]:{port}"),
             Self::Tcp { host, port, .. } => format!("{host}:{port}"),
             Self::Can { interface, .. } => interface.clone(),
@@ -177,7 +180,7 @@ impl Endpoint {
         match self {
             Self::Rs485(line) | Self::Rtu(line) => Some(&line.port),
             Self::Slcan { port, .. } | Self::UsbCan { port, .. } => Some(port),
-            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => None,
+            Self::Sim { .. } | Self::Tcp { .. } | Self::RtuTcp(_) | Self::Can { .. } => None,
         }
     }
 
@@ -187,9 +190,22 @@ impl Endpoint {
         match &mut moved {
             Self::Rs485(line) | Self::Rtu(line) => path.clone_into(&mut line.port),
             Self::Slcan { port, .. } | Self::UsbCan { port, .. } => path.clone_into(port),
-            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } => {}
+            Self::Sim { .. } | Self::Tcp { .. } | Self::RtuTcp(_) | Self::Can { .. } => {}
         }
         moved
+    }
+
+    /// Host and TCP port, where it is reached through a network.
+    pub fn host(&self) -> Option<(&str, u16)> {
+        match self {
+            Self::Tcp { host, port, .. } => Some((host, *port)),
+            Self::RtuTcp(line) => {
+                let (host, port) = line.port.rsplit_once(':')?;
+                let host = host.strip_prefix('[').unwrap_or(host);
+                Some((host.strip_suffix(']').unwrap_or(host), port.parse().ok()?))
+            }
+            _ => None,
+        }
     }
 
     /// The part before the colon.
@@ -198,6 +214,7 @@ impl Endpoint {
             Self::Sim { .. } => "sim",
             Self::Rs485(_) => "rs485",
             Self::Rtu(_) => "rtu",
+            Self::RtuTcp(_) => "rtu+tcp",
             Self::Tcp { .. } => "tcp",
             Self::Can { .. } => "can",
             Self::Slcan { .. } => "slcan",
@@ -217,7 +234,7 @@ impl fmt::Display for Endpoint {
                 let body = body_key(body.as_deref());
                 write!(f, "sim:?seed={seed}&scenario={scenario}{body}")
             }
-            Self::Rs485(line) | Self::Rtu(line) => {
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => {
                 write!(
                     f,
                     "{}:{}?baud={}&id={}",
@@ -288,6 +305,14 @@ mod tests {
                 "tcp:[::1]?packing=low",
                 "tcp:[::1]:6000?unit=255&packing=low",
             ),
+            (
+                "rtu+tcp:192.168.11.7:4001",
+                "rtu+tcp:192.168.11.7:4001?baud=115200&id=1",
+            ),
+            (
+                "rtu+tcp:[fe80::1%eth0]:4001?id=3&packing=low",
+                "rtu+tcp:[fe80::1%eth0]:4001?baud=115200&id=3&packing=low",
+            ),
             ("can:can0?id=16383", "can:can0?id=16383"),
             (
                 "slcan:/dev/ttyACM0?bitrate=500000",
@@ -333,6 +358,10 @@ mod tests {
             ("tcp:host?packing=middle", "low, high or one"),
             ("tcp:host?packing=", "low, high or one"),
             ("rs485:/dev/x?packing=high", "is not a setting"),
+            ("rtu+tcp:", "is incomplete"),
+            ("rtu+tcp:host", "is incomplete"),
+            ("rtu+tcp:host:0", "1 to 65535"),
+            ("rtu+tcp:host:4001?unit=1", "is not a setting"),
             ("can:can0?id=16384", "16383"),
             ("slcan:/dev/x?bitrate=83333", "800000 or 1000000"),
             ("usbcan:", "is incomplete"),

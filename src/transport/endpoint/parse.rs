@@ -41,6 +41,7 @@ impl FromStr for Endpoint {
             "sim" => keys.sim(),
             "rs485" => Ok(Endpoint::Rs485(keys.serial("rs485", "rs485:/dev/ttyUSB0")?)),
             "rtu" => Ok(Endpoint::Rtu(keys.serial("rtu", "rtu:/dev/ttyUSB0")?)),
+            "rtu+tcp" => keys.rtu_tcp(),
             "tcp" => keys.tcp(),
             "can" => keys.can(),
             "slcan" => keys.slcan(),
@@ -116,14 +117,15 @@ impl Query<'_> {
             id: DEFAULT_ID,
             packing: None,
         };
-        let known = if kind == "rtu" {
+        let has_words = kind != "rs485";
+        let known = if has_words {
             "baud, id and packing"
         } else {
             "baud and id"
         };
         for (key, value) in self.pairs() {
             match key {
-                "packing" if kind == "rtu" => {
+                "packing" if has_words => {
                     line.packing = Some(chosen_packing(key, value)?);
                 }
                 "baud" => line.baud = serial_speed(key, value)?,
@@ -134,6 +136,34 @@ impl Query<'_> {
         Ok(line)
     }
 
+    /// Serial device servers have no usual port, so it is named always.
+    fn rtu_tcp(&self) -> Result<Endpoint, EndpointError> {
+        let (kind, example) = ("rtu+tcp", "rtu+tcp:192.168.11.7:4001");
+        let mut line = self.serial(kind, example)?;
+        let (host, Some(port)) = split_host(&line.port) else {
+            return Err(self.incomplete(kind, example));
+        };
+        if host.is_empty() || host.contains(['[', ']']) {
+            return Err(self.incomplete(kind, example));
+        }
+        let port: u16 = in_range("port", port, 1..=65_535, Want::Between(1, 65_535))?;
+        line.port = if host.contains(':') {
+            format!("[{host}]:{port}")
+        } else {
+            format!("{host}:{port}")
+        };
+        Ok(Endpoint::RtuTcp(line))
+    }
+
+    fn incomplete(&self, kind: &'static str, example: &'static str) -> EndpointError {
+        let text = self.text.into();
+        EndpointError::Place {
+            text,
+            kind,
+            example,
+        }
+    }
+
     fn tcp(&self) -> Result<Endpoint, EndpointError> {
         let place = self.place("tcp", "tcp:192.168.11.210:6000")?;
         let (host, port) = split_host(&place);
@@ -142,11 +172,7 @@ impl Query<'_> {
             None => DEFAULT_TCP_PORT,
         };
         if host.is_empty() || host.contains(['[', ']']) {
-            return Err(EndpointError::Place {
-                text: self.text.into(),
-                kind: "tcp",
-                example: "tcp:192.168.11.210:6000",
-            });
+            return Err(self.incomplete("tcp", "tcp:192.168.11.210:6000"));
         }
         let (mut unit, mut packing) = (DEFAULT_UNIT, None);
         for (key, value) in self.pairs() {

@@ -5,7 +5,9 @@ use crate::transport::found::PortFound;
 use std::net::Ipv4Addr;
 
 /// The parts before the colon of an endpoint.
-const KINDS: [&str; 7] = ["sim", "rs485", "rtu", "tcp", "can", "slcan", "usbcan"];
+const KINDS: [&str; 8] = [
+    "sim", "rs485", "rtu", "rtu+tcp", "tcp", "can", "slcan", "usbcan",
+];
 
 /// Why a typed text leads to no hand.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -79,7 +81,10 @@ pub fn other_kind(endpoint: &Endpoint) -> Option<&'static str> {
     match endpoint {
         Endpoint::Rs485(_) => Some("rtu"),
         Endpoint::Rtu(_) | Endpoint::Slcan { .. } | Endpoint::UsbCan { .. } => Some("rs485"),
-        Endpoint::Sim { .. } | Endpoint::Tcp { .. } | Endpoint::Can { .. } => None,
+        Endpoint::Sim { .. }
+        | Endpoint::Tcp { .. }
+        | Endpoint::RtuTcp(_)
+        | Endpoint::Can { .. } => None,
     }
 }
 
@@ -178,6 +183,7 @@ mod tests {
             ("sim:?scenario=grasp", "sim:?seed=1&scenario=grasp"),
             ("RTU:/dev/ttyUSB0", "rtu:/dev/ttyUSB0?baud=115200&id=1"),
             ("tcp:10.0.0.1", "tcp:10.0.0.1:6000?unit=255"),
+            ("RTU+TCP:box:4001", "rtu+tcp:box:4001?baud=115200&id=1"),
             ("can:can0", "can:can0?id=1"),
             ("slcan:COM5", "slcan:COM5?bitrate=1000000&id=1"),
             ("usbcan:COM5", "usbcan:COM5?baud=115200&id=1"),

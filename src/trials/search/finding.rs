@@ -2,6 +2,7 @@
 
 use crate::hand::Dof;
 use crate::trials::plan::TrialSetting;
+use crate::trials::search::offset::Compared;
 use crate::trials::search::tolerance::Assurance;
 use serde::Serialize;
 use std::time::Duration;
@@ -166,9 +167,9 @@ pub enum NoClaim {
         noise_g: f64,
         least_g: f64,
     },
-    /// Even the slowest close is over the limit.
+    /// Even the slowest close may be over the limit.
     #[error(
-        "even at speed {speed} {} peaks at {peak_g:.0} g with the threshold that holds: raise the limit, or hold with less", dof.name()
+        "even at speed {speed} {} may peak at {peak_g:.0} g with the threshold that holds: raise the limit, or hold with less", dof.name()
     )]
     TooStrong { dof: Dof, speed: i16, peak_g: f64 },
     /// Not enough is left of the grip.
@@ -185,11 +186,62 @@ pub enum NoClaim {
         "the peak of {} could not be measured: its force readings are missing or too few", dof.name()
     )]
     NotMeasured { dof: Dof },
+    /// When it stopped, or what it held then, could not be read.
+    #[error(
+        "the stop of {} could not be seen: its angle, status or force readings after it are missing or too few", dof.name()
+    )]
+    NoStop { dof: Dof },
+    /// Its sensor reads so much at rest that the drive stops before it meets anything.
+    #[error(
+        "{} stops before it meets anything: its force sensor reads {offset_g:.0} g at rest, which its drive counts; calibrate the force sensors", dof.name()
+    )]
+    Offset { dof: Dof, offset_g: f64 },
     /// It did not settle.
     #[error(
         "no setting could be confirmed in {trials} closes: the peaks scatter too much for this limit; the object may lie differently each time"
     )]
     NotConfirmed { trials: usize },
+}
+
+/// What a drive was found to compare its force threshold with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ComparedThreshold {
+    #[serde(rename = "joint")]
+    pub dof: Dof,
+    /// `None` where the closes did not tell.
+    pub compared: Option<Compared>,
+    /// What its force sensor reads at rest, g.
+    pub offset_g: f64,
+}
+
+/// An offset of less, g, makes no difference.
+const NOTABLE_OFFSET_G: f64 = 10.0;
+
+impl ComparedThreshold {
+    /// Whether the offset is worth a word.
+    pub fn is_notable(&self) -> bool {
+        self.offset_g.abs() > NOTABLE_OFFSET_G
+    }
+}
+
+impl std::fmt::Display for ComparedThreshold {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (name, offset) = (self.dof.name(), self.offset_g);
+        match self.compared {
+            Some(Compared::AsRead) => write!(
+                f,
+                "{name} compares its threshold with FORCE_ACT as read: it reads {offset:.0} g at rest, so a threshold stops it at that much less force above rest"
+            ),
+            Some(Compared::AboveRest) => write!(
+                f,
+                "{name} compares its threshold with the force above rest: the {offset:.0} g that it reads at rest do not count"
+            ),
+            Some(Compared::Unknown) | None => write!(
+                f,
+                "whether {name} counts the {offset:.0} g that it reads at rest in its threshold was not told"
+            ),
+        }
+    }
 }
 
 /// What could not be told.
@@ -205,6 +257,10 @@ pub enum Untold {
         "peaks between two readings of {}: they were up to {:.0} ms apart", dof.name(), gap_s * 1000.0
     )]
     Gaps { dof: Dof, gap_s: f64 },
+    #[error(
+        "whether the drive of {} counts the {offset_g:.0} g that its force sensor reads at rest in its threshold", dof.name()
+    )]
+    Offset { dof: Dof, offset_g: f64 },
     #[error("whether the peaks are normally distributed, on which the bound rests")]
     Distribution,
 }
@@ -215,6 +271,7 @@ impl Untold {
         match (self, other) {
             (Self::Slips { dof }, Self::Slips { dof: same })
             | (Self::Stiffness { dof }, Self::Stiffness { dof: same })
+            | (Self::Offset { dof, .. }, Self::Offset { dof: same, .. })
             | (Self::Gaps { dof, .. }, Self::Gaps { dof: same, .. }) => dof == same,
             (Self::Distribution, Self::Distribution) => true,
             _ => false,
@@ -230,6 +287,8 @@ pub struct Finding {
     /// Every close, in order.
     pub tried: Vec<Tried>,
     pub untold: Vec<Untold>,
+    /// What the drives compare their thresholds with, in the order of the joints.
+    pub compared: Vec<ComparedThreshold>,
 }
 
 /// What a search does.

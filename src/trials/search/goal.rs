@@ -15,6 +15,8 @@ const LIMIT_G: i16 = 500;
 pub const HOLD_SHARE: f64 = 0.4;
 /// The most that a grasp may be asked to hold with: the rest is for what a drive runs past its threshold.
 pub const HOLD_SHARE_MAX: f64 = 0.8;
+/// The first threshold is at most this share of the limit: how far a drive runs past it, and what it compares it with, is not known.
+const FIRST_SHARE: f64 = 0.3;
 /// Closes that confirm a setting.
 pub const CLOSES_MIN: usize = 5;
 pub const CLOSES_MAX: usize = 100;
@@ -137,10 +139,10 @@ impl SearchGoal {
 
     /// What the first, slow trial is made with.
     pub fn first_setting(&self) -> TrialSetting {
-        let hold = f64::from(self.hold_g);
+        let force = (1.1 * f64::from(self.hold_g)).min(FIRST_SHARE * f64::from(self.limit_g));
         TrialSetting {
             speed: Speed::SLOWEST_MEASURED,
-            force: Force::nearest(whole(hold.max(f64::from(LIMIT_MIN_G) / 2.0) * 1.1)),
+            force: Force::nearest(whole(force.max(f64::from(LIMIT_MIN_G) / 2.0))),
         }
     }
 

@@ -1,20 +1,32 @@
-//! How a peak grows with the speed: what was measured on this object, continued along the shapes that two hands of the family
-//! showed. The shapes choose the next trial; a claim takes no more of them than the least scatter of its peaks. Pure.
+//! How a peak grows with the speed: what was measured on this object, continued along the shapes that hands of the family showed,
+//! above what the drive compares its threshold with. The shapes choose the next trial; a claim takes no more of them than the
+//! least scatter of its peaks. Pure.
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
+use crate::hand::statistics::{count, mean, spread};
+use crate::trials::search::offset::{Compared, OffsetEvidence};
 
 /// Mixtures of the two published shapes that are tried.
-const MIXTURES: u32 = 20;
+const MIXTURES: u32 = 10;
 /// How fast this hand may be for each unit of speed, of what the published ones are.
 const PACES: [f64; 4] = [0.85, 0.9, 0.95, 1.0];
+/// Where a stop always comes equally late, the way grows with the speed itself, and the force with these powers of it: more than
+/// one on what gets stiffer as it is pressed.
+const POWERS: [f64; 4] = [1.0, 1.25, 1.5, 2.0];
+/// Below this threshold the published peaks say little, g: a smaller one is continued from here.
+const LIGHT_G: f64 = 100.0;
 /// A peak repeats itself to this share of its overshoot, as far as nothing else is known; that counts as so many closes.
 const REPEATS_TO: f64 = 0.035;
 const REPEATS_TRUST: f64 = 6.0;
 /// What a shape may differ from this hand's, as a share of the overshoot.
 const SHAPE_ERROR: f64 = 0.10;
-/// How much worse than the best a mixture may fit and still be possible (chi-square).
+/// How much worse than the best a shape may fit and still be possible (chi-square).
 const POSSIBLE: f64 = 4.0;
-/// A best fit worse than this for each trial means that no mixture is like this hand.
+/// How much worse than the best a whole comparison may fit and still be possible: an offset looks much like a slower start.
+const COMPARED_POSSIBLE: f64 = 25.0;
+/// So much worse it is not what the drive does.
+const COMPARED_TOLD: f64 = 9.0;
+/// A best fit worse than this for each trial means that no shape is like this hand.
 const STRANGE: f64 = 6.0;
 /// Then the worst shape is taken, and so much more.
 const STRANGE_MORE: f64 = 1.3;
@@ -28,20 +40,40 @@ pub struct Contact {
     pub threshold_g: f64,
 }
 
+/// The peak of one close.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenPeak {
+    pub at: Contact,
+    /// What the force sensor read at rest before it, g.
+    pub offset_g: f64,
+    /// Highest force above that, g.
+    pub peak_g: f64,
+    /// What it may have been more between two readings, g.
+    pub missed_g: f64,
+}
+
 /// What one joint's closes measured.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PeakGrowth {
-    /// What was tried, and grams above the threshold.
-    seen: Vec<(Contact, f64)>,
+    seen: Vec<SeenPeak>,
+    evidence: OffsetEvidence,
     /// Noise of the force, g.
     noise_g: f64,
-    /// The shapes, fitted to what was seen.
-    fits: Vec<Fit>,
+    /// The shapes, fitted to what was seen: the best, and those that are possible beside it.
+    best: Option<Fit>,
+    possible: Vec<Fit>,
+    is_strange: bool,
+    /// To what share of its overshoot a peak repeats itself.
+    repeats_to: f64,
+    /// How well the best of each comparison fits.
+    as_read: Option<f64>,
+    above_rest: Option<f64>,
 }
 
-/// A mixture of the shapes, fitted.
+/// A shape, fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fit {
+    compared: Compared,
     shape: Shape,
     scale: f64,
     /// Standard deviation of the scale.
@@ -51,34 +83,79 @@ struct Fit {
 
 impl PeakGrowth {
     /// Takes one close.
-    pub fn add(&mut self, contact: Contact, over_g: f64) {
-        self.seen.push((contact, over_g));
+    pub fn add(&mut self, seen: SeenPeak) {
+        self.seen.push(seen);
+        self.evidence.add(&seen, self.noise_g);
         self.fit_all();
     }
 
-    /// Takes over the noise of the force, g.
-    pub fn set_noise(&mut self, noise_g: f64) {
+    /// Takes over the noise of the force for the closes to come, g.
+    pub const fn set_noise(&mut self, noise_g: f64) {
         self.noise_g = noise_g;
-        self.fit_all();
     }
 
-    /// What is likely above the threshold, g; `None` before anything was measured.
+    /// Takes a drive that closed no further although nothing was in its way, with a threshold that its sensor reads at rest.
+    pub fn stopped_in_air(&mut self, offset_g: f64) {
+        self.evidence.stopped_in_air(offset_g);
+    }
+
+    /// What the sensor read at rest before the last close, g.
+    pub fn offset_g(&self) -> f64 {
+        self.evidence.offset_g()
+    }
+
+    /// What the drive compares its threshold with, as far as the closes tell.
+    pub fn compared(&self) -> Option<Compared> {
+        self.evidence.told().or_else(|| {
+            let (as_read, above_rest) = (self.as_read?, self.above_rest?);
+            if as_read + COMPARED_TOLD < above_rest {
+                Some(Compared::AsRead)
+            } else if above_rest + COMPARED_TOLD < as_read {
+                Some(Compared::AboveRest)
+            } else {
+                None
+            }
+        })
+    }
+
+    /// The fastest speed that was closed with, if its peak was surely seen.
+    pub fn fastest(&self) -> Option<f64> {
+        let speeds = self.seen.iter().map(|own| own.at.speed);
+        speeds.reduce(f64::max)
+    }
+
+    /// The highest force above rest that a threshold stopped it at, most likely, g.
+    pub fn stopped_most(&self) -> f64 {
+        let thresholds = self.seen.iter().map(|own| own.at.threshold_g);
+        self.stops_at(thresholds.fold(0.0, f64::max))
+    }
+
+    /// The force above rest at which a threshold most likely stops the drive, g.
+    pub fn stops_at(&self, threshold_g: f64) -> f64 {
+        let compared = self.best.map(|fit| fit.compared);
+        let compared = compared.or(self.compared()).unwrap_or_default();
+        compared.stops_at(threshold_g, self.offset_g())
+    }
+
+    /// The peak that is likely, g; `None` before anything was measured.
     pub fn likely(&self, at: Contact) -> Option<f64> {
-        let best = self.best()?;
-        Some(best.scale * best.shape.over_g(at) * self.correction(best, at.speed))
+        let best = self.best.as_ref()?;
+        let stops_at = best.compared.stops_at(at.threshold_g, self.offset_g());
+        let over = best.shape.peak_g(at.speed, stops_at, best.scale) - stops_at;
+        Some(stops_at + over * self.correction(best, at.speed))
     }
 
     /// What the nearest trials on either side were of what the fit says of them.
     fn correction(&self, fit: &Fit, speed: f64) -> f64 {
         let side = |is_on_it: &dyn Fn(f64) -> bool, nearer: &dyn Fn(f64, f64) -> bool| {
-            let on_it = self.seen.iter().map(|(at, _)| at.speed);
+            let on_it = self.seen.iter().map(|own| own.at.speed);
             let nearest = on_it.filter(|own| is_on_it(*own));
             let nearest = nearest.reduce(|a, b| if nearer(a, b) { a } else { b })?;
-            let there = self.seen.iter().filter(|(at, _)| at.speed == nearest);
+            let there = self.seen.iter().filter(|own| own.at.speed == nearest);
             let (mut over, mut fitted) = (0.0, 0.0);
-            for (at, own) in there {
-                over += own;
-                fitted += fit.scale * fit.shape.over_g(*at);
+            for own in there {
+                over += fit.compared.over_g(own);
+                fitted += fit.over_g(own);
             }
             // Of peaks that are no more than noise nothing can be said.
             let tells = fitted > 5.0 * self.noise_g && over > 0.0;
@@ -95,20 +172,17 @@ impl PeakGrowth {
         }
     }
 
-    /// The most that is possible above the threshold on average, g.
+    /// The highest mean peak that is possible, g.
     pub fn upper(&self, at: Contact) -> Option<f64> {
-        let best = self.best()?;
-        let trials: f64 = self.seen.iter().map(|_| 1.0).sum();
-        let is_strange = best.misfit > STRANGE * trials;
-        let possible = self
-            .fits
-            .iter()
-            .filter(|fit| is_strange || fit.misfit <= best.misfit + POSSIBLE);
-        let most = possible.map(|fit| {
-            if is_strange {
-                STRANGE_MORE * self.grown_from_fastest(at, fit.shape)
+        let most = self.possible.iter().map(|fit| {
+            let stops_at = fit.compared.stops_at(at.threshold_g, self.offset_g());
+            if self.is_strange {
+                let scale = self.scale_of_fastest(fit);
+                let peak = fit.shape.peak_g(at.speed, stops_at, scale);
+                stops_at + STRANGE_MORE * (peak - stops_at)
             } else {
-                (fit.scale + 2.0 * fit.unsure) * fit.shape.over_g(at)
+                let scale = fit.scale + 2.0 * fit.unsure;
+                fit.shape.peak_g(at.speed, stops_at, scale)
             }
         });
         most.reduce(f64::max)
@@ -116,50 +190,79 @@ impl PeakGrowth {
 
     /// Standard deviation of single closes around what is likely, g.
     pub fn scatter(&self, at: Contact) -> f64 {
-        let over = self.likely(at).unwrap_or_default();
-        self.noise_g.hypot(self.repeats_to() * over)
+        let over = self.likely(at).unwrap_or_default() - self.stops_at(at.threshold_g);
+        self.noise_g.hypot(self.repeats_to * over)
     }
 
-    /// To what share of its overshoot a peak repeats itself, from the settings that were closed more than once.
-    fn repeats_to(&self) -> f64 {
+    /// From the settings that were closed more than once.
+    fn repeated(&self) -> f64 {
         let (mut squares, mut freedom) = (REPEATS_TRUST * REPEATS_TO.powi(2), REPEATS_TRUST);
-        for (nth, (at, _)) in self.seen.iter().enumerate() {
-            let is_first = self.seen.iter().take(nth).all(|(other, _)| other != at);
-            let same = self.seen.iter().filter(|(other, _)| other == at);
-            let same: Vec<f64> = same.map(|(_, over)| *over).collect();
-            let n: f64 = same.iter().map(|_| 1.0).sum();
-            let mean = same.iter().sum::<f64>() / n;
-            if is_first && n > 1.0 && mean > 10.0 * self.noise_g {
-                squares += same
-                    .iter()
-                    .map(|own| (own / mean - 1.0).powi(2))
-                    .sum::<f64>();
-                freedom += n - 1.0;
+        let compared = self.best.map_or(Compared::AboveRest, |fit| fit.compared);
+        for (nth, own) in self.seen.iter().enumerate() {
+            let is_first = self.seen.iter().take(nth).all(|other| other.at != own.at);
+            let same = self.seen.iter().filter(|other| other.at == own.at);
+            let same: Vec<f64> = same.map(|own| compared.over_g(own)).collect();
+            let mean = mean(&same).unwrap_or_default();
+            if is_first && same.len() > 1 && mean > 10.0 * self.noise_g {
+                squares += spread(&same) / mean.powi(2);
+                freedom += count(&same) - 1.0;
             }
         }
         (squares / freedom).sqrt()
     }
 
-    fn best(&self) -> Option<&Fit> {
-        let fits = self.fits.iter();
-        fits.min_by(|a, b| a.misfit.total_cmp(&b.misfit))
-    }
-
     fn fit_all(&mut self) {
         let mixtures = (0..=MIXTURES).map(|n| f64::from(n) / f64::from(MIXTURES));
-        let shapes = mixtures.flat_map(|second| PACES.map(|pace| Shape { second, pace }));
-        self.fits = shapes.filter_map(|shape| self.fit(shape)).collect();
+        let mixtures =
+            mixtures.flat_map(|second| PACES.map(|pace| Shape::Published { second, pace }));
+        let shapes: Vec<Shape> = mixtures.chain(POWERS.map(Shape::Late)).collect();
+        let fits_of = |compared: Compared| -> Vec<Fit> {
+            let shapes = shapes.iter();
+            let fits = shapes.filter_map(|shape| self.fit(compared, *shape));
+            fits.collect()
+        };
+        let all: Vec<Vec<Fit>> = self.evidence.possible().into_iter().map(fits_of).collect();
+        let best = all
+            .iter()
+            .flatten()
+            .min_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        let best = best.copied();
+        let least = best.map_or(0.0, |fit| fit.misfit);
+        let misfit_of = |compared: Compared| {
+            let own = all.iter().flatten().filter(|fit| fit.compared == compared);
+            own.map(|fit| fit.misfit).reduce(f64::min)
+        };
+        self.as_read = misfit_of(Compared::AsRead);
+        self.above_rest = misfit_of(Compared::AboveRest);
+        let trials: f64 = self.seen.iter().map(|_| 1.0).sum();
+        self.is_strange = least > STRANGE * trials;
+        let possible = all.iter().flatten().filter(|fit| {
+            let own = misfit_of(fit.compared).unwrap_or_default();
+            let fits = self.is_strange || fit.misfit <= own + POSSIBLE;
+            fits && own <= least + COMPARED_POSSIBLE
+        });
+        self.possible = possible.copied().collect();
+        self.best = best;
+        self.repeats_to = self.repeated();
     }
 
-    /// The scale by weighted least squares.
-    fn fit(&self, shape: Shape) -> Option<Fit> {
-        let weighted = |over: f64| {
-            let error = (self.noise_g + 1.0).hypot(SHAPE_ERROR * over);
-            1.0 / (error * error)
-        };
+    /// The scale by weighted least squares. A peak below what stops the drive tells nothing of what it runs past that.
+    fn fit(&self, compared: Compared, shape: Shape) -> Option<Fit> {
+        let noise = self.noise_g + 1.0;
         let (mut xy, mut xx) = (0.0, 0.0);
-        for (at, over) in &self.seen {
-            let (x, weight) = (shape.over_g(*at), weighted(*over));
+        let tells = |own: &&SeenPeak| !compared.is_contradicted_by(own, self.noise_g);
+        let points: Vec<(f64, f64, f64)> = self
+            .seen
+            .iter()
+            .filter(tells)
+            .map(|own| {
+                let over = compared.over_g(own);
+                let error = noise.hypot(SHAPE_ERROR * over).hypot(own.missed_g / 2.0);
+                let peak = own.peak_g + own.missed_g / 2.0;
+                shape.point(own.at.speed, compared.stops_at_in(own), (peak, error))
+            })
+            .collect();
+        for (x, over, weight) in &points {
             xy += weight * x * over;
             xx += weight * x * x;
         }
@@ -167,11 +270,11 @@ impl PeakGrowth {
             return None;
         }
         let scale = (xy / xx).max(0.0);
-        let misfits = self.seen.iter().map(|(at, over)| {
-            let miss = over - scale * shape.over_g(*at);
-            weighted(*over) * miss * miss
-        });
+        let misfits = points
+            .iter()
+            .map(|(x, over, weight)| weight * (over - scale * x).powi(2));
         Some(Fit {
+            compared,
             shape,
             scale,
             unsure: 1.0 / xx.sqrt(),
@@ -179,32 +282,78 @@ impl PeakGrowth {
         })
     }
 
-    /// The fastest trial's overshoot, continued along a shape.
-    fn grown_from_fastest(&self, at: Contact, shape: Shape) -> f64 {
+    /// The scale of a shape that goes through the fastest trial.
+    fn scale_of_fastest(&self, fit: &Fit) -> f64 {
         let fastest = self.seen.iter();
-        let fastest = fastest.max_by(|(a, _), (b, _)| a.speed.total_cmp(&b.speed));
-        fastest.map_or(0.0, |(from, over)| {
-            let grown = shape.over_g(at) / shape.over_g(*from).max(f64::EPSILON);
-            (over + self.noise_g).max(1.0) * grown
+        let fastest = fastest.max_by(|a, b| a.at.speed.total_cmp(&b.at.speed));
+        fastest.map_or(0.0, |from| {
+            let stops_at = fit.compared.stops_at_in(from);
+            let over = (fit.compared.over_g(from).max(0.0) + self.noise_g + from.missed_g).max(1.0);
+            let (x, y, _) = fit
+                .shape
+                .point(from.at.speed, stops_at, (stops_at + over, 1.0));
+            y / x.max(f64::EPSILON)
         })
     }
 }
 
-/// Grams above the threshold on the published block.
+impl Fit {
+    /// What it says of a close that was seen.
+    fn over_g(&self, seen: &SeenPeak) -> f64 {
+        let stops_at = self.compared.stops_at_in(seen);
+        self.shape.peak_g(seen.at.speed, stops_at, self.scale) - stops_at
+    }
+}
+
+/// How a peak grows with the speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Shape {
-    /// How much of it is as on the second hand, 0..=1.
-    second: f64,
-    /// How fast the hand is of what the published ones are.
-    pace: f64,
+enum Shape {
+    /// As on the published block.
+    Published {
+        /// How much of it is as on the second hand, 0..=1.
+        second: f64,
+        /// How fast the hand is of what the published ones are.
+        pace: f64,
+    },
+    /// A way that grows with the speed, and a force that grows with this power of the way.
+    Late(f64),
 }
 
 impl Shape {
-    fn over_g(self, at: Contact) -> f64 {
-        let speed = at.speed * self.pace;
-        (1.0 - self.second) * overshoot_g(speed, at.threshold_g)
-            + self.second * second_hand_overshoot_g(speed)
+    /// The peak where the drive is stopped at this force, g.
+    fn peak_g(self, speed: f64, stops_at: f64, scale: f64) -> f64 {
+        match self {
+            Self::Published { second, pace } => {
+                stops_at + scale * published_g(speed * pace, stops_at, second)
+            }
+            Self::Late(power) => (stops_at.powf(1.0 / power) + scale * speed)
+                .max(0.0)
+                .powf(power),
+        }
     }
+
+    /// A peak and its error as a point of a line through zero, whose slope is the scale: x, y, and the weight of y.
+    fn point(self, speed: f64, stops_at: f64, (peak_g, error_g): (f64, f64)) -> (f64, f64, f64) {
+        match self {
+            Self::Published { second, pace } => (
+                published_g(speed * pace, stops_at, second),
+                peak_g - stops_at,
+                error_g.powi(-2),
+            ),
+            Self::Late(power) => {
+                let way = |force: f64| force.max(1.0).powf(1.0 / power);
+                let error = error_g * way(peak_g) / (power * peak_g.max(1.0));
+                let y = way(peak_g) - stops_at.powf(1.0 / power);
+                (speed, y, error.powi(-2))
+            }
+        }
+    }
+}
+
+/// Grams above the threshold on the published block.
+fn published_g(speed: f64, threshold_g: f64, second: f64) -> f64 {
+    (1.0 - second) * overshoot_g(speed, threshold_g.max(LIGHT_G))
+        + second * second_hand_overshoot_g(speed)
 }
 
 #[cfg(test)]
@@ -218,6 +367,24 @@ mod tests {
         }
     }
 
+    fn seen(at: Contact, offset_g: f64, peak_g: f64) -> SeenPeak {
+        SeenPeak {
+            at,
+            offset_g,
+            peak_g,
+            missed_g: 0.0,
+        }
+    }
+
+    fn known(noise_g: f64, closes: &[SeenPeak]) -> PeakGrowth {
+        let mut growth = PeakGrowth::default();
+        growth.set_noise(noise_g);
+        for close in closes {
+            growth.add(*close);
+        }
+        growth
+    }
+
     #[test]
     fn nothing_is_expected_before_anything_was_measured() {
         assert_eq!(PeakGrowth::default().likely(at(50.0)), None);
@@ -226,33 +393,79 @@ mod tests {
 
     #[test]
     fn one_slow_trial_allows_for_the_worse_hand_and_a_second_tells_them_apart() {
-        let mut growth = PeakGrowth::default();
-        growth.set_noise(2.0);
-        growth.add(at(25.0), second_hand_overshoot_g(25.0));
-        let worst = second_hand_overshoot_g(50.0);
-        assert!(growth.upper(at(50.0)).unwrap() >= worst);
-        let gentle = overshoot_g(25.0, 220.0) * 1.3;
-        let mut known = PeakGrowth::default();
-        known.set_noise(2.0);
-        known.add(at(25.0), gentle);
-        let before = known.upper(at(200.0)).unwrap();
-        for speed in [35.0, 60.0] {
-            known.add(at(speed), 1.3 * overshoot_g(speed, 220.0));
-        }
-        let after = known.upper(at(200.0)).unwrap();
-        assert!(after < 0.6 * before, "{after} {before}");
-        let truth = 1.3 * overshoot_g(200.0, 220.0);
-        assert!(after >= truth, "{after} {truth}");
-        assert!((known.likely(at(200.0)).unwrap() - truth).abs() < 0.15 * truth);
+        let first = known(
+            2.0,
+            &[seen(at(25.0), 0.0, 220.0 + second_hand_overshoot_g(25.0))],
+        );
+        let worst = 220.0 + second_hand_overshoot_g(50.0);
+        assert!(first.upper(at(50.0)).unwrap() >= worst);
+        let peak = |speed: f64| 220.0 + 1.3 * overshoot_g(speed, 220.0);
+        let closes = [25.0, 35.0, 60.0].map(|speed| seen(at(speed), 0.0, peak(speed)));
+        let before = known(2.0, &closes[..1]).upper(at(200.0)).unwrap();
+        let after = known(2.0, &closes);
+        let upper = after.upper(at(200.0)).unwrap();
+        assert!(upper < 0.6 * before, "{upper} {before}");
+        let truth = peak(200.0);
+        assert!(upper >= truth, "{upper} {truth}");
+        assert!((after.likely(at(200.0)).unwrap() - truth).abs() < 0.1 * truth);
     }
 
     #[test]
     fn a_hand_like_neither_is_met_with_the_worst_of_both() {
-        let mut growth = PeakGrowth::default();
-        growth.set_noise(1.0);
-        for (speed, over) in [(25.0, 300.0), (40.0, 20.0), (60.0, 250.0)] {
-            growth.add(at(speed), over);
+        let closes = [(25.0, 300.0), (40.0, 20.0), (60.0, 250.0)];
+        let closes = closes.map(|(speed, over)| seen(at(speed), 0.0, 220.0 + over));
+        let growth = known(1.0, &closes);
+        assert!(growth.upper(at(100.0)).unwrap() > 220.0 + 250.0);
+    }
+
+    /// A drive that runs on for 60 ms at 1.5 units a second for each unit of speed, on 25 g for each unit.
+    fn late_g(speed: f64) -> f64 {
+        speed * 1.5 * 0.06 * 25.0
+    }
+
+    #[test]
+    fn a_peak_below_the_threshold_is_no_leave_to_go_faster() {
+        // The sensor reads 146 g at rest, and the drive counts them: 220 g stop it at 74.
+        let stops_at = 220.0 - 146.0;
+        let closes = [25.0, 8.0].map(|speed| seen(at(speed), 146.0, stops_at + late_g(speed)));
+        let growth = known(3.0, &closes);
+        assert_eq!(growth.compared(), Some(Compared::AsRead));
+        for speed in [50.0, 200.0, 434.0, 1000.0] {
+            let (upper, truth) = (growth.upper(at(speed)).unwrap(), stops_at + late_g(speed));
+            assert!(upper > truth, "{speed}: {upper} {truth}");
         }
-        assert!(growth.upper(at(100.0)).unwrap() > 250.0);
+    }
+
+    #[test]
+    fn a_drive_that_does_not_count_the_offset_is_told_by_a_negative_one() {
+        let closes = [25.0, 8.0].map(|speed| seen(at(speed), -60.0, 220.0 + 0.2 * late_g(speed)));
+        let growth = known(3.0, &closes);
+        assert_eq!(growth.compared(), Some(Compared::AboveRest));
+    }
+
+    #[test]
+    fn where_the_closes_do_not_tell_the_higher_peak_of_both_is_allowed_for() {
+        let growth = known(3.0, &[seen(at(25.0), 60.0, 220.0 + 40.0)]);
+        assert_eq!(growth.compared(), None);
+        // With the offset counted the overshoot was 100 g, and is twice that at twice the speed.
+        assert!(growth.upper(at(50.0)).unwrap() >= 160.0 + 200.0);
+    }
+
+    #[test]
+    fn a_peak_below_both_is_all_taken_for_overshoot() {
+        let growth = known(3.0, &[seen(at(25.0), 0.0, 120.0)]);
+        assert_eq!(growth.compared(), None);
+        assert!(growth.upper(at(50.0)).unwrap() >= 240.0);
+    }
+
+    #[test]
+    fn what_may_have_been_missed_between_two_readings_is_allowed_for() {
+        let close = seen(at(25.0), 0.0, 240.0);
+        let missed = SeenPeak {
+            missed_g: 60.0,
+            ..close
+        };
+        let upper = |close| known(2.0, &[close]).upper(at(50.0)).unwrap();
+        assert!(upper(missed) > upper(close) + 60.0);
     }
 }

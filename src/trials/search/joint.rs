@@ -3,8 +3,9 @@
 use crate::hand::Dof;
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::close::CloseFacts;
-use crate::trials::search::finding::NoClaim;
-use crate::trials::search::growth::{Contact, PeakGrowth};
+use crate::trials::search::finding::{ComparedThreshold, NoClaim};
+use crate::trials::search::growth::{Contact, PeakGrowth, SeenPeak};
+use crate::trials::search::offset::Compared;
 
 /// Scatter of a contact as published, units of ANGLE_ACT (7.5 counts of the position), and for how many closes that counts.
 const CONTACT_SCATTER: f64 = 3.75;
@@ -18,14 +19,35 @@ const CONTACT_G: f64 = 15.0;
 const CONTACT_SIGMAS: f64 = 5.0;
 /// … which is so much too late at most, units of ANGLE_ACT.
 const LATE_MOST: f64 = 12.0;
+/// A contact is told where a joint goes less than this between two readings, units of ANGLE_ACT; a stiffness, where that is less
+/// than this share of the way into the object.
+const SHARP: f64 = 5.0;
+const SHARP_SHARE: f64 = 0.25;
 /// A stiffness below this share of what it was means that the object gives.
 const GIVES_BELOW: f64 = 0.5;
-/// Left of the grip, as a share of the threshold, below which the object gave.
+/// Left of the grip, as a share of the force that stopped the drive, below which the object gave.
 const GONE_BELOW: f64 = 0.4;
-/// What is left of a threshold on the published hand.
+/// What is left of a peak before any was measured.
 const USUALLY_LEFT: f64 = 0.92;
-/// Added to a threshold, g, so that the grip is left in each close.
+/// Added to what is to be held, g, so that the grip is left in each close.
 const HOLD_MORE_G: f64 = 4.0;
+/// Closes whose overshoots differ less than this, as a share of the peak, do not show what is left of an overshoot.
+const OVER_SPREAD: f64 = 0.05;
+/// A force that stops a drive is at least this, this many times the noise, and this share of the limit.
+const STOPS_MIN_G: f64 = 15.0;
+const STOPS_SIGMAS: f64 = 6.0;
+const STOPS_SHARE: f64 = 0.06;
+/// FORCE_SET is at least this, g, whatever a sensor reads at rest.
+const THRESHOLD_MIN_G: f64 = 5.0;
+
+/// What one close left of its peak.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Left {
+    threshold_g: f64,
+    offset_g: f64,
+    peak_g: f64,
+    steady_g: f64,
+}
 
 /// One joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,8 +57,7 @@ pub(crate) struct JointModel {
     contacts: Vec<f64>,
     stiffnesses: Vec<f64>,
     noises: Vec<f64>,
-    /// What was left of the threshold in each close, as a share.
-    left: Vec<f64>,
+    left: Vec<Left>,
     /// Units of ANGLE_ACT a second for each unit of SPEED_SET.
     rates: Vec<f64>,
 }
@@ -57,20 +78,27 @@ impl JointModel {
     /// Takes what a close says; the reason to end if the object gave.
     pub(crate) fn learn(&mut self, facts: &CloseFacts, at: Contact) -> Option<NoClaim> {
         let dof = self.dof;
-        let gives = self.gives(facts, at);
         self.noises.push(facts.noise_g);
         self.growth.set_noise(self.noise_g());
-        if let Some(peak) = facts.peak_g {
-            self.growth.add(at, peak - at.threshold_g);
+        if let Some(peak_g) = facts.peak_g {
+            self.growth.add(SeenPeak {
+                at,
+                offset_g: facts.offset_g,
+                peak_g,
+                missed_g: facts.missed_g,
+            });
         }
-        self.stiffnesses.extend(facts.stiffness);
-        if let Some(contact) = facts.contact {
-            self.contacts.push(contact);
-        }
-        let left = facts
-            .steady_g
-            .map(|steady| steady / at.threshold_g.max(1.0));
-        self.left.extend(left);
+        let gives = self.gives(facts, at);
+        self.stiffnesses.extend(self.stiffness_in(facts, at));
+        let is_sharp = self.contacts.is_empty() || self.step(facts, at) < SHARP;
+        self.contacts.extend(facts.contact.filter(|_| is_sharp));
+        let left = facts.peak_g.zip(facts.steady_g);
+        self.left.extend(left.map(|(peak_g, steady_g)| Left {
+            threshold_g: at.threshold_g,
+            offset_g: facts.offset_g,
+            peak_g,
+            steady_g,
+        }));
         gives.map(|(before_g, now_g)| NoClaim::Gives {
             dof,
             before_g,
@@ -81,8 +109,9 @@ impl JointModel {
     /// Takes how fast a joint went that has one speed from `start` to the contact.
     pub(crate) fn learn_rate(&mut self, facts: &CloseFacts, start: f64, speed: f64) {
         let way = facts.contact.map(|contact| start - contact);
-        let time = facts.to_contact_s.zip(facts.dead_time_s);
-        let time = time.map(|(contact, dead)| contact - dead);
+        // A hand that moves within one reading of the command shows no dead time.
+        let dead = facts.dead_time_s.unwrap_or_default();
+        let time = facts.to_contact_s.map(|contact| contact - dead);
         if let Some((way, time)) = way.zip(time).filter(|(_, time)| *time > 0.05) {
             self.rates.push(way / time / speed.max(1.0));
         }
@@ -90,15 +119,37 @@ impl JointModel {
 
     /// Stiffness before and now, where it dropped.
     fn gives(&self, facts: &CloseFacts, at: Contact) -> Option<(f64, f64)> {
+        let stops_at = self.growth.stops_at(at.threshold_g);
         let gone = facts.peak_g.zip(facts.steady_g).filter(|(peak, steady)| {
-            *peak >= at.threshold_g && *steady < GONE_BELOW * at.threshold_g
+            *peak >= stops_at && *steady < GONE_BELOW * stops_at && peak - steady > stops_at / 4.0
         });
         let before = median(&self.stiffnesses);
         if let Some((_, steady)) = gone {
             return Some((before.unwrap_or_default(), steady.max(0.0)));
         }
-        let (before, now) = (before?, facts.stiffness?);
+        let (before, now) = (before?, self.stiffness_most(facts, at)?);
         (now < GIVES_BELOW * before).then_some((before, now))
+    }
+
+    /// The way of a joint between two readings, units of ANGLE_ACT.
+    fn step(&self, facts: &CloseFacts, at: Contact) -> f64 {
+        facts.reading_s.unwrap_or_default() * at.speed * self.rate()
+    }
+
+    /// The stiffness that a close tells: none if the contact may be off by much of the way into the object.
+    fn stiffness_in(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+        let pressed = facts.steady_g.zip(facts.stiffness);
+        let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
+        let pressed = steady / stiffness.max(0.01);
+        (self.step(facts, at) < SHARP_SHARE * pressed).then_some(stiffness)
+    }
+
+    /// The highest stiffness that a close may be of: between two readings a contact is drawn early, never late.
+    fn stiffness_most(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+        let pressed = facts.steady_g.zip(facts.stiffness);
+        let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
+        let pressed = steady / stiffness.max(0.01) - self.step(facts, at);
+        (pressed > 0.0).then(|| steady / pressed)
     }
 
     /// Noise of the force, g.
@@ -138,10 +189,75 @@ impl JointModel {
         MARGIN_SIGMAS * sigma * (1.0 + 2.0 / n).sqrt() + MARGIN_MORE
     }
 
-    /// The least threshold that leaves this much of the grip, g.
-    pub(crate) fn threshold_for(&self, hold_g: f64) -> f64 {
-        let least = self.left.iter().copied().reduce(f64::min);
-        let left = least.unwrap_or(USUALLY_LEFT).clamp(0.3, 1.0);
-        hold_g / left + HOLD_MORE_G
+    /// The force above rest, g, that a drive has at least to be stopped by: noise must not do it.
+    pub(crate) fn stops_least(&self, limit_g: f64) -> f64 {
+        let noise = STOPS_SIGMAS * self.noise_g();
+        STOPS_MIN_G.max(noise).max(STOPS_SHARE * limit_g)
+    }
+
+    /// The least threshold that stops it above its noise, whatever it is compared with, g.
+    pub(crate) fn threshold_least(&self, limit_g: f64) -> f64 {
+        let offset = self.growth.offset_g();
+        let stops_at = self.stops_least(limit_g);
+        let compared = self.growth.compared();
+        let counted = match compared {
+            Some(Compared::AsRead) => offset,
+            Some(Compared::AboveRest | Compared::Unknown) => 0.0,
+            None => offset.max(0.0),
+        };
+        (stops_at + counted).max(THRESHOLD_MIN_G)
+    }
+
+    /// The threshold that stops it at this force above rest, g; where its drive is not known to count the offset, not above it.
+    pub(crate) fn threshold_for(&self, force_g: f64) -> f64 {
+        let compared = self.growth.compared().unwrap_or(Compared::AboveRest);
+        compared.threshold_for(force_g, self.growth.offset_g())
+    }
+
+    /// What its drive was found to compare its threshold with.
+    pub(crate) fn compared(&self) -> ComparedThreshold {
+        ComparedThreshold {
+            dof: self.dof,
+            compared: self.growth.compared(),
+            offset_g: self.growth.offset_g(),
+        }
+    }
+
+    /// What is left of the grip at least, g.
+    pub(crate) fn holds(&self, at: Contact) -> Option<f64> {
+        let peak = self.growth.likely(at)?;
+        let over = (1.0 - self.growth.stops_at(at.threshold_g) / peak.max(1.0)).clamp(0.0, 1.0);
+        Some(self.left_of_peak(over) * peak - HOLD_MORE_G - self.noise_g())
+    }
+
+    /// What is left of a peak, as a share, of which this share is overshoot: some drives keep what they ran past their threshold,
+    /// others relax to it. A line through what was seen; where that does not show it, nothing is left of more overshoot.
+    fn left_of_peak(&self, over: f64) -> f64 {
+        let seen = self.left.iter().filter(|own| own.peak_g > 1.0);
+        let seen: Vec<(f64, f64)> = seen
+            .map(|own| {
+                let compared = self.growth.compared().unwrap_or(Compared::AboveRest);
+                let stops_at = compared.stops_at(own.threshold_g, own.offset_g);
+                let over = (1.0 - stops_at / own.peak_g).clamp(0.0, 1.0);
+                (over, own.steady_g / own.peak_g)
+            })
+            .collect();
+        let overs: Vec<f64> = seen.iter().map(|(over, _)| *over).collect();
+        let shares: Vec<f64> = seen.iter().map(|(_, share)| *share).collect();
+        let Some((mean_over, mean_share)) = mean(&overs).zip(mean(&shares)) else {
+            return USUALLY_LEFT * (1.0 - over);
+        };
+        let sum = spread(&overs);
+        let slope = if sum > OVER_SPREAD.powi(2) * count(&overs) {
+            let products = seen.iter();
+            let products = products.map(|(o, s)| (o - mean_over) * (s - mean_share));
+            products.sum::<f64>() / sum
+        } else if over > mean_over {
+            -mean_share / (1.0 - mean_over).max(0.05)
+        } else {
+            0.0
+        };
+        let line = mean_share + slope.min(0.0) * (over - mean_over);
+        line.clamp(0.0, 1.0)
     }
 }

@@ -1,19 +1,21 @@
-//! The search for the fastest close under a limit: which close is next, and what it said. Two slow ones first, then upwards only,
-//! to the fastest whose upper bound stays under the limit; then the same again and again until it is a claim. Pure: it moves
-//! nothing and reads no clock.
+//! The search for the fastest close under a limit: which close is next, and what it said. Two slow ones first, then upwards, at
+//! most twice as fast each time, to the fastest whose upper bound stays under the limit; then the same again and again until it is
+//! a claim. Pure: it moves nothing and reads no clock.
 
-use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
+use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::seconds;
-use crate::trials::search::close::CloseFacts;
+use crate::trials::search::close::{CloseFacts, GAP_S};
 use crate::trials::search::confirm::Confirmation;
 use crate::trials::search::finding::{
-    Claim, Finding, FoundApproach, NoClaim, SearchProgress, SearchStage, Tried, Untold,
+    Claim, ComparedThreshold, Finding, FoundApproach, NoClaim, SearchProgress, SearchStage, Tried,
+    Untold,
 };
 use crate::trials::search::goal::{GoalError, LIMIT_MIN_G, SearchGoal, whole};
 use crate::trials::search::growth::Contact;
 use crate::trials::search::joint::JointModel;
+use crate::trials::search::offset::Compared;
 use crate::trials::search::tolerance::tolerance_factor;
 use crate::trials::summary::Trial;
 use std::time::Duration;
@@ -23,6 +25,21 @@ const SLOWEST: i16 = 3;
 /// The second probe comes near with this speed, and slows down so far before the contact that the first met.
 const SECOND_FAST: i16 = 200;
 const SECOND_MARGIN: i16 = 60;
+/// Where it is not known whether the drive counts the offset of its sensor, the second probe is so much slower: what is left of its
+/// peak then tells.
+const SECOND_SLOWER: f64 = 3.0;
+/// No close is more than so many times as fast as the fastest before it.
+const RISE_MOST: f64 = 2.0;
+/// Speeds nearer to each other than this share are as good as the same.
+const SPEED_STEP: f64 = 0.01;
+/// Thresholds that are compared are apart by this share of the force that they stop at.
+const THRESHOLD_STEP: f64 = 1.08;
+/// A threshold that stops the drive at so many times the force of those before tells more.
+const HARDER: f64 = 1.1;
+/// The highest force that may stop the drive, as a share of the limit.
+const STOPS_MOST: f64 = 0.95;
+/// Closes in a row that may be uncertain, or end in the air.
+const REPEATS_MAX: usize = 3;
 /// How a close in two stages comes near.
 const FAST: i16 = Speed::MAX.get();
 /// A setting that is this much faster, as a share of the close, is worth another close, and ten more.
@@ -39,15 +56,15 @@ const AIM: f64 = 0.97;
 pub const TRIALS_MAX: usize = 250;
 /// From the order to go on slowly to the motion: the dead time and a reading, s.
 const PAUSE_S: f64 = 0.1;
-/// A threshold is at least this, and this many times the noise.
-const THRESHOLD_MIN_G: f64 = 15.0;
-const THRESHOLD_SIGMAS: f64 = 6.0;
 /// What a limit has to be above the noise for.
 const LIMIT_SIGMAS: f64 = 15.0;
 /// A close that is over the limit takes the speeds from this share of its own on away.
 const BARRED_FROM: f64 = 0.97;
-/// Readings of the force further apart than this may miss a peak, s.
-const GAP_S: f64 = 0.025;
+/// How late a drive may stop, s, as far as nothing is known of it; and the slowest that a first close is made for that.
+const STOPS_LATE_S: f64 = 0.08;
+const GENTLE_LEAST: i16 = 5;
+/// A threshold this near above the reading at rest is met by the noise alone.
+const STOPS_SIGMAS: f64 = 6.0;
 /// About how long a close takes before any was measured.
 const CLOSE_TAKES: Duration = Duration::from_secs(7);
 
@@ -85,8 +102,14 @@ pub struct SettingsSearch {
     phase: SearchPhase,
     choice: Choice,
     threshold_g: f64,
-    /// Speeds from here on are over the limit.
-    barred: f64,
+    /// Closes over the limit, and with a slip: nothing as fast with as high a threshold.
+    barred: Vec<Contact>,
+    /// How many standard deviations above their mean the peaks are bounded.
+    factor: f64,
+    /// What has to be left of the grip by the model, g, where less than that was left in closes.
+    hold_more_g: f64,
+    /// Closes in a row whose peak is not certain, or that ended in the air.
+    repeats: usize,
     confirmations: usize,
     tried: Vec<Tried>,
     untold: Vec<Untold>,
@@ -116,7 +139,10 @@ impl SettingsSearch {
                 approach: FoundApproach::OneStage,
             },
             threshold_g: f64::from(first.force.get()),
-            barred: f64::INFINITY,
+            barred: Vec::new(),
+            factor: tolerance_factor(goal.closes, goal.assurance()).unwrap_or(3.0),
+            hold_more_g: 0.0,
+            repeats: 0,
             confirmations: 0,
             tried: Vec::new(),
             untold: Vec::new(),
@@ -134,10 +160,21 @@ impl SettingsSearch {
     /// What it came to, once it is over.
     pub fn finding(&self) -> Option<Finding> {
         let result = self.result.clone()?;
+        let compared: Vec<ComparedThreshold> =
+            self.joints.iter().map(JointModel::compared).collect();
+        let open = compared.iter().filter(|own| {
+            let is_told = own.compared.is_some_and(|own| own != Compared::Unknown);
+            !is_told && own.is_notable()
+        });
+        let open = open.map(|own| Untold::Offset {
+            dof: own.dof,
+            offset_g: own.offset_g,
+        });
         Some(Finding {
             result,
             tried: self.tried.clone(),
-            untold: self.untold.clone(),
+            untold: self.untold.iter().copied().chain(open).collect(),
+            compared,
         })
     }
 
@@ -229,6 +266,9 @@ impl SettingsSearch {
     fn take(&mut self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
         // In noise no contact can be told, so it goes first.
         self.check_noise(facts)?;
+        if let Some(stopped) = self.stopped_in_air(facts) {
+            return self.stop_later(stopped);
+        }
         let slips = self.look(facts)?;
         let at = self.at(self.speed());
         let goal = &self.goal;
@@ -243,9 +283,14 @@ impl SettingsSearch {
         }
         let over = self.tried.last().is_some_and(|own| own.over_limit);
         if over || slips {
-            self.barred = self.barred.min(BARRED_FROM * self.speed());
+            let threshold_g = if slips { 0.0 } else { at.threshold_g };
+            self.bar(Contact { threshold_g, ..at });
             return self.narrow(facts, slips);
         }
+        if let Some(unseen) = facts.iter().find(|joint| joint.is_uncertain) {
+            return self.again(NoClaim::NotMeasured { dof: unseen.dof });
+        }
+        self.repeats = 0;
         match &mut self.phase {
             SearchPhase::First => self.probe_again(),
             SearchPhase::Second => self.rise(0),
@@ -258,6 +303,55 @@ impl SettingsSearch {
                 self.confirmed()
             }
         }
+    }
+
+    /// The same close once more; `why` if that was done often enough.
+    const fn again(&mut self, why: NoClaim) -> Result<(), NoClaim> {
+        self.repeats += 1;
+        if self.repeats > REPEATS_MAX {
+            return Err(why);
+        }
+        Ok(())
+    }
+
+    /// The joint whose drive stopped before it met anything, by what its sensor reads at rest.
+    fn stopped_in_air(&self, facts: &[CloseFacts]) -> Option<CloseFacts> {
+        let limit = self.limit();
+        let mut joints = self.joints.iter().zip(facts);
+        let stopped = joints.find(|(joint, facts)| {
+            let above = self.threshold_g - facts.offset_g;
+            let noise = STOPS_SIGMAS * joint.noise_g().max(facts.noise_g);
+            let is_light = facts.contact.is_none() || facts.peak_g.is_none();
+            is_light && facts.stopped_by_force && above < noise.min(limit)
+        });
+        stopped.map(|(_, facts)| *facts)
+    }
+
+    /// A threshold that a sensor does not read at rest.
+    fn stop_later(&mut self, stopped: CloseFacts) -> Result<(), NoClaim> {
+        let (dof, offset_g) = (stopped.dof, stopped.offset_g);
+        let limit = self.limit();
+        let noise_g = stopped.noise_g;
+        for joint in self.joints.iter_mut().filter(|joint| joint.dof == dof) {
+            joint.growth.stopped_in_air(offset_g);
+            let least = joint.stops_least(limit).max(STOPS_SIGMAS * noise_g);
+            self.threshold_g = self.threshold_g.max((offset_g + least).ceil());
+        }
+        if self.threshold_g > f64::from(Force::MAX.get()) {
+            return Err(NoClaim::Offset { dof, offset_g });
+        }
+        self.choose(self.speed(), self.choice.approach);
+        self.again(NoClaim::Offset { dof, offset_g })
+    }
+
+    fn bar(&mut self, at: Contact) {
+        self.barred.push(at);
+    }
+
+    fn is_barred(&self, at: Contact) -> bool {
+        self.barred.iter().any(|own| {
+            at.speed >= BARRED_FROM * own.speed && at.threshold_g >= own.threshold_g - 1.0
+        })
     }
 
     /// What ends it at once; whether the object slipped.
@@ -278,8 +372,11 @@ impl SettingsSearch {
             if joint.contact.is_none() {
                 return Err(NoClaim::Lost { dof });
             }
-            if joint.peak_g.is_none() || joint.close_s.is_none() || joint.steady_g.is_none() {
+            if joint.peak_g.is_none() {
                 return Err(NoClaim::NotMeasured { dof });
+            }
+            if joint.close_s.is_none() || joint.steady_g.is_none() {
+                return Err(NoClaim::NoStop { dof });
             }
             slips |= joint.slips.is_some_and(|count| count > 0);
             self.note_untold(joint);
@@ -337,28 +434,37 @@ impl SettingsSearch {
         }
     }
 
-    /// The threshold that leaves what is wished for.
-    fn choose_threshold(&mut self) {
-        let hold = f64::from(self.goal.hold_g);
-        let joints = self.joints.iter();
-        let needs = joints.map(|joint| {
-            let least = THRESHOLD_MIN_G.max(THRESHOLD_SIGMAS * joint.noise_g());
-            joint.threshold_for(hold).max(least)
-        });
-        let needed = needs.fold(0.0, f64::max).ceil();
-        self.threshold_g = needed.min(f64::from(Force::MAX.get()));
-    }
-
     fn probe_again(&mut self) -> Result<(), NoClaim> {
         self.phase = SearchPhase::Second;
-        self.choose_threshold();
-        let speed = self.speed();
+        let is_open = |joint: &JointModel| {
+            let own = joint.compared();
+            own.compared.is_none() && own.is_notable()
+        };
+        let speed = if self.joints.iter().any(is_open) {
+            (self.speed() / SECOND_SLOWER).max(SLOWEST.into())
+        } else {
+            self.speed()
+        };
+        let under = self
+            .thresholds()
+            .into_iter()
+            .map(|threshold_g| Contact { speed, threshold_g });
+        let under = under.take_while(|at| self.is_under(*at, &Self::safe));
+        let under: Vec<Contact> = under.collect();
+        let holds = under.iter().find(|at| self.holds_enough(**at));
+        let found = holds.or(under.last()).map(|at| at.threshold_g);
+        self.threshold_g = found.unwrap_or(self.threshold_g);
         let approach = FoundApproach::TwoStage {
             fast_speed: SECOND_FAST,
             margin: SECOND_MARGIN,
         };
         self.choose(speed, approach);
         Ok(())
+    }
+
+    fn choose_at(&mut self, at: Contact) {
+        self.threshold_g = at.threshold_g;
+        self.choose(at.speed, self.approach(at));
     }
 
     fn choose(&mut self, speed: f64, approach: FoundApproach) {
@@ -372,7 +478,7 @@ impl SettingsSearch {
     }
 
     /// The quicker of both approaches at this speed; in one stage where there is no room for two.
-    fn approach(&self, speed: f64) -> FoundApproach {
+    fn approach(&self, at: Contact) -> FoundApproach {
         let margins = self.joints.iter().map(JointModel::margin);
         let margin = margins.fold(0.0, f64::max).ceil();
         let two = FoundApproach::TwoStage {
@@ -380,7 +486,7 @@ impl SettingsSearch {
             margin: whole(margin).clamp(1, 500),
         };
         let one = FoundApproach::OneStage;
-        if self.room() <= margin + 1.0 || self.takes(one, speed) <= self.takes(two, speed) {
+        if self.room() <= margin + 1.0 || self.takes(one, at) <= self.takes(two, at) {
             one
         } else {
             two
@@ -397,12 +503,12 @@ impl SettingsSearch {
     }
 
     /// About how long a close takes after the dead time, s.
-    fn takes(&self, approach: FoundApproach, speed: f64) -> f64 {
+    fn takes(&self, approach: FoundApproach, at: Contact) -> f64 {
         let rate = self.joints.first().map_or(1.5, JointModel::rate).max(0.01);
-        let pressed = self
-            .joints
-            .iter()
-            .filter_map(|joint| Some(self.threshold_g / joint.stiffness()?.max(0.1)));
+        let pressed = self.joints.iter().filter_map(|joint| {
+            let stops_at = joint.growth.stops_at(at.threshold_g);
+            Some(stops_at / joint.stiffness()?.max(0.1))
+        });
         let pressed = pressed.fold(0.0, f64::max);
         let (fast_s, slow_way) = match approach {
             FoundApproach::OneStage => (0.0, self.room()),
@@ -412,74 +518,182 @@ impl SettingsSearch {
                 (fast_s + PAUSE_S, f64::from(margin))
             }
         };
-        fast_s + (slow_way + pressed) / (rate * speed.max(1.0))
+        fast_s + (slow_way + pressed) / (rate * at.speed.max(1.0))
     }
 
-    /// The fastest speed up to `most` at which each joint stays under the limit by this bound of the peak.
-    fn fastest(&self, bound: impl Fn(&JointModel, Contact) -> Option<f64>) -> Option<f64> {
-        let fits = |speed: i16| {
-            let at = self.at(f64::from(speed));
-            let under = |joint: &JointModel| {
-                bound(joint, at).is_some_and(|over| at.threshold_g + over <= self.limit())
-            };
-            at.speed < self.barred && self.joints.iter().all(under)
-        };
-        // The bounds rise with the speed but for small dips of the published shapes: the first that does not fit ends it.
-        let mut fastest = None;
-        for speed in SLOWEST..=Speed::MAX.get() {
-            if !fits(speed) {
-                break;
+    /// The highest mean peak that is possible by all that is known, with what single closes scatter.
+    fn safe(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+        Some(joint.growth.upper(at)? + 2.0 * joint.growth.scatter(at))
+    }
+
+    /// The bound that is likely to be confirmed.
+    fn expected(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+        Some(joint.growth.likely(at)? + self.factor * joint.growth.scatter(at))
+    }
+
+    fn is_under(
+        &self,
+        at: Contact,
+        bound: &impl Fn(&Self, &JointModel, Contact) -> Option<f64>,
+    ) -> bool {
+        let under =
+            |joint: &JointModel| bound(self, joint, at).is_some_and(|peak| peak <= self.limit());
+        !self.is_barred(at) && self.joints.iter().all(under)
+    }
+
+    fn holds_enough(&self, at: Contact) -> bool {
+        let hold = f64::from(self.goal.hold_g).max(self.hold_more_g);
+        let holds = |joint: &JointModel| joint.holds(at).is_some_and(|own| own >= hold);
+        self.joints.iter().all(holds)
+    }
+
+    /// Thresholds that may be tried, the lowest first.
+    fn thresholds(&self) -> Vec<f64> {
+        let limit = self.limit();
+        let least = self.joints.iter().map(|joint| joint.threshold_least(limit));
+        let least = least.fold(1.0, f64::max);
+        let most = self
+            .joints
+            .iter()
+            .map(|joint| joint.threshold_for(STOPS_MOST * limit));
+        let most = most
+            .fold(f64::INFINITY, f64::min)
+            .min(f64::from(Force::MAX.get()));
+        let stops_least = self.joints.iter().map(|joint| joint.stops_least(limit));
+        let mut stops_at = stops_least.fold(1.0, f64::max);
+        let first = stops_at;
+        let mut thresholds = Vec::new();
+        loop {
+            let threshold = (least + stops_at - first).ceil();
+            if threshold > most.max(least) {
+                return thresholds;
             }
-            fastest = Some(f64::from(speed));
+            thresholds.push(threshold);
+            stops_at *= THRESHOLD_STEP;
         }
-        fastest
     }
 
-    /// The fastest that nothing known so far speaks against.
-    fn fastest_safe(&self) -> Option<f64> {
-        self.fastest(|joint, at| Some(joint.growth.upper(at)? + 2.0 * joint.growth.scatter(at)))
+    /// The fastest close so far.
+    fn fastest(&self) -> f64 {
+        let fastest = self
+            .joints
+            .iter()
+            .filter_map(|joint| joint.growth.fastest());
+        fastest.reduce(f64::min).unwrap_or(self.speed())
     }
 
-    /// The fastest that is likely to be confirmed.
-    fn fastest_likely(&self) -> Option<f64> {
-        let k = tolerance_factor(self.goal.closes, self.goal.assurance()).unwrap_or(3.0);
-        self.fastest(|joint, at| Some(joint.growth.likely(at)? + k * joint.growth.scatter(at)))
+    /// How fast the next close may be.
+    fn fastest_step(&self) -> f64 {
+        (RISE_MOST * self.fastest()).min(Speed::MAX.get().into())
+    }
+
+    /// The quickest close that holds and whose bound stays under the limit, at speeds up to `most`.
+    fn quickest(
+        &self,
+        most: f64,
+        bound: impl Fn(&Self, &JointModel, Contact) -> Option<f64>,
+    ) -> Option<Contact> {
+        let mut best: Option<(f64, Contact)> = None;
+        for threshold_g in self.thresholds() {
+            let at = |speed| Contact { speed, threshold_g };
+            let (mut low, mut high) = (f64::from(SLOWEST), most.floor() + 1.0);
+            if low >= high || !self.is_under(at(low), &bound) {
+                continue;
+            }
+            // The bounds rise with the speed but for small dips of the published shapes.
+            while high - low > 1.0_f64.max(SPEED_STEP * low) {
+                let middle = f64::midpoint(low, high).floor();
+                if self.is_under(at(middle), &bound) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let at = at(low);
+            if !self.holds_enough(at) {
+                continue;
+            }
+            let takes = self.takes(self.approach(at), at);
+            if best.is_none_or(|(least, _)| takes < least) {
+                best = Some((takes, at));
+            }
+        }
+        best.map(|(_, at)| at)
+    }
+
+    /// The quickest that nothing known so far speaks against.
+    fn quickest_safe(&self) -> Option<Contact> {
+        let both = |own: &Self, joint: &JointModel, at: Contact| {
+            Some(own.safe(joint, at)?.max(own.expected(joint, at)?))
+        };
+        self.quickest(self.fastest_step(), both)
+    }
+
+    /// The quickest that is likely to be confirmed, no faster than any close was.
+    fn quickest_likely(&self) -> Option<Contact> {
+        self.quickest(self.fastest(), Self::expected)
     }
 
     /// Goes on upwards, or confirms.
     fn rise(&mut self, rises: usize) -> Result<(), NoClaim> {
-        self.choose_threshold();
-        let likely = self.fastest_likely();
-        let next = self.fastest_safe().zip(likely);
-        let next = next.map(|(safe, likely)| safe.min(likely));
-        let Some(next) = next else {
-            return self.slower();
+        let Some(next) = self.quickest_safe() else {
+            return match self.harder() {
+                Some(at) if rises < RISES_MAX => {
+                    self.phase = SearchPhase::Rising { rises };
+                    self.choose_at(at);
+                    Ok(())
+                }
+                _ => self.slower(),
+            };
         };
-        let is_worth = self.gain(next) > WORTH_ONE;
-        if rises < RISES_MAX && is_worth && next > self.speed() {
+        let is_worth = self.gain(next) > WORTH_ONE || !self.holds_enough(self.at(self.speed()));
+        if rises < RISES_MAX && is_worth && next != self.at(self.speed()) {
             self.phase = SearchPhase::Rising { rises };
-            self.choose(next, self.approach(next));
+            self.choose_at(next);
             return Ok(());
         }
-        self.confirm(likely.unwrap_or(next).min(next.max(self.speed())))
+        self.confirm(next)
     }
 
-    /// How much of the last close this speed would save with the best approach to it, as a share.
-    fn gain(&self, speed: f64) -> f64 {
+    /// Where nothing is sure to hold and to stay under the limit: the highest threshold that stays under it, if it tells more than
+    /// those before.
+    fn harder(&self) -> Option<Contact> {
+        let thresholds = self.thresholds().into_iter().rev();
+        let mut speeds = thresholds.filter_map(|threshold_g| {
+            let slower = |n: f64| Contact {
+                speed: (self.fastest() / n).max(SLOWEST.into()).floor(),
+                threshold_g,
+            };
+            let speeds = [1.0, 2.0, 4.0, 8.0, 16.0].map(slower).into_iter();
+            let mut safe = speeds.filter(|at| self.is_under(*at, &Self::safe));
+            safe.next()
+        });
+        let stops_at = |at: Contact| {
+            let joints = self.joints.iter();
+            let stops = joints.map(|joint| joint.growth.stops_at(at.threshold_g));
+            stops.fold(f64::INFINITY, f64::min)
+        };
+        let before = self.joints.iter().map(|joint| joint.growth.stopped_most());
+        let before = before.fold(0.0, f64::max);
+        speeds.next().filter(|at| stops_at(*at) > HARDER * before)
+    }
+
+    /// How much of the last close this would save with the best approach to it, as a share.
+    fn gain(&self, at: Contact) -> f64 {
         let Some(close) = self.tried.last().and_then(|own| own.close_s) else {
             return 1.0;
         };
-        let now = self.takes(self.choice.approach, self.speed());
-        (now - self.takes(self.approach(speed), speed)) / close.max(0.05)
+        let now = self.takes(self.choice.approach, self.at(self.speed()));
+        (now - self.takes(self.approach(at), at)) / close.max(0.05)
     }
 
-    fn confirm(&mut self, speed: f64) -> Result<(), NoClaim> {
+    fn confirm(&mut self, at: Contact) -> Result<(), NoClaim> {
         self.confirmations += 1;
         if self.confirmations > CONFIRMATIONS_MAX {
             let trials = self.tried.len();
             return Err(NoClaim::NotConfirmed { trials });
         }
-        self.choose(speed, self.approach(speed));
+        self.choose_at(at);
         let dofs = self.joints.iter().map(|joint| joint.dof);
         self.phase = SearchPhase::Confirming(Confirmation::new(dofs));
         Ok(())
@@ -487,52 +701,67 @@ impl SettingsSearch {
 
     /// After a close over the limit, or a slip: something slower.
     fn narrow(&mut self, facts: &[CloseFacts], slips: bool) -> Result<(), NoClaim> {
-        if self.barred <= f64::from(SLOWEST) || matches!(self.phase, SearchPhase::First) && slips {
-            let worst = facts.iter().max_by(|a, b| {
-                let (a, b) = (a.peak_g.unwrap_or(0.0), b.peak_g.unwrap_or(0.0));
-                a.total_cmp(&b)
-            });
-            let dof = worst.map_or(Dof::Index, |own| own.dof);
-            return Err(if slips {
-                NoClaim::Slips { dof }
-            } else {
-                self.too_strong(dof)
-            });
+        let is_slowest = self.speed() <= f64::from(SLOWEST);
+        if slips && (is_slowest || self.phase == SearchPhase::First) {
+            let dof = facts.first().map_or(Dof::Index, |own| own.dof);
+            return Err(NoClaim::Slips { dof });
         }
         match self.phase {
-            SearchPhase::First => self.probe_again().and_then(|()| self.slower()),
+            SearchPhase::First => {
+                self.phase = SearchPhase::Second;
+                let Some(at) = self.quickest_safe() else {
+                    return Err(self.too_strong());
+                };
+                self.choose_at(at);
+                let approach = FoundApproach::TwoStage {
+                    fast_speed: SECOND_FAST,
+                    margin: SECOND_MARGIN,
+                };
+                self.choose(at.speed, approach);
+                Ok(())
+            }
             SearchPhase::Second | SearchPhase::Rising { .. } => self.rise(RISES_MAX),
             SearchPhase::Confirming(_) => self.slower(),
         }
     }
 
-    /// Confirms the fastest that is likely and not barred.
+    /// Confirms the quickest that is likely and not barred.
     fn slower(&mut self) -> Result<(), NoClaim> {
-        self.choose_threshold();
-        match self.fastest_likely() {
-            Some(speed) if self.phase == SearchPhase::Second => {
-                let approach = self.choice.approach;
-                self.choose(speed, approach);
-                Ok(())
-            }
-            Some(speed) => self.confirm(speed),
-            None => {
-                let dof = self.joints.first().map_or(Dof::Index, |own| own.dof);
-                Err(self.too_strong(dof))
-            }
+        match self.quickest_likely() {
+            Some(at) => self.confirm(at),
+            None => Err(self.too_strong()),
         }
     }
 
-    fn too_strong(&self, dof: Dof) -> NoClaim {
-        let joint = self.joints.iter().find(|joint| joint.dof == dof);
-        let at = self.at(f64::from(SLOWEST));
-        let over = joint
-            .and_then(|joint| joint.growth.likely(at))
-            .unwrap_or_default();
-        NoClaim::TooStrong {
+    /// Why nothing fits: by the joint that would be furthest over the limit with the least that holds.
+    fn too_strong(&self) -> NoClaim {
+        let slowest = |threshold_g| Contact {
+            speed: SLOWEST.into(),
+            threshold_g,
+        };
+        let mut thresholds = self.thresholds().into_iter().map(slowest);
+        let holding = thresholds.clone().find(|at| self.holds_enough(*at));
+        let at = holding
+            .or(thresholds.next_back())
+            .unwrap_or(self.at(SLOWEST.into()));
+        let bounds = self.joints.iter().filter_map(|joint| {
+            let peak_g = self.expected(joint, at)?.max(self.safe(joint, at)?);
+            Some((joint.dof, peak_g))
+        });
+        let worst = bounds.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let (dof, peak_g) = worst.unwrap_or((Dof::Index, 0.0));
+        if peak_g > self.limit() && holding.is_some() {
+            return NoClaim::TooStrong {
+                dof,
+                speed: SLOWEST,
+                peak_g,
+            };
+        }
+        let holds = self.joints.iter().filter_map(|joint| joint.holds(at));
+        NoClaim::HoldsTooLittle {
             dof,
-            speed: SLOWEST,
-            peak_g: at.threshold_g + over,
+            holds_g: holds.fold(f64::INFINITY, f64::min).clamp(0.0, self.limit()),
+            wanted_g: self.goal.hold_g,
         }
     }
 
@@ -549,61 +778,47 @@ impl SettingsSearch {
         let (dof, holds_g) = confirmation.least_hold();
         let wanted = f64::from(self.goal.hold_g);
         if holds_g < wanted {
-            let before = self.threshold_g;
-            self.choose_threshold();
-            self.threshold_g = self.threshold_g.max(before + (wanted - holds_g) + 2.0);
-            if self.threshold_g > 0.95 * self.limit() {
-                return Err(NoClaim::HoldsTooLittle {
+            self.hold_more_g = self.hold_more_g.max(wanted) + (wanted - holds_g) + 2.0;
+            return match self.quickest_likely() {
+                Some(at) => self.confirm(at),
+                None => Err(NoClaim::HoldsTooLittle {
                     dof,
                     holds_g,
                     wanted_g: self.goal.hold_g,
-                });
-            }
-            let speed = self.fastest_likely().unwrap_or(f64::from(SLOWEST));
-            return self.confirm(speed.min(self.speed()));
-        }
-        // What the bound is of the limit, over the threshold, is what the overshoot may be more or less.
-        let room = (self.limit() - self.threshold_g) / (bound - self.threshold_g).max(1.0);
-        let aim = self.speed_for(AIM * room);
-        if bound > self.limit() {
-            self.barred = self.barred.min(BARRED_FROM * self.speed());
-            let Some(speed) = aim.filter(|speed| *speed < self.speed()) else {
-                return self.slower();
+                }),
             };
-            return self.confirm(speed);
         }
-        // By now the contact is known better too, so that even the same speed may be quicker with less before it.
-        let now = self.speed();
-        let better = aim.unwrap_or(now).min(self.barred - 1.0).max(now);
-        if self.tried.len() < RISING_UNTIL && self.gain(better) > WORTH_TEN {
-            return self.confirm(better);
-        }
-        self.claim(&confirmation);
-        Ok(())
-    }
-
-    /// The speed at which the likely overshoot is so many times that of the present speed.
-    fn speed_for(&self, times: f64) -> Option<f64> {
         let now = self.at(self.speed());
-        let goal: Option<Vec<f64>> = self
+        if bound > self.limit() {
+            self.bar(now);
+        }
+        // What the bound is of what was expected here, it may be of what is expected elsewhere.
+        let expected = self
             .joints
             .iter()
-            .map(|own| own.growth.likely(now))
-            .collect();
-        let goal = goal?;
-        let fits = |speed: i16| {
-            let at = self.at(f64::from(speed));
-            self.joints.iter().zip(&goal).all(|(joint, own)| {
-                joint
-                    .growth
-                    .likely(at)
-                    .is_some_and(|over| over <= times * own)
-            })
-        };
-        let speeds = SLOWEST..=Speed::MAX.get();
-        let fastest = speeds.take_while(|speed| fits(*speed)).last();
-        let fastest = fastest.map(f64::from)?;
-        Some(fastest.min(self.barred.floor().min(f64::from(Speed::MAX.get()))))
+            .filter_map(|joint| self.expected(joint, now));
+        let times = bound / expected.fold(1.0, f64::max) / AIM;
+        let better = self.quickest(self.fastest_step(), |own, joint, at| {
+            let expected = times * own.expected(joint, at)?;
+            let is_known = at.speed <= now.speed && at.threshold_g <= now.threshold_g;
+            let safe = own.safe(joint, at).filter(|_| !is_known);
+            Some(expected.max(safe.unwrap_or_default()))
+        });
+        if bound > self.limit() {
+            return match better {
+                Some(at) => self.confirm(at),
+                None => self.slower(),
+            };
+        }
+        // By now the contact is known better too, so that even the same speed may be quicker with less before it.
+        let better = better.filter(|at| self.gain(*at) > WORTH_TEN);
+        match better {
+            Some(at) if self.tried.len() < RISING_UNTIL => self.confirm(at),
+            _ => {
+                self.claim(&confirmation);
+                Ok(())
+            }
+        }
     }
 
     fn claim(&mut self, confirmation: &Confirmation) {
@@ -631,13 +846,12 @@ impl SettingsSearch {
     }
 }
 
-/// The speed of the first close: slow, and slower where even that may be over the limit on a stiff object.
+/// The speed of the first close: slow, and slower where even that may be over the limit on a rigid block.
 fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
     let threshold = f64::from(setting.force.get());
-    let worst =
-        |speed: f64| 1.5 * overshoot_g(speed, threshold).max(second_hand_overshoot_g(speed));
+    let worst = |speed: Speed| speed.angle_per_s() * STOPS_LATE_S * RIGID_G_PER_COUNT * 2.0;
     let mut slow = setting.speed.get();
-    while slow > 5 && threshold + worst(f64::from(slow)) > f64::from(goal.limit_g) {
+    while slow > GENTLE_LEAST && threshold + worst(Speed::nearest(slow)) > f64::from(goal.limit_g) {
         slow -= 1;
     }
     Speed::nearest(slow)

@@ -14,13 +14,17 @@ use std::collections::BTreeMap;
 
 /// Kinds of links as endpoints spell them, with their settings as the hand is delivered (manual 1.3.2, 2.2, 2.3, 2.6.1), and
 /// the keys of the settings, the place first where there is one.
-pub(super) const KINDS: [(&str, &[&str]); 7] = [
+pub(super) const KINDS: [(&str, &[&str]); 8] = [
     ("rs485:?baud=115200&id=1", &["port", "baud", "id"]),
     (
         "tcp:192.168.11.210:6000?unit=255",
         &["host", "unit", "packing"],
     ),
     ("rtu:?baud=115200&id=1", &["port", "baud", "id", "packing"]),
+    (
+        "rtu+tcp:?baud=115200&id=1",
+        &["host", "baud", "id", "packing"],
+    ),
     ("can:can0?id=1", &["interface", "id"]),
     ("slcan:?bitrate=1000000&id=1", &["port", "bitrate", "id"]),
     ("usbcan:?baud=115200&id=1", &["port", "baud", "id"]),

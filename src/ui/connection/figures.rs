@@ -77,6 +77,10 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
     if link.echoes {
         say(ui, look.say(panels::ECHOES), look.palette.muted);
     }
+    if let Some(ms) = link.slow_ms.filter(|_| link.state.is_live()) {
+        let text = look.fill(panels::SLOW, &[&ms.to_string()]);
+        say(ui, &text, look.palette.warn);
+    }
     if let Some(trouble) = &link.trouble {
         say(ui, &errors::trouble(look, trouble), look.palette.bad);
     }
@@ -123,7 +127,11 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
     ];
     let endpoint = pane.hand().connection.endpoint.as_ref();
-    if matches!(endpoint, Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_))) {
+    let has_words = matches!(
+        endpoint,
+        Some(Endpoint::Tcp { .. } | Endpoint::Rtu(_) | Endpoint::RtuTcp(_))
+    );
+    if has_words {
         let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
         hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
     }
@@ -145,8 +153,10 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
             bad(panels::CHECKSUMS, stats.checksum_errors),
             bad(panels::RESYNCS, stats.resyncs),
             bad(panels::FOREIGN, stats.foreign_replies),
+            bad(panels::LATE, stats.late_replies),
             bad(panels::FOREIGN_REQUESTS, stats.foreign_requests),
             bad(panels::REFUSALS, stats.refusals),
+            bad(panels::IMPLAUSIBLE, stats.implausible),
             bad(panels::DROPPED, stats.dropped_events),
         ],
     ]

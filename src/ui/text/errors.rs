@@ -95,6 +95,9 @@ chinese! {
         LinkTrouble::Garbled { place, id } => "{place} 上有应答，但不符合 ID {id}、此速度或此协议：请用“连接”中的“扫描”查找。";
         LinkTrouble::Mute { place, unit } => "{place} 接受了连接，但单元 {unit} 没有应答：请检查地址、端口与单元，并确认没有其他程序占用。";
         LinkTrouble::NoAnswer { id } => "ID {id} 没有应答：请检查灵巧手的电源、ID、波特率与协议，或用“连接”中的“扫描”逐一尝试。";
+        LinkTrouble::Gateway { place, exception } => "{place} 有应答，但其后的灵巧手没有应答：{}（Modbus 异常码 {:02X}）。请检查灵巧手的电源及其与网关之间的线缆。", reason_zh(&Refusal::Exception(*exception)), exception.code();
+        LinkTrouble::OtherSeries { place } => "{place} 像灵巧手一样应答，但不属于本系列：其寄存器含义不同，因此不显示也不写入任何内容。";
+        LinkTrouble::OnlyEcho { place } => "{place} 只送回所发送的内容：适配器有回显，其后没有灵巧手应答；请检查灵巧手的电源与线缆。";
         LinkTrouble::Silent { silent } => "灵巧手停止应答：连续 {silent} 次请求没有应答。";
         LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。";
         LinkTrouble::Suspended { slept_s } => "本机休眠了 {slept_s} 秒：之前显示的数据已过时。";
@@ -137,6 +140,7 @@ chinese! {
         Refusal::Exception(ModbusException::NoAnswer) => "网关的目标设备没有应答";
         Refusal::Exception(ModbusException::Other(code)) => "异常码 {code}";
         Refusal::PackingUnknown => "不清楚本手如何将单字节放入字；在连接的专家选项中选择 Modbus 字节的放法后才能写入";
+        Refusal::NotIdentified => "尚不清楚这是否本系列的灵巧手，在此之前不写入任何内容";
         Refusal::PackingUnsafe => "本手的单字节不是低字节在前，写入是否安全尚不清楚";
     }
 
@@ -185,6 +189,7 @@ chinese! {
     /// What a scan heard that is no hand, or none it can name.
     fn hint_zh(&ScanHint) as hint {
         ScanHint::OtherId { endpoint, hand_id } => "{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。";
+        ScanHint::OtherSeries { endpoint, hand_id } => "{endpoint} 像灵巧手一样应答（HAND_ID 为 {hand_id}），但不属于本系列：其寄存器含义不同。";
         ScanHint::Refuses { endpoint, reason } => "{endpoint} 有应答，但不给出 HAND_ID（{}）：可能不是灵巧手。", reason_zh(reason);
         ScanHint::OtherTalk { endpoint } => "{} 上收到给其他主机的应答：另一程序正在使用此线路。请先结束它，或扫描全部 ID。", endpoint.place();
         ScanHint::Garbled { place, bauds, bytes } => "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。", numbers(bauds);
@@ -577,6 +582,7 @@ mod tests {
             },
             refused(Refusal::PackingUnknown),
             refused(Refusal::PackingUnsafe),
+            refused(Refusal::NotIdentified),
             RequestError::WrongLength {
                 address: 1000,
                 got: 1,
@@ -609,6 +615,12 @@ mod tests {
                 place: place(),
                 unit: 255,
             },
+            LinkTrouble::Gateway {
+                place: place(),
+                exception: ModbusException::NoAnswer,
+            },
+            LinkTrouble::OtherSeries { place: place() },
+            LinkTrouble::OnlyEcho { place: place() },
             LinkTrouble::Silent { silent: 5 },
             LinkTrouble::Ambiguous,
             LinkTrouble::Suspended { slept_s: 9 },
@@ -817,6 +829,10 @@ mod tests {
             ScanHint::OtherId {
                 endpoint: endpoint(),
                 hand_id: 7,
+            },
+            ScanHint::OtherSeries {
+                endpoint: endpoint(),
+                hand_id: 1,
             },
             ScanHint::Refuses {
                 endpoint: endpoint(),

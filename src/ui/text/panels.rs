@@ -138,6 +138,7 @@ texts! {
     ENDPOINT: "Endpoint", "通信地址";
     SINCE: ", for", "，已持续";
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
+    SLOW: "Replies take up to {} ms: feedback and a stop come as much later.", "应答最长需要 {} ms：反馈与停止也会相应推迟。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "What the line is used for", "线路的使用";
     DETAILS: "Details", "详细";
@@ -160,7 +161,9 @@ texts! {
     RESYNCS: "Noise skipped", "跳过噪声";
     FOREIGN_REQUESTS: "Requests of others", "其他主站请求";
     FOREIGN: "Foreign replies", "无关应答";
+    LATE: "Late replies", "迟到的应答";
     REFUSALS: "Refusals", "拒绝";
+    IMPLAUSIBLE: "Implausible readings", "不合理的读数";
     RECONNECTS: "Reconnects", "重新连接";
     DROPPED: "Samples dropped", "丢弃样本";
     UNKNOWN: "Grey: angle not known", "灰色：角度未知";
@@ -272,6 +275,7 @@ texts! {
         "rtu" => "Modbus RTU", "Modbus RTU", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
         "can" => "CAN", "CAN", "Linux only. As delivered: 1000000 bit/s, id 1. The interface must be up: sudo ip link set can0 up type can bitrate 1000000.", "仅限 Linux。出厂设置：1000000 bit/s，ID 1。接口须已启用：sudo ip link set can0 up type can bitrate 1000000。";
         "slcan" => "CAN adapter", "CAN 适配器", "A serial CAN adapter that speaks slcan (Lawicel). As delivered, the hand has 1000000 bit/s and id 1.", "使用 slcan（Lawicel）协议的串口 CAN 适配器。灵巧手出厂设置：1000000 bit/s，ID 1。";
+        "rtu+tcp" => "RTU over TCP", "RTU over TCP", "Modbus RTU through a serial device server: its address and TCP port, such as 192.168.11.7:4001. The server's serial side must have the hand's speed.", "通过串口服务器的 Modbus RTU：填写其地址与 TCP 端口，例如 192.168.11.7:4001。串口服务器的波特率须与灵巧手一致。";
         "usbcan" => "Maker's CAN", "因时 USB-CAN", "The maker's own USB-CAN adapter, 115200 bit/s on its serial side. Its bit rate on CAN is not set from here: it must be that of the hand, as delivered 1000000 bit/s.", "因时自带的 USB-CAN 适配器，串口侧 115200 bit/s。此处不设置其 CAN 波特率：须与灵巧手一致，出厂为 1000000 bit/s。";
         _ => "Simulated", "仿真", "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     }

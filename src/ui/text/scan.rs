@@ -170,7 +170,7 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
                 Err(_) => format!("{kind}{body}"),
             }
         }
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
             look.fill(WITH_BAUD, &[&kind, &line.baud, &line.id])
         }
         Endpoint::Tcp { port, unit, .. } => look.fill(WITH_UNIT, &[&kind, port, unit]),
@@ -185,7 +185,7 @@ pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String 
     let kind = look.say(panels::kind(endpoint.kind()));
     let speed = match endpoint {
         Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => Some(line.baud),
+        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => Some(line.baud),
         Endpoint::Slcan { bitrate, .. } => Some(*bitrate),
         Endpoint::UsbCan { baud, .. } => Some(*baud),
         Endpoint::Can { .. } | Endpoint::Tcp { .. } => None,

@@ -105,6 +105,11 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
                     kit::say_ui(ui, &search::no_claim(look, *why), palette.warn);
                 }
             }
+            for own in &finding.compared {
+                if let Some(words) = search::compared(look, own) {
+                    kit::say_ui(ui, &words, palette.muted);
+                }
+            }
             if !finding.untold.is_empty() {
                 let untold = finding.untold.iter();
                 let untold = untold.map(|what| search::untold(look, *what));

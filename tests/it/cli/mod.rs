@@ -23,9 +23,10 @@ mod inputs;
 mod interop;
 #[cfg(unix)]
 mod loss;
+#[cfg(unix)]
+mod no_result;
 #[cfg(target_os = "linux")]
 mod outputs;
-#[cfg(unix)]
 mod overshoot;
 mod params;
 mod pictures;

@@ -5,6 +5,7 @@ pub(crate) mod between;
 pub(crate) mod body;
 pub(crate) mod device;
 pub(crate) mod faulty;
+pub(crate) mod gateway;
 pub(crate) mod hand;
 pub(crate) mod line;
 pub(crate) mod link;

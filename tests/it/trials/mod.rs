@@ -2,6 +2,7 @@
 
 mod checkup;
 mod hidden;
+mod other_hand;
 mod search;
 mod series;
 mod virtual_hand;

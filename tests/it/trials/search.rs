@@ -2,6 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
+use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s};
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
@@ -9,7 +10,9 @@ use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, arm_limits, trials};
-use handscope::trials::search::{Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch};
+use handscope::trials::search::{
+    Compared, Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch,
+};
 use handscope::trials::{Abort, TrialSeries};
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -44,6 +47,156 @@ fn a_fragile_object_is_never_broken() {
         let highest = highest_g(&run);
         assert!(run.finding.unwrap().result.is_ok());
         assert!(highest < 650.0, "{highest}");
+    }
+}
+
+/// Whether a search kept an object whole, what its highest true peak was of the limit, and what it came to.
+struct OtherSearch {
+    broke: bool,
+    highest: f64,
+    finding: Option<Finding>,
+}
+
+fn on_other_hand(body: OtherBody, seed: u64) -> OtherSearch {
+    let mut hand = VirtualHand::of(OtherHand::new(body, seed));
+    let run = hand.tune(&goal());
+    OtherSearch {
+        broke: hand.hand.broke(),
+        highest: hand.hand.highest_g() / f64::from(LIMIT),
+        finding: run.finding,
+    }
+}
+
+/// Drives that count the offset of their sensor and drives that do not, soft and stiff objects that break just above the limit.
+fn other_bodies() -> Vec<OtherBody> {
+    let offsets = [-60.0, -20.0, 25.0, 90.0, 146.0, 230.0];
+    let bodies = offsets.into_iter().flat_map(|offset| {
+        [6.0, 25.0, 50.0].map(|stiffness| OtherBody {
+            offset,
+            stiffness: (stiffness, 1.0),
+            breaks_at_g: 1.15 * f64::from(LIMIT),
+            ..OtherBody::default()
+        })
+    });
+    let both = bodies.flat_map(|body| {
+        [true, false].map(|counts_offset| OtherBody {
+            counts_offset,
+            ..body
+        })
+    });
+    both.collect()
+}
+
+#[test]
+fn an_offset_that_the_drive_counts_or_not_breaks_nothing_and_is_told() {
+    let (mut claims, mut told) = (0, 0);
+    for (seed, body) in (0..).zip(other_bodies()) {
+        let search = on_other_hand(body, seed);
+        let (broke, highest) = (search.broke, search.highest);
+        assert!(!broke && highest < 1.1, "{seed} {body:?}: {highest}");
+        let finding = search.finding.unwrap();
+        claims += usize::from(finding.result.is_ok());
+        let right = if body.counts_offset {
+            Compared::AsRead
+        } else {
+            Compared::AboveRest
+        };
+        let compared = finding.compared[0].compared;
+        let is_wrong = compared.is_some_and(|own| own != right);
+        assert!(
+            !is_wrong || body.offset.abs() < 30.0,
+            "{seed} {body:?}: {compared:?}"
+        );
+        told += usize::from(compared == Some(right));
+    }
+    assert!(claims >= 34 && told >= 28, "{claims} {told} of 36");
+}
+
+#[test]
+fn a_drive_that_stops_in_the_air_by_its_offset_gets_a_higher_threshold() {
+    let body = OtherBody {
+        offset: 230.0,
+        stops_in_air: true,
+        ..OtherBody::default()
+    };
+    let search = on_other_hand(body, 3);
+    assert!(search.highest < 1.1, "{}", search.highest);
+    let finding = search.finding.unwrap();
+    assert!(finding.result.is_ok(), "{:?}", finding.result);
+    assert_eq!(finding.compared[0].compared, Some(Compared::AsRead));
+    let words = finding.compared[0].to_string();
+    assert!(
+        words.contains("FORCE_ACT as read") && words.contains("g at rest"),
+        "{words}"
+    );
+}
+
+#[test]
+fn no_rise_is_more_than_twice_the_fastest_close_before() {
+    for (seed, body) in (0..).zip(other_bodies().into_iter().step_by(5)) {
+        let tried = on_other_hand(body, seed).finding.unwrap().tried;
+        let speeds: Vec<i16> = tried.iter().map(|own| own.setting.speed.get()).collect();
+        let mut fastest = speeds[0];
+        for speed in speeds {
+            assert!(speed <= 2 * fastest, "{seed}: {speed} after {fastest}");
+            fastest = fastest.max(speed);
+        }
+    }
+}
+
+#[test]
+fn a_hand_that_moves_within_one_reading_of_the_command_is_tuned() {
+    let body = OtherBody {
+        latency: (0.0, 0.0),
+        ..OtherBody::default()
+    };
+    let finding = on_other_hand(body, 1).finding.unwrap();
+    assert!(finding.result.is_ok(), "{:?}", finding.result);
+}
+
+#[test]
+fn the_threshold_is_below_what_is_to_be_held_where_the_drive_keeps_what_it_ran_past_it() {
+    for seed in 0..3 {
+        let finding = on_other_hand(OtherBody::default(), seed).finding.unwrap();
+        let claim = finding.result.unwrap();
+        let (threshold, holds) = (claim.setting.force.get(), claim.joints[0].hold_g);
+        assert!(threshold < 120 && holds >= 200.0, "{threshold} {holds}");
+    }
+}
+
+#[test]
+fn its_close_is_about_as_quick_as_the_best_of_a_grid_on_another_hand() {
+    for (seed, stiffness, counts_offset) in [(1, 25.0, true), (2, 12.0, false), (3, 45.0, true)] {
+        let body = OtherBody {
+            offset: 120.0,
+            counts_offset,
+            stiffness: (stiffness, 1.0),
+            ..OtherBody::default()
+        };
+        let claim = on_other_hand(body, seed).finding.unwrap().result.unwrap();
+        let best = best_close_s(body, f64::from(LIMIT), 200.0);
+        assert!(
+            claim.close_s < 1.12 * best,
+            "{seed}: {} {best}",
+            claim.close_s
+        );
+    }
+}
+
+#[test]
+fn an_object_too_strong_for_the_limit_is_never_told_with_a_peak_under_it() {
+    for (seed, hold_g) in [(1, 390), (2, 400), (3, 400)] {
+        let body = OtherBody {
+            offset: 206.0,
+            stiffness: (60.0, 1.0),
+            noise: 9.0,
+            ..OtherBody::default()
+        };
+        let mut hand = VirtualHand::of(OtherHand::new(body, seed));
+        let run = hand.tune(&SearchGoal { hold_g, ..goal() });
+        if let Err(NoClaim::TooStrong { peak_g, .. }) = run.finding.unwrap().result {
+            assert!(peak_g > f64::from(LIMIT), "{peak_g}");
+        }
     }
 }
 

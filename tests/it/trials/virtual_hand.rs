@@ -1,10 +1,11 @@
 //! Searches for settings on simulated hands without a link, in virtual time: what a search comes to, whether its claim holds in
 //! closes to come, and how it compares with the best that there is. Used by the tests and by the bench.
 
+use super::other_hand::OtherHand;
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, Reply,
-    Setpoints, Speed, Target,
+    Setpoints, Span, Speed, Target,
 };
 use handscope::record::{LinkState, SetpointConflict};
 use handscope::sim::body_params::JointBody;
@@ -32,9 +33,35 @@ const PLACE: f64 = 550.0;
 #[allow(dead_code, reason = "the bench uses it")]
 pub(crate) const STIFFNESSES: [f64; 5] = [3.0, 7.0, 13.0, 25.0, RIGID_G_PER_COUNT];
 
-/// A simulated hand and what was read of it.
-pub(crate) struct VirtualHand {
-    pub(crate) hand: SimHand,
+/// A hand that answers for its registers in virtual time.
+pub(crate) trait RegisterHand {
+    fn read(&mut self, span: Span, now: Moment) -> Vec<u8>;
+    fn write(&mut self, address: u16, bytes: &[u8], now: Moment);
+}
+
+impl RegisterHand for SimHand {
+    fn read(&mut self, span: Span, now: Moment) -> Vec<u8> {
+        SimHand::read(self, span, now).unwrap()
+    }
+
+    fn write(&mut self, address: u16, bytes: &[u8], now: Moment) {
+        SimHand::write(self, address, bytes, now).unwrap();
+    }
+}
+
+impl RegisterHand for OtherHand {
+    fn read(&mut self, span: Span, now: Moment) -> Vec<u8> {
+        OtherHand::read(self, span, now)
+    }
+
+    fn write(&mut self, address: u16, bytes: &[u8], now: Moment) {
+        OtherHand::write(self, address, bytes, now);
+    }
+}
+
+/// A hand and what was read of it.
+pub(crate) struct VirtualHand<H = SimHand> {
+    pub(crate) hand: H,
     now: Moment,
     sample: HandSample,
     round: u64,
@@ -45,6 +72,7 @@ pub(crate) struct VirtualHand {
 }
 
 impl VirtualHand {
+    /// A simulated hand of this body.
     pub(crate) fn new(body: BodyParams, seed: u64, object: &Object) -> Self {
         let mut hand = SimHand::new(SimConfig {
             seed,
@@ -53,6 +81,12 @@ impl VirtualHand {
             ..SimConfig::default()
         });
         hand.set_object(object);
+        Self::of(hand)
+    }
+}
+
+impl<H: RegisterHand> VirtualHand<H> {
+    pub(crate) fn of(hand: H) -> Self {
         Self {
             hand,
             now: Moment::ZERO.plus(EACH),
@@ -67,7 +101,7 @@ impl VirtualHand {
     pub(crate) fn run_trials(
         &mut self,
         series: TrialSeries,
-        mut meanwhile: impl FnMut(&mut SimHand, &mut TrialSeries),
+        mut meanwhile: impl FnMut(&mut H, &mut TrialSeries),
     ) -> Run {
         let mut trials = Vec::new();
         let (series, stopped) = self.run(series, |hand, series| {
@@ -88,7 +122,7 @@ impl VirtualHand {
     pub(crate) fn run<S: Series>(
         &mut self,
         mut series: S,
-        mut meanwhile: impl FnMut(&mut SimHand, &mut S),
+        mut meanwhile: impl FnMut(&mut H, &mut S),
     ) -> (S, bool) {
         let mut stopped = false;
         let link = LinkView {
@@ -143,7 +177,7 @@ impl VirtualHand {
             .chain(tactile);
         for group in groups {
             let span = group.span();
-            let bytes = self.hand.read(span, self.now).unwrap();
+            let bytes = self.hand.read(span, self.now);
             let fresh = self.sample.take(&Reply {
                 span,
                 bytes: &bytes,
@@ -163,10 +197,14 @@ impl VirtualHand {
         ];
         for write in commands.iter().flat_map(HandCommand::writes) {
             let span = write.span();
-            self.hand
-                .write(span.address, write.bytes(), self.now)
-                .unwrap();
+            self.hand.write(span.address, write.bytes(), self.now);
         }
+    }
+
+    /// How long it has been running, s of virtual time.
+    #[allow(dead_code, reason = "the bench uses it")]
+    pub(crate) fn now_s(&self) -> f64 {
+        self.now.since(Moment::ZERO).as_secs_f64()
     }
 
     /// Searches.

@@ -289,7 +289,13 @@ impl FeedbackWatch {
 
     /// Where a joint in doubt must be at this time; `None` for one that is not in doubt.
     pub(crate) fn hold_target(&self, dof: Dof, now: Moment) -> Option<Target> {
-        let joint = self.joints[dof].filter(|joint| joint.doubted)?;
+        let is_doubted = self.joints[dof].is_some_and(|joint| joint.doubted);
+        self.expected(dof, now).filter(|_| is_doubted)
+    }
+
+    /// Where a joint must be at this time; `None` for one that was never read.
+    pub(crate) fn expected(&self, dof: Dof, now: Moment) -> Option<Target> {
+        let joint = self.joints[dof]?;
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
     }
 

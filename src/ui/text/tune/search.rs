@@ -1,7 +1,9 @@
 //! Sentences of the search for settings: its goal, how far it is, and what it came to.
 
 use crate::hand::Dof;
-use crate::trials::search::{Claim, GoalError, NoClaim, SearchStage, Untold};
+use crate::trials::search::{
+    Claim, Compared, ComparedThreshold, GoalError, NoClaim, SearchStage, Untold,
+};
 use crate::ui::style::Look;
 use crate::ui::style::phrase::texts;
 use crate::ui::text::{tune, words};
@@ -45,14 +47,19 @@ texts! {
     GIVES: "The object gives under {}: {} g for each count before and {} g now. Look whether it is damaged, and ask for a lower limit.", "物体在{}下变软：此前每单位 {} g，现在 {} g。请检查是否受损，并降低上限。";
     SLIPS: "The object slips under {} even at a slow close: hold it with more, or place it better.", "即使慢速闭合，物体也在{}下滑动：请增大保持力或重新摆放。";
     NOISE: "A limit of {} g cannot be told from the noise of {}, {} g: ask for at least {} g.", "上限 {} g 与{}的噪声（{} g）无法区分：请至少设为 {} g。";
-    TOO_STRONG: "Even at speed {} {} peaks at {} g: raise the limit, or hold with less.", "即使速度为 {}，{}的峰值仍达 {} g：请提高上限或降低保持力。";
+    TOO_STRONG: "Even at speed {} {} may peak at {} g with the threshold that holds: raise the limit, or hold with less.", "即使速度为 {}，以能保持的力阈值，{}的峰值仍可能达 {} g：请提高上限或降低保持力。";
     HOLDS_LITTLE: "{} holds with {} g only under this limit, not with {}: raise the limit, or hold with less.", "在此上限下{}只能保持 {} g，达不到 {} g：请提高上限或降低保持力。";
     UNMEASURED: "The peak of {} could not be measured: its force readings are missing or too few.", "无法测量{}的峰值：力读数缺失或过少。";
+    NO_STOP: "The stop of {} could not be seen: its angle, status or force readings after it are missing or too few.", "无法看到{}的停止：其后的角度、状态或力读数缺失或过少。";
+    OFFSET: "{} stops before it meets anything: its force sensor reads {} g at rest, which its drive counts. Calibrate the force sensors.", "{}在碰到物体前就停下：其力传感器静止时读数为 {} g，驱动器将其计入。请校准力传感器。";
     UNCONFIRMED: "No setting could be confirmed in {} closes: the peaks scatter too much for this limit. The object may lie differently each time.", "{} 次闭合仍无法确认任何设置：峰值分散过大，物体每次的位置可能不同。";
 
     UNTOLD_SLIPS: "whether the object slipped under {}", "物体是否在{}下滑动";
     UNTOLD_STIFFNESS: "how stiff the object is under {}", "物体在{}下的刚度";
     UNTOLD_GAPS: "peaks between two readings of {}, up to {} ms apart", "{}两次读数之间的峰值（间隔最长 {} ms）";
+    UNTOLD_OFFSET: "whether the drive of {} counts the {} g that its sensor reads at rest", "{}的驱动器是否计入传感器静止时的 {} g";
+    AS_READ: "{} compares its threshold with FORCE_ACT as read: the {} g at rest count.", "{}以 FORCE_ACT 的读数与力阈值比较：静止时的 {} g 计入。";
+    ABOVE_REST: "{} compares its threshold with the force above rest: the {} g at rest do not count.", "{}以高于静止读数的力与力阈值比较：静止时的 {} g 不计入。";
     UNTOLD_DISTRIBUTION: "whether the peaks are normally distributed, on which the bound rests", "峰值是否服从上界所依据的正态分布";
 }
 
@@ -129,6 +136,8 @@ pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
             wanted_g,
         } => look.fill(HOLDS_LITTLE, &[&joint(dof), &grams(holds_g), &wanted_g]),
         NoClaim::NotMeasured { dof } => look.fill(UNMEASURED, &[&joint(dof)]),
+        NoClaim::NoStop { dof } => look.fill(NO_STOP, &[&joint(dof)]),
+        NoClaim::Offset { dof, offset_g } => look.fill(OFFSET, &[&joint(dof), &grams(offset_g)]),
         NoClaim::NotConfirmed { trials } => look.fill(UNCONFIRMED, &[&trials]),
     }
 }
@@ -143,6 +152,21 @@ pub(crate) fn untold(look: Look, what: Untold) -> String {
             let gap_ms = format!("{:.0}", gap_s * 1000.0);
             look.fill(UNTOLD_GAPS, &[&joint(dof), &gap_ms])
         }
+        Untold::Offset { dof, offset_g } => {
+            let grams = format!("{offset_g:.0}");
+            look.fill(UNTOLD_OFFSET, &[&joint(dof), &grams])
+        }
         Untold::Distribution => look.say(UNTOLD_DISTRIBUTION).into(),
     }
+}
+
+/// What a drive was found to compare its threshold with; `None` where that makes no difference or is not known.
+pub(crate) fn compared(look: Look, own: &ComparedThreshold) -> Option<String> {
+    let sentence = match own.compared.filter(|_| own.is_notable())? {
+        Compared::AsRead => AS_READ,
+        Compared::AboveRest => ABOVE_REST,
+        Compared::Unknown => return None,
+    };
+    let grams = format!("{:.0}", own.offset_g);
+    Some(look.fill(sentence, &[&look.say(words::dof(own.dof)), &grams]))
 }

@@ -1,0 +1,96 @@
+//! How late replies are on a wire where a late one is known by its number. Pure.
+
+use crate::link::bus::late_replies::{LateReply, REPLY_LIMIT_MIN, slow_limit};
+use std::time::Duration;
+
+/// A reply later than this is a hiccup and tells nothing of the next one.
+const SLOWEST: Duration = Duration::from_millis(350);
+/// So many replies in a row, each in half the time, and the way is quick again.
+const QUICK_LEAST: u32 = 20;
+
+/// The slowest reply lately, if it took longer than the shortest wait for one.
+#[derive(Debug, Default)]
+pub(crate) struct Slowness {
+    slowest: Option<Duration>,
+    quick: u32,
+}
+
+impl Slowness {
+    /// A reply came after its request was given up.
+    pub(crate) fn late(&mut self, reply: LateReply) {
+        self.took(reply.took);
+    }
+
+    /// A reply took so long.
+    pub(crate) fn took(&mut self, took: Duration) {
+        let Some(slowest) = self.slowest else {
+            self.slowest = Some(took).filter(|took| is_slow(*took));
+            return;
+        };
+        if took > slowest && took <= SLOWEST {
+            self.slowest = Some(took);
+        }
+        if took * 2 >= slowest {
+            self.quick = 0;
+            return;
+        }
+        self.quick += 1;
+        if self.quick >= QUICK_LEAST {
+            *self = Self::default();
+        }
+    }
+
+    /// How long a reply takes, where that is long.
+    pub(crate) const fn slowest(&self) -> Option<Duration> {
+        self.slowest
+    }
+
+    /// The shortest wait for a reply.
+    pub(crate) fn least_wait(&self) -> Duration {
+        self.slowest.map_or(REPLY_LIMIT_MIN, slow_limit)
+    }
+}
+
+fn is_slow(took: Duration) -> bool {
+    took > REPLY_LIMIT_MIN && took <= SLOWEST
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn ms(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn a_late_reply_lengthens_the_wait_and_quick_ones_shorten_it_again() {
+        let mut slowness = Slowness::default();
+        slowness.took(ms(20));
+        assert_eq!(slowness.least_wait(), ms(50));
+        let late = |took| LateReply {
+            took,
+            exception: None,
+        };
+        slowness.late(late(ms(300)));
+        assert_eq!(slowness.least_wait(), ms(425));
+        for _ in 0..100 {
+            slowness.took(ms(290));
+        }
+        assert_eq!(slowness.slowest(), Some(ms(300)));
+        for _ in 0..QUICK_LEAST {
+            slowness.took(ms(4));
+        }
+        assert_eq!((slowness.slowest(), slowness.least_wait()), (None, ms(50)));
+    }
+
+    #[test]
+    fn a_hiccup_teaches_nothing() {
+        let mut slowness = Slowness::default();
+        slowness.took(ms(900));
+        assert_eq!(slowness.slowest(), None);
+        slowness.took(ms(100));
+        slowness.took(ms(5000));
+        assert_eq!(slowness.slowest(), Some(ms(100)));
+    }
+}

@@ -1,0 +1,120 @@
+//! What a drive compares its force threshold with: what its sensor reads, or what that is more than at rest. The manual says the
+//! first (2.6.12); a peak below the threshold of one of them tells. Pure.
+
+use crate::trials::search::growth::SeenPeak;
+use serde::Serialize;
+
+/// A peak is told from a threshold by so many times the noise, and some grams more.
+const TOLD_SIGMAS: f64 = 4.0;
+const TOLD_MORE_G: f64 = 3.0;
+/// More than this share of the closes against it, and it is not what the drive does.
+const AGAINST_MOST: f64 = 0.25;
+
+/// What a drive compares its force threshold with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
+#[serde(rename_all = "snake_case")]
+pub enum Compared {
+    /// FORCE_ACT as it is read, the sensor's offset included (manual 2.6.12).
+    #[default]
+    AsRead,
+    /// The force above what the sensor reads at rest.
+    AboveRest,
+    /// Something else: it stops below either.
+    Unknown,
+}
+
+impl Compared {
+    /// All, as the manual has it first.
+    pub const ALL: [Self; 3] = [Self::AsRead, Self::AboveRest, Self::Unknown];
+
+    /// The force above rest at which a threshold stops the drive, g; nothing is taken off an overshoot where that is not known.
+    pub fn stops_at(self, threshold_g: f64, offset_g: f64) -> f64 {
+        match self {
+            Self::AsRead => (threshold_g - offset_g).max(0.0),
+            Self::AboveRest => threshold_g,
+            Self::Unknown => 0.0,
+        }
+    }
+
+    /// The same in a close that was seen.
+    pub(crate) fn stops_at_in(self, seen: &SeenPeak) -> f64 {
+        self.stops_at(seen.at.threshold_g, seen.offset_g)
+    }
+
+    /// Grams above it.
+    pub(crate) fn over_g(self, seen: &SeenPeak) -> f64 {
+        seen.peak_g - self.stops_at_in(seen)
+    }
+
+    /// Whether a peak is lower than this can be.
+    pub(crate) fn is_contradicted_by(self, seen: &SeenPeak, noise_g: f64) -> bool {
+        self.over_g(seen) < -told_from(noise_g) - seen.missed_g
+    }
+
+    /// The threshold that stops the drive at this force above rest, g.
+    pub(crate) fn threshold_for(self, force_g: f64, offset_g: f64) -> f64 {
+        match self {
+            Self::AsRead => force_g + offset_g,
+            Self::AboveRest | Self::Unknown => force_g,
+        }
+    }
+}
+
+/// What an offset has to be more than to be told, g.
+pub(crate) fn told_from(noise_g: f64) -> f64 {
+    TOLD_SIGMAS * noise_g + TOLD_MORE_G
+}
+
+/// What the closes of a joint tell of its drive.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct OffsetEvidence {
+    closes: f64,
+    against_as_read: f64,
+    against_above_rest: f64,
+    in_air: bool,
+    offset_g: f64,
+}
+
+impl OffsetEvidence {
+    pub(crate) fn add(&mut self, seen: &SeenPeak, noise_g: f64) {
+        let against = |compared: Compared| f64::from(compared.is_contradicted_by(seen, noise_g));
+        self.closes += 1.0;
+        self.against_as_read += against(Compared::AsRead);
+        self.against_above_rest += against(Compared::AboveRest);
+        self.offset_g = seen.offset_g;
+    }
+
+    pub(crate) const fn stopped_in_air(&mut self, offset_g: f64) {
+        self.in_air = true;
+        self.offset_g = offset_g;
+    }
+
+    pub(crate) const fn offset_g(&self) -> f64 {
+        self.offset_g
+    }
+
+    fn is_against(&self, against: f64) -> bool {
+        against > AGAINST_MOST * self.closes
+    }
+
+    /// What the drive may compare with.
+    pub(crate) fn possible(&self) -> Vec<Compared> {
+        let as_read = !self.is_against(self.against_as_read);
+        let above_rest = !self.in_air && !self.is_against(self.against_above_rest);
+        match (as_read, above_rest) {
+            (true, true) => vec![Compared::AsRead, Compared::AboveRest],
+            (true, false) => vec![Compared::AsRead],
+            (false, true) => vec![Compared::AboveRest],
+            (false, false) => vec![Compared::Unknown],
+        }
+    }
+
+    /// What it compares with, where the peaks leave one only.
+    pub(crate) fn told(&self) -> Option<Compared> {
+        match self.possible().as_slice() {
+            [Compared::Unknown] => None,
+            [one] => Some(*one),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! A Modbus gateway that answers while the hand behind it does not: its exceptions are no feedback. Virtual time.
+
+use crate::setup::gateway::Gateway;
+use crate::setup::hand;
+use crate::setup::link;
+use handscope::hand::ModbusException;
+use handscope::link::{LinkStatus, LinkTrouble, TouchVariant};
+use handscope::record::{Hold, LinkState};
+use std::sync::Arc;
+use tokio::time::{Duration, Instant, sleep};
+
+const PLACE: &str = "tcp:127.0.0.1:6000";
+/// The loss of a hand behind a gateway shows within this time.
+const LOST_WITHIN: Duration = Duration::from_secs(1);
+
+fn gateway() -> Arc<Gateway> {
+    Gateway::to(hand::plain())
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_only_a_gateway_answers_for_is_lost_within_a_second_in_the_gateways_words() {
+    for code in [4, 5, 6, 10, 11] {
+        let gateway = gateway();
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        link::pass(&mut link, Duration::from_secs(1)).await;
+        let (asked, begun) = (gateway.asked(), Instant::now());
+        gateway.says(code);
+        let lost = link::until(&mut link, LOST_WITHIN, |status| {
+            status.state == LinkState::Offline
+        })
+        .await;
+        let exception = ModbusException::of(code);
+        let place = "127.0.0.1:6000".to_owned();
+        let trouble = Some(LinkTrouble::Gateway { place, exception });
+        assert_eq!(lost.trouble, trouble, "{code}");
+        let words = lost.trouble.unwrap().to_string();
+        assert!(words.contains(&exception.to_string()), "{words}");
+        let (asked, took) = (gateway.asked() - asked, begun.elapsed());
+        assert!(asked < 60, "{asked} requests in {took:?}: a flood");
+        // It comes back by itself once the hand answers.
+        sleep(Duration::from_secs(3)).await;
+        assert_eq!(link.status().trouble, trouble_of(code), "{code}");
+        gateway.says(0);
+        link::live(&mut link).await;
+        assert_eq!(link.stats().reconnects, 1, "{code}");
+    }
+}
+
+fn trouble_of(code: u8) -> Option<LinkTrouble> {
+    Some(LinkTrouble::Gateway {
+        place: "127.0.0.1:6000".into(),
+        exception: ModbusException::of(code),
+    })
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_was_never_there_is_told_by_its_gateway() {
+    for code in [4, 5, 6, 10, 11] {
+        let gateway = gateway();
+        gateway.says(code);
+        let mut link = link::connect(PLACE, gateway.dial());
+        let lost = link::until(&mut link, LOST_WITHIN, |status| status.trouble.is_some());
+        assert_eq!(lost.await.trouble, trouble_of(code), "{code}");
+        assert_eq!(link.stats().state_reads, 0);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn single_exceptions_between_answers_lose_nothing() {
+    for (code, every) in [(6, 3), (11, 10), (4, 4)] {
+        let gateway = gateway();
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        for _ in 0..40 {
+            gateway.says_to(code, 1);
+            let from = gateway.asked();
+            while gateway.asked() < from + every {
+                link::pass(&mut link, Duration::from_millis(5)).await;
+            }
+        }
+        assert_eq!(gateway.dialled(), 1, "{code}");
+        assert!(link.stats().refusals >= 40, "{:?}", link.stats());
+        assert_eq!(link.status().state, LinkState::Monitoring);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_device_that_is_busy_at_the_start_is_known_as_well_as_any_other() {
+    let known = {
+        let mut link = link::connect(PLACE, gateway().dial());
+        link::live(&mut link).await;
+        link.status().quirks
+    };
+    assert_eq!(known.touch, Some(TouchVariant::Capacitive));
+    for requests in 1..=24 {
+        let gateway = gateway();
+        gateway.says_to(6, requests);
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        assert_eq!(link.status().quirks, known, "{requests} refused");
+        assert_eq!(gateway.dialled(), 1, "{requests} refused");
+    }
+}
+
+/// States that a link reads in so long.
+async fn states(link: &mut link::Client, length: Duration) -> u64 {
+    let before = link.stats().state_reads;
+    link::pass(link, length).await;
+    link.stats().state_reads - before
+}
+
+#[tokio::test(start_paused = true)]
+async fn replies_that_come_late_are_waited_for_and_the_delay_is_told() {
+    for ms in [45, 60, 100, 150, 200, 300] {
+        let gateway = gateway();
+        gateway.delays(Duration::from_millis(ms));
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        let read = states(&mut link, Duration::from_secs(8)).await;
+        // Fingertips and settings have their turns between.
+        assert!(read * ms > 2000, "{ms} ms: {read} states");
+        assert_eq!(gateway.dialled(), 1, "{ms} ms");
+        let status = link.status();
+        let slow_ms = status.slow_ms.map(u64::from);
+        assert_eq!(slow_ms.is_some(), ms > 50, "{ms} ms: {slow_ms:?}");
+        assert!(slow_ms.is_none_or(|slow| slow >= ms && slow < ms + 20));
+        assert_eq!(status.quirks.touch, Some(TouchVariant::Capacitive), "{ms}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_delay_that_begins_later_costs_one_loss_at_most_and_one_that_ends_is_forgotten() {
+    for ms in [60, 90, 150, 200, 300] {
+        let gateway = gateway();
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        states(&mut link, Duration::from_secs(5)).await;
+        gateway.delays(Duration::from_millis(ms));
+        let read = states(&mut link, Duration::from_secs(8)).await;
+        assert!(read * ms > 1500, "{ms} ms: {read} states");
+        let at_most = if ms <= 200 { 1 } else { 2 };
+        assert!(
+            gateway.dialled() <= at_most,
+            "{ms} ms: {}",
+            gateway.dialled()
+        );
+        gateway.delays(Duration::ZERO);
+        states(&mut link, Duration::from_secs(2)).await;
+        assert_eq!(link.status().slow_ms, None, "{ms} ms");
+        let read = states(&mut link, Duration::from_secs(1)).await;
+        assert!(read > 90, "{read}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_falls_silent_on_a_slow_way_is_lost_within_a_second() {
+    let gateway = gateway();
+    gateway.delays(Duration::from_millis(300));
+    let mut link = link::connect(PLACE, gateway.dial());
+    link::live(&mut link).await;
+    states(&mut link, Duration::from_secs(3)).await;
+    gateway.delays(Duration::from_secs(60));
+    let lost = |status: &LinkStatus| status.state == LinkState::Offline;
+    let status = link::until(&mut link, LOST_WITHIN + Duration::from_millis(300), lost).await;
+    assert!(matches!(status.trouble, Some(LinkTrouble::Silent { .. })));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_does_not_wait_for_a_reply_that_is_late() {
+    let hand = hand::plain();
+    let gateway = Gateway::to(hand.clone());
+    gateway.delays(Duration::from_millis(300));
+    let mut link = link::connect(PLACE, gateway.dial());
+    link::live(&mut link).await;
+    for n in 0..20 {
+        states(&mut link, Duration::from_millis(2000 + 37 * n)).await;
+        let writes = || hand.with(|hand, _| hand.journal().len());
+        let (before, pressed) = (writes(), Instant::now());
+        link.stop();
+        while writes() == before {
+            sleep(Duration::from_millis(1)).await;
+        }
+        let waited = pressed.elapsed();
+        assert!(waited <= Duration::from_millis(60), "{waited:?}");
+        let held = |status: &LinkStatus| matches!(status.hold, Hold::Confirmed { .. });
+        link::until(&mut link, Duration::from_secs(4), held).await;
+    }
+}
