@@ -3,6 +3,7 @@
 use crate::checkup::steps::{SPEEDS, Step, Way};
 use crate::checkup::subject::{Part, Subject};
 use crate::checkup::tips::{ChannelSet, TipReading, TipsAtRest, Unpressed};
+use crate::hand::grip::FreeClose;
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{
     AngleReading, CurrentReading, Dof, Finger, ForceReading, Group, Groups, HandSample, Moment,
@@ -18,8 +19,9 @@ const COUNTS: f64 = 2.0;
 const HALF_WAY: f64 = 500.0;
 /// The middle of a stroke, where a joint goes at its full speed.
 const MIDDLE: RangeInclusive<f64> = 0.25..=0.75;
-/// Pressed above its zero by this before it is nearly bent, a joint met something, g. What is nearly bent may meet the palm.
-const MET_G: f64 = 80.0;
+/// Pressed above its zero by this before it is nearly bent, a joint met something, g: free fingers of a published hand read up to 92.
+/// What is nearly bent may meet the palm.
+const MET_G: f64 = 120.0;
 const NEARLY_BENT: f64 = 100.0;
 
 /// One figure; `None` where it could not be measured.
@@ -132,6 +134,20 @@ impl StepRecord {
         later
             .filter_map(|own| Some((own.at_s, of(own)?[dof])))
             .collect()
+    }
+
+    /// What the sensor of a joint read over its zero on the way, by angle.
+    pub(crate) fn free_close(&self, dof: Dof, zero_g: f64) -> FreeClose {
+        let told = self.told.secs();
+        let mut close = FreeClose::default();
+        for own in self.readings.iter().filter(|own| own.at_s >= told) {
+            let both = own.angle.zip(own.force);
+            if let Some((angle, force)) = both.map(|(angle, force)| (angle[dof], force[dof])) {
+                #[expect(clippy::cast_possible_truncation, reason = "both were 16 bits")]
+                close.take(angle as i16, (force - zero_g) as f32);
+            }
+        }
+        close
     }
 
     /// What each force sensor reads at rest, g.

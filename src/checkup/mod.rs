@@ -2,6 +2,7 @@
 //! with what hands of the family were measured to do, and with this hand's own first check-up. Sends nothing itself.
 
 pub mod check;
+pub mod free_file;
 pub mod kept;
 mod measure;
 pub mod report;

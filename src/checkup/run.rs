@@ -1,8 +1,9 @@
 //! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
 
 use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, measured};
-use crate::checkup::steps::{CheckupPlan, PRESS_WITHIN, REST, Step, steps};
+use crate::checkup::steps::{CheckupPlan, PRESS_WITHIN, REST, Step, Way, slow, steps};
 use crate::checkup::tips::TipReading;
+use crate::hand::grip::FreeForce;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
     Target, TemperatureReading,
@@ -111,6 +112,7 @@ pub struct Checkup {
     /// Joints that do not close below what their sensors read at rest: their drives count that as force.
     counts_zero: PerDof<bool>,
     figures: Figures,
+    free: FreeForce,
     plan: CheckupPlan,
     /// What another was seen to write until the hand was disarmed.
     foreign: Option<SetpointConflict>,
@@ -132,6 +134,7 @@ impl Checkup {
             zero_g: PerDof::splat(None),
             counts_zero: PerDof::splat(false),
             figures: Figures::default(),
+            free: FreeForce::default(),
             is_over: false,
             aborted: None,
         }
@@ -161,6 +164,11 @@ impl Checkup {
     /// What was measured until now.
     pub fn measured(&self) -> Vec<Measured> {
         measured(&self.figures, self.plan.press)
+    }
+
+    /// What the joints that closed read when they touched nothing.
+    pub const fn free_force(&self) -> &FreeForce {
+        &self.free
     }
 
     /// The joints that were left alone, with their zeros: they could not be stopped gently.
@@ -286,6 +294,12 @@ impl Checkup {
                 self.zero_g[dof] = zero.or(self.zero_g[dof]);
             }
         }
+        if let Step::Stroke(dof, speed, Way::Closing) = running.record.step
+            && speed == slow()
+            && let Some(zero_g) = self.zero_g[dof]
+        {
+            self.free.put(dof, &running.record.free_close(dof, zero_g));
+        }
         self.figures.add(&running.record);
     }
 
@@ -310,7 +324,7 @@ impl Checkup {
             return Some(self.fail(Abort::LinkLost));
         }
         if link.armed.is_some_and(|epoch| epoch != self.epoch) {
-            return Some(self.fail(Abort::Disarmed));
+            return Some(self.fail(Abort::ArmedAnew));
         }
         if link.foreign_setpoint != self.foreign {
             let wrote = link.foreign_setpoint;

@@ -101,6 +101,7 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
         epoch: hand.epoch,
         lease: hand.lease,
         seen: hand.seen,
+        grip: session::grip_estimator(&args.hand),
         clock: hand.clock,
     };
     let report = grip::grip(&hand.link, start, hand.interrupt.wished()).await;
@@ -117,18 +118,17 @@ fn blocks(hand: &Endpoint) -> SizeBlocks {
     known.map_or_else(SizeBlocks::default, |known| known.size_blocks(Some(hand)))
 }
 
-/// The size of what is held, in words.
+/// What is between the pads, in words, and of which shape a size is.
 fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
-    match report.gap_mm.map(|gap_mm| blocks.size(gap_mm)) {
-        Some(HeldSize { mm, is_measured }) => {
-            let by = if is_measured {
-                "measured"
-            } else {
-                "by the model"
-            };
-            format!("about {mm:.0} mm between the pads, {by}")
-        }
-        None => "how far the pads are apart is not known".into(),
+    let Some(gap) = report.gap else {
+        return "how far the pads are apart is not known".into();
+    };
+    let pads = format!("the pads are about {:.0} mm apart, by the model", gap.mm);
+    match blocks.size(gap) {
+        _ if report.end != GripEnd::Held => pads,
+        HeldSize::Block(mm) => format!("about {mm:.0} mm, measured with two blocks"),
+        HeldSize::Ball(mm) => format!("a ball would have about {mm:.0} mm; {pads}"),
+        HeldSize::Pads(_) => format!("{pads}, and their edges may be what touches"),
     }
 }
 
@@ -194,7 +194,11 @@ const fn end_name(end: GripEnd) -> &'static str {
 
 /// The result: `{"grip": {…}}`. What is not known is null.
 fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
-    let size = report.gap_mm.map(|gap_mm| blocks.size(gap_mm));
+    let size = report.gap.map(|gap| match blocks.size(gap) {
+        HeldSize::Block(mm) => (Some(mm), "blocks", Some("block")),
+        HeldSize::Ball(mm) => (Some(mm), "model", Some("ball")),
+        HeldSize::Pads(_) => (None, "model", None),
+    });
     let confirmed = report
         .stop
         .map(|stop| matches!(stop, Stop::Confirmed { .. }));
@@ -203,9 +207,10 @@ fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
         "kind": args.kind,
         "asked_mm": args.gap.mm(),
         "end": end_name(report.end),
-        "gap_mm": report.gap_mm,
-        "size_mm": size.map(|size| size.mm),
-        "size_by": size.map(|size| if size.is_measured { "blocks" } else { "model" }),
+        "gap_mm": report.gap.map(|gap| gap.mm),
+        "size_mm": size.and_then(|(mm, ..)| mm),
+        "size_by": size.map(|(_, by, _)| by),
+        "size_of": size.and_then(|(.., shape)| shape),
         "state": report.grip.grasp.state,
         "stop_confirmed": confirmed,
     }})

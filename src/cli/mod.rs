@@ -172,6 +172,7 @@ fn wait_for(command: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result
     has_room_for_files()?;
     let runtime = Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("cannot start the runtime")?;
+    crate::link::priority::raise();
     let done = runtime.block_on(command);
     // A name that is being resolved cannot be called back, and must not hold up the end.
     runtime.shutdown_background();

@@ -1,11 +1,14 @@
 //! A link for a terminal command: its clock, the wait for a hand that answers, and warnings of heat.
 
 use crate::app::connect::SimDial;
+use crate::app::files::settings_file;
+use crate::checkup::free_file;
 use crate::cli::out::say;
+use crate::hand::grip::GripEstimator;
 use crate::hand::heat::HOT;
-use crate::link::Stop;
 use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
+    Stop,
 };
 use crate::record::{Disarmed, LinkState};
 use crate::tasks::series::STOP_LOST;
@@ -32,6 +35,14 @@ pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
+
+/// What tells the grip of a hand, with what is kept of its free motion. A file that cannot be read is as none.
+pub(crate) fn grip_estimator(hand: &Endpoint) -> GripEstimator {
+    let settings = settings_file::default_path();
+    let file = settings.and_then(|settings| free_file::file_of(&settings, hand));
+    let known = file.and_then(|file| free_file::read(&file).ok());
+    GripEstimator::knowing(known.unwrap_or_default())
+}
 
 /// Opens a link and waits for the hand. Must be called within a tokio runtime.
 pub(crate) async fn reach(hand: &Endpoint, rates: PollRates) -> anyhow::Result<LinkHandle> {

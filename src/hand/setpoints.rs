@@ -1,7 +1,9 @@
 //! Targets and limits for an armed hand: the newest of each joint wins, and none outlives its arming.
 
+use crate::hand::command::HandCommand;
 use crate::hand::dof::PerDof;
 use crate::hand::units::{Force, Speed, Target};
+use arrayvec::ArrayVec;
 
 /// One arming. Setpoints carry it, so that none from an earlier arming can act.
 #[derive(
@@ -46,6 +48,20 @@ impl Setpoints {
     /// True if there is nothing to send.
     pub fn is_empty(&self) -> bool {
         *self == Self::none(self.epoch)
+    }
+
+    /// The commands that send them: speeds before forces before angles, so that no motion starts with older limits. Angles go out
+    /// for all joints at once, so that a joint without a target is told "no action".
+    pub fn commands(&self) -> ArrayVec<HandCommand, 3> {
+        let mut commands = ArrayVec::from_iter([
+            HandCommand::Speeds(self.speed),
+            HandCommand::Forces(self.force),
+        ]);
+        if self.angle.iter().any(|(_, angle)| angle.is_some()) {
+            let angles = self.angle.map(|angle| angle.unwrap_or(Target::Leave));
+            commands.push(HandCommand::Angles(angles));
+        }
+        commands
     }
 
     /// Puts newer values over older ones, joint by joint. Another arming replaces all.

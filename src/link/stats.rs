@@ -41,6 +41,12 @@ pub struct LinkStats {
     pub reconnects: u64,
     /// Register writes sent.
     pub writes: u64,
+    /// Times that this program could not attend to the wire for 20 ms or more: the computer was busy with something else.
+    pub stalls: u64,
+    /// How long these lasted together.
+    pub stalled: Duration,
+    /// The longest of them.
+    pub longest_stall: Duration,
     /// Samples that the window was too slow to take.
     pub dropped_events: u64,
     /// What the line is used for.

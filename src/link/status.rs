@@ -6,6 +6,7 @@ use crate::link::quirks::Quirks;
 use crate::link::series::Series;
 use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
+use std::time::Duration;
 
 /// Everything the window shows of the link.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -55,6 +56,8 @@ pub struct LinkStatus {
     pub rest: Rest,
     /// How the last hold went.
     pub hold: Hold,
+    /// The last stall of this program: meanwhile nothing was read, which says nothing of the hand.
+    pub stall: Option<Stall>,
     /// Why the hand is not armed, if it was.
     pub disarmed: Option<Disarmed>,
     /// Why no process could be started that stops the hand if this program is killed, if so.
@@ -66,6 +69,15 @@ impl LinkStatus {
     pub fn is_believed(&self) -> bool {
         self.state.is_live() && !self.feedback_in_doubt
     }
+}
+
+/// A time in which this program could not attend to the wire: the computer was busy with something else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Stall {
+    /// When it was over.
+    pub ended: Moment,
+    /// How long it lasted.
+    pub lasted: Duration,
 }
 
 /// What happens while there is no wire.
@@ -154,6 +166,16 @@ pub enum LinkTrouble {
     Silent {
         /// Requests in a row without a reply.
         silent: u32,
+    },
+    /// The hand fell silent for several requests in a row, while this program could not attend to the wire.
+    #[error(
+        "the hand stopped answering: {silent} requests without a reply, while this computer was too busy for {stalled_ms} ms to attend to it"
+    )]
+    Stalled {
+        /// Requests in a row without a reply.
+        silent: u32,
+        /// Milliseconds of stalls in that time.
+        stalled_ms: u32,
     },
     /// Late replies could no longer be told from fresh ones, so the line was closed.
     #[error(

@@ -2,10 +2,12 @@
 //! series.
 
 use crate::checkup::check::{checks, stopped_early};
+use crate::checkup::free_file;
 use crate::checkup::kept::{self, Kept};
 use crate::checkup::report::{CheckupReport, JSON_FILE, Keeping, PAGE_FILE, RECORDING_FILE};
 use crate::checkup::usage::Usage;
 use crate::checkup::{Checkup, Measured};
+use crate::hand::grip::FreeForce;
 use crate::hand::kinematics::Side;
 use crate::hand::{Force, PerDof, Speed};
 use crate::link::{ArmRequest, Clock, LinkObserver};
@@ -35,6 +37,8 @@ pub struct CheckupFiles {
     pub hand: Endpoint,
     /// The file of its earlier check-ups; `None` for the built-in one, which is another each time.
     pub kept: Option<PathBuf>,
+    /// The file of what its joints read when they touch nothing; `None` as with `kept`.
+    pub free_force: Option<PathBuf>,
     /// The folder of its report; `None` = it is not written.
     pub report: Option<PathBuf>,
     /// The folder of recordings, from which its use is counted.
@@ -183,7 +187,7 @@ impl CheckupFiles {
             Some(error) => Keeping::Failed {
                 error: error.to_string(),
             },
-            None => self.keep(&report, measured),
+            None => self.keep(&report, measured, ended.checkup.free_force()),
         };
         let written = self
             .report
@@ -192,7 +196,16 @@ impl CheckupFiles {
         ConcludedCheckup { report, written }
     }
 
-    fn keep(&self, report: &CheckupReport, figures: Vec<Measured>) -> Keeping {
+    /// A grip that is told without it is less sure, and not wrong: that it was not kept is no failure.
+    fn keep_free_force(&self, measured: &FreeForce) {
+        if let Some(file) = &self.free_force {
+            let mut known = free_file::read(file).unwrap_or_default();
+            known.take(measured);
+            let _kept = free_file::keep(file, &known);
+        }
+    }
+
+    fn keep(&self, report: &CheckupReport, figures: Vec<Measured>, free: &FreeForce) -> Keeping {
         if report.aborted.is_some() {
             return Keeping::Partial;
         }
@@ -203,6 +216,7 @@ impl CheckupFiles {
         match stopped_early(&report.checks).filter(|_| earlier == 0) {
             Some(dof) => Keeping::NotAsFirst { dof },
             None => {
+                self.keep_free_force(free);
                 let own = Kept {
                     at: report.at.clone(),
                     hand: report.hand.clone(),

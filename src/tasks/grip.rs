@@ -1,17 +1,17 @@
 //! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to
 //! the gap or to what stands between them.
 
-use crate::hand::gap::{Gap, gap_on_path, held_gap};
+use crate::hand::gap::{Gap, PinchGap, held_gap, pinch_gap};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Force, Group, Groups, HandSample, Moment, PerDof,
+    Angle, AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
-use crate::link::Stop;
-use crate::link::{Clock, Lease};
+use crate::link::session::watch::other_controller::OtherController;
+use crate::link::{Clock, Lease, Stop};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{WayPart, pinch_way};
-use crate::record::{Disarmed, Record, Rest, SetpointRegister};
+use crate::record::{Disarmed, Record, Rest};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
 use std::collections::VecDeque;
@@ -29,8 +29,6 @@ const BEGINS_WITHIN: Duration = Duration::from_millis(500);
 const ACTS_WITHIN: Duration = Duration::from_millis(150);
 /// A part of the way that is done waits no longer than this, counted from its start, for what is read back.
 const SEEN_WITHIN: Duration = Duration::from_millis(1500);
-/// So many readings in a row with a value that was not told are another controller's; one may be wrong.
-const STRANGE: u8 = 2;
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -49,6 +47,8 @@ pub struct GripStart {
     pub lease: Lease,
     /// What was read until now.
     pub seen: HandSample,
+    /// What tells the grip.
+    pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
 }
@@ -81,8 +81,8 @@ pub struct GripReport {
     pub end: GripEnd,
     /// Why the hand was not armed any more then, if it was not.
     pub disarmed: Option<Disarmed>,
-    /// Between the pads then, in mm by the model; `None` where they do not face each other, or angles are old.
-    pub gap_mm: Option<f32>,
+    /// What is between the pads then, by the model; `None` where they do not face each other, or angles are old.
+    pub gap: Option<PinchGap>,
     /// What the hand gripped then.
     pub grip: Grip,
     /// What feedback says of the stop that followed, if one did.
@@ -100,8 +100,8 @@ pub async fn grip<H: TaskHand>(
     let mut run = GripRun {
         hand,
         sample: start.seen,
-        estimator: GripEstimator::default(),
-        told: ToldSetpoints::default(),
+        estimator: start.grip.clone(),
+        setpoints: SentSetpoints::default(),
         legs: None,
         sent: start.clock.now(),
         start,
@@ -146,9 +146,9 @@ pub async fn grip<H: TaskHand>(
     GripReport {
         end,
         disarmed,
-        gap_mm: run
+        gap: run
             .angles()
-            .and_then(|angles| gap_on_path(&angles.map(f32::from))),
+            .and_then(|angles| pinch_gap(&angles.map(f32::from))),
         grip: run.estimator.grip(),
         stop,
     }
@@ -159,7 +159,7 @@ struct GripRun<'a, H> {
     start: GripStart,
     sample: HandSample,
     estimator: GripEstimator,
-    told: ToldSetpoints,
+    setpoints: SentSetpoints,
     /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
     legs: Option<VecDeque<WayPart>>,
     /// When the part under way was sent.
@@ -169,7 +169,7 @@ struct GripRun<'a, H> {
 impl<H: TaskHand> GripRun<'_, H> {
     fn take(&mut self, sample: HandSample, fresh: Groups) {
         self.sample = sample;
-        self.told.read(&self.sample, fresh);
+        self.setpoints.read(&self.sample, fresh);
         self.estimator
             .take(&self.sample, fresh, self.start.clock.now());
     }
@@ -187,7 +187,7 @@ impl<H: TaskHand> GripRun<'_, H> {
         if let Some(why) = reason(&self.hand.status(), self.start.epoch) {
             return Some(GripEnd::Broken(why));
         }
-        if self.told.is_foreign() {
+        if self.setpoints.others.changes > 0 {
             return Some(GripEnd::OtherWrote);
         }
         let now = self.start.clock.now();
@@ -207,16 +207,16 @@ impl<H: TaskHand> GripRun<'_, H> {
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
         let since = now.since(self.sent);
         // What another wrote meanwhile would be overwritten unseen.
-        let is_unread = since >= SEEN_WITHIN && !self.told.is_doubted();
+        let is_unread = since >= SEEN_WITHIN && !self.setpoints.others.is_doubted();
         if arrived && !is_last {
-            if self.told.is_seen() || is_unread {
+            if self.setpoints.is_seen() || is_unread {
                 self.legs.as_mut().and_then(VecDeque::pop_front);
                 return self.send();
             }
             return (since > limit(&leg)).then_some(GripEnd::Late);
         }
         let rests = since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting;
-        if rests && !self.told.is_doubted() {
+        if rests && !self.setpoints.others.is_doubted() {
             return Some(self.at_rest(leg, arrived));
         }
         (since > limit(&leg)).then_some(GripEnd::Late)
@@ -247,101 +247,45 @@ impl<H: TaskHand> GripRun<'_, H> {
             }
         }
         self.sent = self.start.clock.now();
-        self.told.tell(&setpoints, self.sent);
+        self.setpoints.sent(&setpoints, self.sent);
         let set = self.hand.set(self.start.lease, &setpoints);
         set.is_err().then_some(GripEnd::Broken(PlayEnd::TakenOver))
     }
 }
 
-/// What the joints were told by this grip, against what is read back of it. Pure; what follows from it is the grip's.
+/// The setpoints of this grip, against what is read back of them: by the rule that the session itself judges by.
 #[derive(Debug, Default)]
-struct ToldSetpoints {
+struct SentSetpoints {
     at: Option<Moment>,
-    angles: ToldValues,
-    speeds: ToldValues,
+    others: OtherController,
+    /// Angles and speeds were read back since the last of them were sent.
+    is_read: [bool; 2],
 }
 
-/// One group of setpoints.
-#[derive(Debug, Default)]
-struct ToldValues {
-    told: PerDof<Option<i16>>,
-    /// The joint was seen to take what it was told as it is.
-    is_taken: PerDof<bool>,
-    /// It was read back since the joints were told something last.
-    is_seen: bool,
-    /// Readings in a row with a value that was not told.
-    strange: u8,
-}
-
-impl ToldSetpoints {
-    fn tell(&mut self, setpoints: &Setpoints, now: Moment) {
-        self.at = Some(now);
-        self.angles
-            .tell(&setpoints.angle.map(|to| to.map(Target::raw)));
-        self.speeds
-            .tell(&setpoints.speed.map(|speed| speed.map(Speed::get)));
+impl SentSetpoints {
+    fn sent(&mut self, setpoints: &Setpoints, now: Moment) {
+        for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
+            self.others.wrote(&write, now);
+        }
+        (self.at, self.is_read) = (Some(now), [false; 2]);
     }
 
     fn read(&mut self, sample: &HandSample, fresh: Groups) {
-        let Some(at) = self.at.map(|at| at.plus(ACTS_WITHIN)) else {
+        self.others.read(sample, fresh);
+        let Some(acted) = self.at.map(|at| at.plus(ACTS_WITHIN)) else {
             return;
         };
-        let angles = sample
-            .angle_set
-            .filter(|set| fresh.contains(Group::AngleSet) && set.asked >= at);
-        if let Some(set) = angles {
-            self.angles.read(&set.value.map(|to| to.map(Target::raw)));
+        let angles = sample.angle_set.map(|set| set.asked);
+        let speeds = sample.speed_set.map(|set| set.asked);
+        let groups = [(Group::AngleSet, angles), (Group::SpeedSet, speeds)];
+        for (is_read, (group, asked)) in self.is_read.iter_mut().zip(groups) {
+            *is_read |= fresh.contains(group) && asked.is_some_and(|asked| asked >= acted);
         }
-        let speeds = sample
-            .speed_set
-            .filter(|set| fresh.contains(Group::SpeedSet) && set.asked >= at);
-        if let Some(set) = speeds {
-            self.speeds
-                .read(&set.value.map(|speed| speed.map(Speed::get)));
-        }
-    }
-
-    fn groups(&self) -> [&ToldValues; 2] {
-        [&self.angles, &self.speeds]
     }
 
     /// Both groups were read since the joints were told something, with nothing strange.
     fn is_seen(&self) -> bool {
-        self.groups()
-            .iter()
-            .all(|own| own.is_seen && own.strange == 0)
-    }
-
-    /// One reading showed what was not told: the next one says whether that is true.
-    fn is_doubted(&self) -> bool {
-        self.groups().iter().any(|own| own.strange > 0)
-    }
-
-    fn is_foreign(&self) -> bool {
-        self.groups().iter().any(|own| own.strange >= STRANGE)
-    }
-}
-
-impl ToldValues {
-    fn tell(&mut self, newer: &PerDof<Option<i16>>) {
-        self.told = PerDof::from_fn(|dof| newer[dof].or(self.told[dof]));
-        (self.is_seen, self.strange) = (false, 0);
-    }
-
-    fn read(&mut self, values: &PerDof<Option<i16>>) {
-        let is_told = PerDof::from_fn(|dof| {
-            let both = values[dof].zip(self.told[dof]);
-            // As much as it may round speeds.
-            let rounds_by = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
-            both.is_none_or(|(value, told)| value.abs_diff(told) <= rounds_by)
-        });
-        let is_strange = |dof: Dof| self.is_taken[dof] && !is_told[dof];
-        self.strange = match Dof::ALL.into_iter().any(is_strange) {
-            true => self.strange.saturating_add(1),
-            false => 0,
-        };
-        self.is_seen = true;
-        self.is_taken = PerDof::from_fn(|dof| self.is_taken[dof] || is_told[dof]);
+        self.is_read == [true; 2] && !self.others.is_doubted()
     }
 }
 

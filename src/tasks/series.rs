@@ -1,11 +1,11 @@
 //! A series of grasp trials on a hand that the user armed: readings in, setpoints out, every reading judged as it comes, and
 //! every stop looked after until feedback shows rest. Decides nothing about trials.
 
-use crate::hand::{HandSample, PerDof, Speed};
+use crate::hand::{HandSample, Moment, PerDof, Speed};
 use crate::link::{Clock, Lease, LinkStatus, PollRates, Stop};
 use crate::record::Record;
 use crate::tasks::hand::TaskHand;
-use crate::trials::limits::{Abort, LinkView};
+use crate::trials::limits::{Abort, LinkView, Stall};
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::{SearchProgress, SettingsSearch};
 use crate::trials::series::{Series, SeriesOrder, SeriesView, TrialSeries};
@@ -22,6 +22,9 @@ pub const RATES: PollRates = PollRates {
 };
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(5);
+/// A series that has not run for so long was kept from it: its loop runs at least once in a [`TICK`].
+const STALL: Duration = Duration::from_millis(50);
+
 /// What is told on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesStep {
@@ -92,18 +95,22 @@ pub async fn run<H: TaskHand, S: Series>(
     hand.read_at(RATES);
     let mut ended = pin!(ended);
     let mut stop = None;
+    let mut turns = Turns::from(clock.now());
     while !series.is_over() {
         let mut order = None;
         tokio::select! {
             biased;
             why = &mut ended => order = series.end(why, clock.now()),
             record = timeout(TICK, records.next()) => {
+                if let Some(stall) = turns.turn(clock.now()) {
+                    series.stalled(stall);
+                }
                 if let Ok(Some(Record::Reading { sample: newest, fresh })) = record {
                     sample = *newest;
                     series.take(&sample, fresh);
                 }
                 let LinkStatus { state, armed, disarmed, foreign_setpoint, .. } = hand.status();
-                let link = LinkView { state, armed, disarmed, foreign_setpoint };
+                let link = LinkView { state, armed, disarmed, foreign_setpoint, stall: turns.stall };
                 order = order.or(series.tick(&sample, link, clock.now()));
             }
         }
@@ -128,6 +135,30 @@ pub async fn run<H: TaskHand, S: Series>(
     }
     let aborted = series.aborted();
     (series, SeriesReport { aborted, stop })
+}
+
+/// The turns of the loop of a series: what lies between two that are far apart.
+struct Turns {
+    last: Moment,
+    stall: Option<Stall>,
+}
+
+impl Turns {
+    const fn from(now: Moment) -> Self {
+        Self {
+            last: now,
+            stall: None,
+        }
+    }
+
+    /// One more turn; the stall before it, if there was one.
+    fn turn(&mut self, now: Moment) -> Option<Stall> {
+        let lasted = now.since(self.last);
+        self.last = now;
+        let stall = (lasted > STALL).then_some(Stall { lasted, ended: now });
+        self.stall = stall.or(self.stall);
+        stall
+    }
 }
 
 /// Tells what is new: trials that are over, and where the series stands. False if something could not be kept.
@@ -179,5 +210,26 @@ pub fn arm_limits(plan: &TrialPlan) -> crate::link::ArmRequest {
     crate::link::ArmRequest {
         speed: PerDof::splat(Speed::GENTLE),
         force: PerDof::splat(force),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_that_comes_late_is_a_stall_of_this_program() {
+        let at = |ms: u64| Moment::from_micros(1000 * ms);
+        let mut turns = Turns::from(at(1000));
+        for ms in (1005..1100).step_by(5) {
+            assert_eq!(turns.turn(at(ms)), None);
+        }
+        let stall = Stall {
+            lasted: Duration::from_millis(405),
+            ended: at(1500),
+        };
+        assert_eq!(turns.turn(at(1500)), Some(stall));
+        assert_eq!(turns.turn(at(1505)), None);
+        assert_eq!(turns.stall, Some(stall), "it is known until the next");
     }
 }

@@ -84,7 +84,7 @@ pub struct Score {
 /// The settings that were tried, in the order of first trial; looking for the contact does not count.
 pub fn scores<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> Vec<Score> {
     let mut by_setting: Vec<(TrialSetting, Vec<&TrialSummary>)> = Vec::new();
-    for trial in trials.into_iter().filter(|trial| !trial.is_probe()) {
+    for trial in trials.into_iter().filter(|trial| trial.counts()) {
         match by_setting.iter_mut().find(|(own, _)| *own == trial.setting) {
             Some((_, all)) => all.push(trial),
             None => by_setting.push((trial.setting, vec![trial])),
@@ -175,6 +175,8 @@ mod tests {
             samples: None,
             rows: 0,
             rows_lost: 0,
+            repeated: false,
+            stall_s: None,
             joints: vec![joint],
             others: toml::Table::new(),
         }

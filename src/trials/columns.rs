@@ -119,9 +119,14 @@ impl TrialColumn {
         }
     }
 
-    /// The value with its digits, or "-".
+    /// The value with its digits, or "-"; with a "+" behind a peak that may have been higher than any reading.
     pub fn text(&self, joint: &JointMetrics) -> String {
-        number((self.value)(joint), self.decimals)
+        let text = number((self.value)(joint), self.decimals);
+        let is_of_peak = matches!(self.metric, Metric::Peak | Metric::Overshoot);
+        if is_of_peak && joint.peak_doubt.is_some() {
+            return format!("{text}+");
+        }
+        text
     }
 }
 

@@ -10,6 +10,8 @@ use std::time::Duration;
 pub const BLIND_AFTER: Duration = Duration::from_millis(600);
 /// On a slow line faults take turns with the fingertips while something moves.
 pub const FAULT_BLIND_AFTER: Duration = Duration::from_secs(2);
+/// After a time in which this program did not run, readings are awaited for so long.
+const CATCH_UP: Duration = Duration::from_millis(150);
 /// Temperatures are read more seldom.
 pub const HEAT_BLIND_AFTER: Duration = Duration::from_secs(3);
 
@@ -19,9 +21,15 @@ pub enum Abort {
     /// The user ended it.
     #[error("ended by a person")]
     Person,
-    /// Stop, disarming, or another arming.
-    #[error("the hand is no longer armed")]
-    Disarmed,
+    /// Stop, disarming, old feedback.
+    #[error("the hand is no longer armed{}", why.map(|why| format!(": {why}")).unwrap_or_default())]
+    Disarmed {
+        /// As the link has it.
+        why: Option<Disarmed>,
+    },
+    /// Another arming is not the one that the user gave for this.
+    #[error("the hand was armed anew")]
+    ArmedAnew,
     /// Another controller talks to the hand.
     #[error("another controller {}", wrote.map_or_else(|| "talks to the hand".into(), |wrote| format!("wrote {wrote}")))]
     OtherController {
@@ -71,8 +79,14 @@ pub enum Abort {
         dof: Dof,
     },
     /// Readings of all joints that the limits depend on are missing or old.
-    #[error("the {what} readings cannot be watched: they are not known yet, or old")]
-    NotRead { what: &'static str },
+    #[error("the {what} readings cannot be watched: {}", not_read(*age, *stall))]
+    NotRead {
+        what: &'static str,
+        /// How old the last is; `None` if none came.
+        age: Option<Duration>,
+        /// How long this program did not run meanwhile, if that is why.
+        stall: Option<Duration>,
+    },
     /// A reading that the limits depend on makes no sense.
     #[error("the {what} of {} cannot be watched: it makes no sense", dof.name())]
     Blind {
@@ -111,6 +125,40 @@ pub enum Abort {
     },
 }
 
+/// Why readings are old, in words.
+fn not_read(age: Option<Duration>, stall: Option<Duration>) -> String {
+    match (age, stall) {
+        (None, _) => "none came yet".into(),
+        (Some(age), None) => format!(
+            "the last is {:.1} s old, and no newer one comes from the hand",
+            age.as_secs_f64()
+        ),
+        (Some(age), Some(stall)) => format!(
+            "the last is {:.1} s old, because this computer was busy: the program did not run for {:.1} s",
+            age.as_secs_f64(),
+            stall.as_secs_f64()
+        ),
+    }
+}
+
+/// A time in which this program did not run: the computer was busy with something else, or its output was not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stall {
+    pub lasted: Duration,
+    pub ended: Moment,
+}
+
+impl Stall {
+    /// How much older readings may be so soon after it: what the hand sent meanwhile is still to be read.
+    fn excuses(self, now: Moment) -> Duration {
+        if now.since(self.ended) <= CATCH_UP {
+            self.lasted
+        } else {
+            Duration::ZERO
+        }
+    }
+}
+
 /// The link as a trial sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinkView {
@@ -122,18 +170,22 @@ pub struct LinkView {
     pub disarmed: Option<Disarmed>,
     /// What another controller was last seen to write.
     pub foreign_setpoint: Option<SetpointConflict>,
+    /// The last time in which this program did not run.
+    pub stall: Option<Stall>,
 }
 
 impl LinkView {
     /// Why this arming is over, if it is.
     pub(crate) fn arming_ended(&self, epoch: ArmEpoch) -> Option<Abort> {
-        let by_other = self.armed.is_none() && self.disarmed == Some(Disarmed::OtherController);
-        (self.armed != Some(epoch)).then_some(if by_other {
+        if self.armed.is_some() {
+            return (self.armed != Some(epoch)).then_some(Abort::ArmedAnew);
+        }
+        Some(if self.disarmed == Some(Disarmed::OtherController) {
             Abort::OtherController {
                 wrote: self.foreign_setpoint,
             }
         } else {
-            Abort::Disarmed
+            Abort::Disarmed { why: self.disarmed }
         })
     }
 }
@@ -155,7 +207,7 @@ pub fn reason(
     fault(seen.sample)
         .or(heated.flatten())
         .or_else(|| link.arming_ended(epoch))
-        .or_else(|| blind(seen))
+        .or_else(|| blind(seen, link.stall))
         .or_else(|| ceiling(seen, limits.ceiling_g))
         .or_else(|| heat(seen.sample, limits.stop_c))
 }
@@ -177,23 +229,40 @@ fn fault(sample: &HandSample) -> Option<Abort> {
     Some(Abort::Fault { dof, faults })
 }
 
-fn blind(seen: &Feedback<'_>) -> Option<Abort> {
-    fn old<T>(group: &Option<Timed<T>>, now: Moment, most: Duration) -> bool {
-        group.as_ref().is_none_or(|group| group.age(now) > most)
+/// The first group whose readings are missing or too old.
+fn not_watched(seen: &Feedback<'_>, stall: Option<Stall>) -> Option<Abort> {
+    fn age<T>(group: &Option<Timed<T>>, now: Moment) -> Option<Duration> {
+        group.as_ref().map(|group| group.age(now))
     }
     let Feedback { sample, now, .. } = *seen;
+    let excused = stall.map_or(Duration::ZERO, |stall| stall.excuses(now));
     let groups = [
-        ("angle", old(&sample.angle, now, BLIND_AFTER)),
-        ("force", old(&sample.force, now, BLIND_AFTER)),
-        ("fault", old(&sample.faults, now, FAULT_BLIND_AFTER)),
+        ("angle", age(&sample.angle, now), BLIND_AFTER),
+        ("force", age(&sample.force, now), BLIND_AFTER),
+        ("fault", age(&sample.faults, now), FAULT_BLIND_AFTER),
         (
             "temperature",
-            old(&sample.temperature, now, HEAT_BLIND_AFTER),
+            age(&sample.temperature, now),
+            HEAT_BLIND_AFTER,
         ),
     ];
-    if let Some((what, _)) = groups.into_iter().find(|(_, is_old)| *is_old) {
-        return Some(Abort::NotRead { what });
+    let mut groups = groups.into_iter();
+    let (what, age, _) =
+        groups.find(|(_, age, most)| age.is_none_or(|age| age > *most + excused))?;
+    // Only what was in the time since the last reading is its cause.
+    let stall = stall.filter(|stall| age.is_some_and(|age| now.since(stall.ended) < age));
+    Some(Abort::NotRead {
+        what,
+        age,
+        stall: stall.map(|stall| stall.lasted),
+    })
+}
+
+fn blind(seen: &Feedback<'_>, stall: Option<Stall>) -> Option<Abort> {
+    if let Some(why) = not_watched(seen, stall) {
+        return Some(why);
     }
+    let sample = seen.sample;
     let forces = sample.force?.value;
     let senseless = forces
         .iter()

@@ -2,7 +2,7 @@
 
 use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
 use crate::hand::{ArmEpoch, Setpoints};
-use crate::trials::limits::{Abort, LinkView, warmest};
+use crate::trials::limits::{Abort, LinkView, Stall, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
 use crate::trials::runner::{Runner, Stage};
@@ -15,6 +15,8 @@ use std::time::Duration;
 pub const COOLING_MAX: Duration = Duration::from_secs(900);
 /// Speed at which the contact is looked for.
 const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
+/// So often a trial is repeated whose readings stopped at its peak.
+const REPEATS_MAX: usize = 3;
 
 /// What moves a hand from its readings until it is over: a series of trials, a check-up.
 pub trait Series {
@@ -24,6 +26,8 @@ pub trait Series {
     fn aborted(&self) -> Option<Abort>;
     /// Ends it. Returns the stop that has to follow, if it ran.
     fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder>;
+    /// The program that runs it did not run for a while.
+    fn stalled(&mut self, _stall: Stall) {}
     /// Takes readings.
     fn take(&mut self, sample: &HandSample, fresh: Groups);
     /// Advances the time. Returns what to send now, if anything.
@@ -104,6 +108,10 @@ pub struct TrialSeries {
     phase: SeriesPhase,
     contact: PerDof<Option<Angle>>,
     number: usize,
+    /// The longest time in the running trial in which this program did not run.
+    stall: Option<Duration>,
+    /// Repeats of the last trial.
+    repeats: usize,
     done: VecDeque<Trial>,
     aborted: Option<Abort>,
 }
@@ -142,6 +150,8 @@ impl TrialSeries {
             epoch: begin.epoch,
             contact: PerDof::splat(None),
             number: 0,
+            stall: None,
+            repeats: 0,
             done: VecDeque::new(),
             aborted: None,
         }
@@ -204,6 +214,7 @@ impl TrialSeries {
             return None;
         };
         self.number += 1;
+        self.stall = None;
         let runner = Runner::new(&cell.plan, cell.setting, &self.contact, self.epoch);
         self.phase = SeriesPhase::Running(Box::new(runner), Box::new(cell));
         self.tick(sample, link, now)
@@ -248,8 +259,11 @@ impl TrialSeries {
 
     /// A trial ended normally.
     fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
-        let trial = self.close_trial()?;
+        let mut trial = self.close_trial()?;
+        let again = self.again(&trial.summary);
+        trial.summary.repeated = again;
         let missing = match &mut self.source {
+            TrialSource::Grid(_) if again => None,
             TrialSource::Grid(_) => self.learn_contact(&trial.summary),
             TrialSource::Search(search) => {
                 search.learn(&trial);
@@ -271,6 +285,26 @@ impl TrialSeries {
             SeriesPhase::Waiting { until }
         };
         None
+    }
+
+    /// Whether a trial is no evidence, as its readings stopped at its peak: of a grid it is tried again, and a search does so by
+    /// itself.
+    fn again(&mut self, trial: &TrialSummary) -> bool {
+        let has_gap = trial.has_gap();
+        let TrialSource::Grid(queue) = &mut self.source else {
+            return has_gap;
+        };
+        if !has_gap || self.repeats >= REPEATS_MAX {
+            self.repeats = 0;
+            return false;
+        }
+        self.repeats += 1;
+        self.total += 1;
+        queue.push_front(GridTrial {
+            repeat: trial.repeat,
+            setting: trial.setting,
+        });
+        true
     }
 
     /// Takes the contact angles of a probe; the reason to end if one is missing.
@@ -311,6 +345,8 @@ impl TrialSeries {
             samples: None,
             rows: recording.rows().len(),
             rows_lost: recording.lost(),
+            repeated: false,
+            stall_s: self.stall.map(|lasted| lasted.as_secs_f64()),
             joints: measure(&recording, &cell.plan, cell.setting),
             others: self.approach_of(&cell.plan),
         };
@@ -353,6 +389,10 @@ impl Series for TrialSeries {
             runner.abort(why, now);
         }
         Some(self.fail(why))
+    }
+
+    fn stalled(&mut self, stall: Stall) {
+        self.stall = self.stall.max(Some(stall.lasted));
     }
 
     fn take(&mut self, sample: &HandSample, fresh: Groups) {

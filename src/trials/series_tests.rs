@@ -5,8 +5,9 @@ use crate::hand::{
     PerDof, Speed, Status, Target, TemperatureReading, Timed,
 };
 use crate::hand::{ArmEpoch, Setpoints};
-use crate::record::LinkState;
-use crate::trials::limits::{Abort, LinkView};
+use crate::record::{Disarmed, LinkState};
+use crate::trials::best::scores;
+use crate::trials::limits::{Abort, LinkView, Stall};
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::series::{Series, SeriesOrder, TrialSeries};
@@ -29,6 +30,8 @@ struct Hand {
     /// The force was last read then.
     force_at: Option<Moment>,
     takes_limits: bool,
+    /// The force is not read.
+    hides_force: bool,
     /// How far before its target a closing joint comes to rest, as one with backlash does.
     rests_short: i16,
     /// Where something is in the way.
@@ -48,6 +51,7 @@ impl Hand {
             celsius: 31,
             force_at: None,
             takes_limits: true,
+            hides_force: false,
             rests_short: 0,
             blocked_at: -1,
             link: LinkView {
@@ -154,12 +158,18 @@ fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
         Group::Status,
         Group::Temperature,
     ]);
+    let without_force = Groups::from_iter([Group::Angle, Group::Status, Group::Temperature]);
     let mut series = TrialSeries::start(plan, EPOCH, hand.now).unwrap();
     let mut sent = Vec::new();
     for _ in 0..12_000 {
         hand.step();
         meanwhile(&mut hand);
         let sample = hand.sample();
+        let fresh = if hand.hides_force {
+            without_force
+        } else {
+            fresh
+        };
         series.take(&sample, fresh);
         if let Some(order) = series.tick(&sample, hand.link, hand.now) {
             sent.push((hand.now, order));
@@ -249,7 +259,9 @@ fn closing(hand: &Hand) -> bool {
 fn what_cannot_be_watched_ends_it() {
     let dof = Dof::Little;
     let what = "force";
-    check(Abort::NotRead { what }, plan(250, 2), |hand| {
+    let age = Some(Duration::from_millis(610));
+    let stall = None;
+    check(Abort::NotRead { what, age, stall }, plan(250, 2), |hand| {
         if closing(hand) && hand.force_at.is_none() {
             hand.force_at = Some(hand.now);
         }
@@ -268,26 +280,179 @@ fn what_cannot_be_watched_ends_it() {
 }
 
 #[test]
-fn a_lost_or_changed_arming_ends_it_and_so_does_a_lost_link() {
-    for link in [
-        LinkView {
-            state: LinkState::Holding,
-            armed: None,
-            ..LinkView::default()
-        },
-        LinkView {
-            state: LinkState::Armed,
-            armed: Some(ArmEpoch(4)),
-            ..LinkView::default()
-        },
+fn readings_are_awaited_after_a_stall_of_this_program_and_a_stall_is_named_as_the_cause() {
+    // Nothing is read for 0.8 s, because the program does not run; the hand is read on 0.1 s after it, or not at all.
+    let stalled = |is_read_again: bool| {
+        let mut begun = None;
+        run(plan(250, 2), move |hand| {
+            let now = hand.now;
+            if closing(hand) && begun.is_none() {
+                begun = Some(now);
+                hand.now = now.plus(Duration::from_millis(800));
+                hand.force_at = Some(now);
+                hand.link.stall = Some(Stall {
+                    lasted: Duration::from_millis(800),
+                    ended: hand.now,
+                });
+            }
+            let since = begun.map_or(Duration::ZERO, |begun| now.since(begun));
+            if is_read_again && since >= Duration::from_millis(900) {
+                hand.force_at = None;
+            }
+        })
+    };
+    assert_eq!(stalled(true).aborted, None);
+    let why = stalled(false).aborted.unwrap();
+    let Abort::NotRead { what, age, stall } = why else {
+        panic!("{why}");
+    };
+    assert_eq!((what, stall), ("force", Some(Duration::from_millis(800))));
+    assert!(age > Some(Duration::from_millis(940)), "{age:?}");
+    let words = why.to_string();
+    assert!(words.contains("this computer was busy"), "{words}");
+    assert!(words.contains("did not run for 0.8 s"), "{words}");
+}
+
+#[test]
+fn the_longest_stall_of_a_trial_is_kept_with_it() {
+    let mut hand = Hand::new();
+    let mut series = TrialSeries::start(plan(250, 2), EPOCH, hand.now).unwrap();
+    let mut stalls = vec![80, 300, 60];
+    while !series.is_over() {
+        hand.step();
+        if closing(&hand)
+            && series.view().number == 1
+            && let Some(ms) = stalls.pop()
+        {
+            series.stalled(Stall {
+                lasted: Duration::from_millis(ms),
+                ended: hand.now,
+            });
+        }
+        if let Some(SeriesOrder::Set(set)) = series.tick(&hand.sample(), hand.link, hand.now) {
+            hand.obey(&set);
+        }
+    }
+    let stalls = std::iter::from_fn(|| series.finished()).map(|trial| trial.summary.stall_s);
+    assert_eq!(stalls.collect::<Vec<_>>(), [Some(0.3), None]);
+}
+
+#[test]
+fn every_early_end_names_its_cause() {
+    let age = Some(Duration::from_millis(710));
+    for (why, words) in [
+        (
+            Abort::Disarmed {
+                why: Some(Disarmed::Stale),
+            },
+            "the hand is no longer armed: feedback grew old",
+        ),
+        (Abort::ArmedAnew, "the hand was armed anew"),
+        (
+            Abort::NotRead {
+                what: "angle",
+                age,
+                stall: None,
+            },
+            "the last is 0.7 s old, and no newer one comes from the hand",
+        ),
+        (
+            Abort::NotRead {
+                what: "angle",
+                age: None,
+                stall: None,
+            },
+            "none came yet",
+        ),
     ] {
-        check(Abort::Disarmed, plan(250, 2), |hand| {
+        let said = why.to_string();
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+/// Readings at the peak of the first so many trials are missing.
+fn with_gaps(plan: TrialPlan, gaps: usize) -> Ran {
+    let mut count = 0;
+    let mut was_closing = false;
+    run(plan, move |hand| {
+        let is_closing = hand.target[Dof::Index] == 200;
+        if is_closing && !was_closing {
+            count += 1;
+        }
+        was_closing = is_closing;
+        let at = hand.angle[Dof::Index];
+        hand.blocked_at = 400;
+        // 20 g for each count from 500 on.
+        hand.grams = -7 + 5 * (500 - at).max(0);
+        let is_gap = is_closing && count <= gaps && (401..480).contains(&at);
+        if !is_gap {
+            hand.force_at = None;
+        } else if hand.force_at.is_none() {
+            hand.force_at = Some(hand.now);
+        }
+        hand.hides_force = is_gap;
+    })
+}
+
+#[test]
+fn a_trial_without_readings_at_its_peak_is_repeated_and_does_not_count() {
+    let kinds = |ran: &Ran| -> Vec<(Option<usize>, bool)> {
+        let trials = ran.trials.iter().map(|trial| &trial.summary);
+        trials.map(|own| (own.repeat, own.repeated)).collect()
+    };
+    let whole = with_gaps(plan(250, 2), 0);
+    assert_eq!(kinds(&whole), [(Some(1), false), (Some(2), false)]);
+    let once = with_gaps(plan(250, 2), 1);
+    assert_eq!(
+        kinds(&once),
+        [(Some(1), true), (Some(1), false), (Some(2), false)]
+    );
+    let scores = scores(once.trials.iter().map(|trial| &trial.summary));
+    assert_eq!(scores[0].trials, 2);
+    // What is always so is not repeated for ever: it counts, and is marked.
+    let always = with_gaps(plan(250, 1), usize::MAX);
+    assert_eq!(
+        kinds(&always),
+        [
+            (Some(1), true),
+            (Some(1), true),
+            (Some(1), true),
+            (Some(1), false)
+        ]
+    );
+    assert!(always.trials[3].summary.has_gap());
+}
+
+#[test]
+fn a_lost_or_changed_arming_ends_it_and_so_does_a_lost_link() {
+    let stale = Some(Disarmed::Stale);
+    for (link, why) in [
+        (
+            LinkView {
+                state: LinkState::Holding,
+                armed: None,
+                disarmed: stale,
+                ..LinkView::default()
+            },
+            Abort::Disarmed { why: stale },
+        ),
+        (
+            LinkView {
+                state: LinkState::Armed,
+                armed: Some(ArmEpoch(4)),
+                disarmed: stale,
+                ..LinkView::default()
+            },
+            Abort::ArmedAnew,
+        ),
+    ] {
+        check(why, plan(250, 2), |hand| {
             if closing(hand) {
                 hand.link = link;
             }
         });
         // Also in the rest between two trials, where nothing moves.
-        check(Abort::Disarmed, plan(250, 2), |hand| {
+        check(why, plan(250, 2), |hand| {
             if hand.now > Moment::from_micros(9_000_000) {
                 hand.link = link;
             }

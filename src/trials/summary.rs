@@ -3,6 +3,7 @@
 
 use crate::trials::limits::Abort;
 use crate::trials::measure::metrics::JointMetrics;
+use crate::trials::measure::unseen::PeakDoubt;
 use crate::trials::plan::TrialSetting;
 use crate::trials::recording::TrialRecording;
 use serde::{Deserialize, Serialize};
@@ -68,6 +69,12 @@ pub struct TrialSummary {
     pub rows: usize,
     /// Rows that had no place.
     pub rows_lost: u64,
+    /// The readings stopped at a peak, so that it counts for nothing and was tried again.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub repeated: bool,
+    /// The longest time in it in which this program did not run, s.
+    #[serde(default)]
+    pub stall_s: Option<f64>,
     /// What was measured, joint by joint, in register order.
     #[serde(default, rename = "joint", skip_serializing_if = "Vec::is_empty")]
     pub joints: Vec<JointMetrics>,
@@ -77,9 +84,20 @@ pub struct TrialSummary {
 }
 
 impl TrialSummary {
-    /// Whether it counts for its setting: looking for the contact does not.
+    /// Whether it looks for the contact.
     pub fn is_probe(&self) -> bool {
         self.kind == TrialKind::Probe
+    }
+
+    /// Whether it counts for its setting: looking for the contact does not, nor what was tried again.
+    pub fn counts(&self) -> bool {
+        !self.is_probe() && !self.repeated
+    }
+
+    /// Whether the readings of a joint stopped at its peak.
+    pub fn has_gap(&self) -> bool {
+        let mut joints = self.joints.iter();
+        joints.any(|joint| joint.peak_doubt == Some(PeakDoubt::Gap))
     }
 
     /// Takes over how many rows a recording holds.

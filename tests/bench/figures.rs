@@ -14,6 +14,14 @@ mod gateway;
 mod grip;
 #[expect(
     clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::unwrap_used,
+    reason = "figures of a model, within what a hand reads"
+)]
+mod grip_model;
+#[expect(
+    clippy::cast_precision_loss,
     clippy::indexing_slicing,
     clippy::unwrap_used,
     reason = "counts of grasps in a square table by state; the simulated hand answers, or the bench has no meaning"

@@ -7,6 +7,17 @@ use handscope::hand::{Dof, Finger, Groups, HandSample, Moment, PerDof, PerFinger
 use handscope::sim::body_params::random;
 use handscope::sim::{Contact, Object, Pull, PullEnd, Scenario, SimConfig, SimHand};
 
+/// What happened to what was held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EventKind {
+    /// Nothing, or nothing that slides.
+    Calm,
+    /// The wrist turned.
+    WristTurn,
+    /// It slid, and was lost.
+    Slip,
+}
+
 /// Grasps of one body.
 const GRASPS: u64 = 20;
 /// When the fingers close, when something happens to the object, when they open, and the end, ms into a grasp.
@@ -39,15 +50,48 @@ pub(crate) struct GripTable {
     /// Grasps with a lasting hold in which nothing slid, and those in which slipping was told all the same.
     pub(crate) calm: u64,
     pub(crate) calm_slips: u64,
+    /// Fingers that held while the wrist turned, and those of which slipping was told.
+    pub(crate) turns: u64,
+    pub(crate) turn_slips: u64,
     pub(crate) count: u64,
 }
 
 impl GripTable {
-    /// Share of the readings in steady states that tell another state.
+    /// Share of the readings in steady states that tell another state. That nothing is known is no state.
     pub(crate) fn wrong(table: &[[u64; STATES]; STATES]) -> f64 {
         let all: u64 = table.iter().flatten().sum();
         let right: u64 = (0..STATES).map(|at| table[at][at]).sum();
-        (all - right) as f64 / all.max(1) as f64
+        let unknown = Self::unknown(table) * all as f64;
+        ((all - right) as f64 - unknown) / all.max(1) as f64
+    }
+
+    /// Share of the readings in steady states that tell that nothing is known.
+    pub(crate) fn unknown(table: &[[u64; STATES]; STATES]) -> f64 {
+        let all: u64 = table.iter().flatten().sum();
+        let rows = (0..STATES).filter(|at| *at != GripState::Unknown as usize);
+        let unknown: u64 = rows.map(|at| table[at][GripState::Unknown as usize]).sum();
+        unknown as f64 / all.max(1) as f64
+    }
+
+    /// One line with all of it.
+    pub(crate) fn line(&self) -> String {
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        format!(
+            "{} grasps; fingers wrong {}, unknown {}; grasps wrong {}, unknown {}; losses {} in time {}; slides {} told {}; calm {} slips {}; turns {} slips {}",
+            self.count,
+            percent(Self::wrong(&self.fingers)),
+            percent(Self::unknown(&self.fingers)),
+            percent(Self::wrong(&self.grasps)),
+            percent(Self::unknown(&self.grasps)),
+            self.losses.len(),
+            percent(self.losses_in_time()),
+            self.slides,
+            self.slides_told,
+            self.calm,
+            self.calm_slips,
+            self.turns,
+            self.turn_slips,
+        )
     }
 
     /// Share of the losses that were told within 150 ms.
@@ -266,8 +310,9 @@ struct FingerTruth {
     lost_at: Option<u64>,
 }
 
+/// What is true of a hand.
 #[derive(Debug, Default)]
-struct Truth {
+pub(crate) struct Truth {
     fingers: PerFinger<FingerTruth>,
     grasp: Option<GripState>,
     since: u64,
@@ -294,11 +339,20 @@ impl Truth {
                 slides,
                 opens,
             );
-            if truth.state != state {
-                truth.state = state;
-                truth.since = ms;
-            }
+            truth.set(state, ms);
         }
+        self.set_grasp(ms);
+    }
+
+    /// This is true of the fingers at this moment.
+    pub(crate) fn set(&mut self, fingers: &PerFinger<Option<GripState>>, ms: u64) {
+        for (finger, truth) in self.fingers.iter_mut() {
+            truth.set(fingers[finger], ms);
+        }
+        self.set_grasp(ms);
+    }
+
+    fn set_grasp(&mut self, ms: u64) {
         let grasp = self.of_grasp();
         if grasp != self.grasp {
             self.grasp = grasp;
@@ -323,6 +377,17 @@ impl Truth {
 }
 
 impl FingerTruth {
+    fn set(&mut self, state: Option<GripState>, ms: u64) {
+        if self.state != state {
+            self.state = state;
+            self.since = ms;
+        }
+        if state == Some(GripState::Lost) {
+            self.lost_at.get_or_insert(ms);
+        }
+        self.was_held |= state == Some(GripState::Holding);
+    }
+
     #[allow(clippy::too_many_arguments, reason = "one call")]
     fn now(
         &mut self,
@@ -372,15 +437,39 @@ impl FingerTruth {
 
 /// What was told in one grasp.
 #[derive(Debug, Default)]
-struct Seen {
+pub(crate) struct Seen {
     lost_at: PerFinger<Option<u64>>,
+    fingers_slipped: PerFinger<Option<u64>>,
     slipped_at: Option<u64>,
 }
 
 impl Seen {
-    fn take(&mut self, grip: &Grip, truth: &Truth, ms: u64, table: &mut GripTable) {
+    /// Takes what is told.
+    pub(crate) fn take(&mut self, grip: &Grip, truth: &Truth, ms: u64, table: &mut GripTable) {
+        self.take_fingers(grip, &truth.fingers, ms, table);
+        if grip.grasp.state == GripState::Slipping {
+            self.slipped_at.get_or_insert(ms);
+        }
+        count(
+            &mut table.grasps,
+            truth.grasp,
+            grip.grasp.state,
+            ms - truth.since,
+        );
+    }
+
+    fn take_fingers(
+        &mut self,
+        grip: &Grip,
+        truth: &PerFinger<FingerTruth>,
+        ms: u64,
+        table: &mut GripTable,
+    ) {
         for (finger, estimate) in grip.fingers.iter() {
-            let known = &truth.fingers[finger];
+            let known = &truth[finger];
+            if estimate.state == GripState::Slipping {
+                self.fingers_slipped[finger].get_or_insert(ms);
+            }
             let is_lost = estimate.state == GripState::Lost && known.lost_at.is_some();
             if is_lost {
                 self.lost_at[finger].get_or_insert(ms);
@@ -392,15 +481,35 @@ impl Seen {
                 ms - known.since,
             );
         }
-        if grip.grasp.state == GripState::Slipping {
-            self.slipped_at.get_or_insert(ms);
+    }
+
+    /// Counts each finger of a grasp in which this happened.
+    pub(crate) fn end_of_fingers(&self, truth: &Truth, event: EventKind, table: &mut GripTable) {
+        for (finger, known) in truth.fingers.iter().filter(|(_, known)| known.was_held) {
+            let slipped = self.fingers_slipped[finger];
+            let slips = u64::from(slipped.is_some());
+            if let Some(lost_at) = known.lost_at {
+                let told = self.lost_at[finger].map(|told| told - lost_at);
+                table.losses.push(told);
+            }
+            match event {
+                EventKind::Calm => {
+                    table.calm += 1;
+                    table.calm_slips += slips;
+                }
+                EventKind::WristTurn => {
+                    table.turns += 1;
+                    table.turn_slips += slips;
+                }
+                EventKind::Slip => {
+                    let before = slipped
+                        .zip(known.lost_at)
+                        .is_some_and(|(told, lost)| told < lost);
+                    table.slides += 1;
+                    table.slides_told += u64::from(before);
+                }
+            }
         }
-        count(
-            &mut table.grasps,
-            truth.grasp,
-            grip.grasp.state,
-            ms - truth.since,
-        );
     }
 
     fn end(&self, truth: &Truth, plan: &Plan, table: &mut GripTable) {

@@ -69,7 +69,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         "  how long one takes, median",
         median,
         "s",
-        Aim::AtMost(180.0),
+        Aim::AtMost(360.0),
     )?;
     let broken = (0..BODIES).filter(|seed| breaks(*seed, &goal)).map(|_| 1.0);
     report.row(

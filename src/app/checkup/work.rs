@@ -7,6 +7,7 @@ use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;
+use crate::checkup::free_file;
 use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan};
 use crate::hand::ArmEpoch;
@@ -26,6 +27,10 @@ pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupF
     let documents = env.documents.as_deref();
     CheckupFiles {
         hand: hand.clone(),
+        free_force: env
+            .settings_path
+            .as_ref()
+            .and_then(|settings| free_file::file_of(settings, hand)),
         kept: checks.and_then(|folder| CheckupFiles::kept_in(&folder, hand)),
         report: documents.map(|documents| {
             let now = since_1970();

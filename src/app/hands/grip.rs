@@ -1,7 +1,7 @@
 //! What a hand grips, as far as it is believed, and whether and how thumb and index can go to a gap.
 
 use crate::app::hands::hand::Hand;
-use crate::hand::gap::{self, Gap};
+use crate::hand::gap::{self, Gap, PinchGap};
 use crate::hand::grip::Grip;
 use crate::hand::{AngleReading, Dof, Moment, PerDof, Target};
 
@@ -11,8 +11,8 @@ pub fn grip_now(hand: &Hand, now: Moment) -> Grip {
     hand.readings.grip.known(is_believed, now)
 }
 
-/// Between the pads of thumb and index while they alone hold something, mm by the model.
-pub fn held_gap(hand: &Hand, now: Moment) -> Option<f32> {
+/// What is between the pads of thumb and index while they alone hold something, by the model.
+pub fn held_gap(hand: &Hand, now: Moment) -> Option<PinchGap> {
     let angle = hand.readings.sample.angle?;
     gap::held_gap(&grip_now(hand, now), &angle.value)
 }

@@ -8,6 +8,7 @@ use crate::app::hand::controls::{HeldOtherwise, JointChange};
 use crate::app::hand::open::Leaving;
 use crate::app::hand::status_news::StatusReport;
 use crate::app::hand::{Activity, Connection, Controls, HoldKey, RecordedMover, SequenceRun};
+use crate::app::hands::free_force::HandFreeForce;
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
@@ -67,6 +68,8 @@ pub struct Hand {
     pub series_asked: Option<(AskedSeries, Moment)>,
     /// What trials measured of it.
     pub overshoot: HandOvershoot,
+    /// What its joints read when they touch nothing.
+    pub(crate) free_force: HandFreeForce,
     /// The check-up that runs, and the last one.
     pub checkup: HandCheckup,
     /// The open procedure: change of id or address, reset, calibration.
@@ -206,6 +209,7 @@ impl Hand {
             procedures: before.procedures,
             measured: before.measured,
             overshoot: before.overshoot,
+            free_force: before.free_force,
             controls: if is_moved {
                 before.controls.at_next_connection()
             } else {

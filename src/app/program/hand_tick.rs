@@ -66,7 +66,9 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     hand.params.tick(of, ctx);
     start_asked(hand, shared, ctx);
     tick_series(hand, shared.trials, ctx);
-    hand.overshoot.tick(hand.connection.endpoint.as_ref(), ctx);
+    let endpoint = hand.connection.endpoint.as_ref();
+    hand.overshoot.tick(endpoint, ctx);
+    hand.free_force.tick(endpoint, &mut hand.readings.grip, ctx);
     tick_checkup(hand, ctx);
     tick_procedure(hand, shared.settings, ctx);
     if let Some(link) = hand.connection.link() {
@@ -193,6 +195,7 @@ fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     hand.checkup.tick();
     if let Some((epoch, told)) = hand.checkup.news() {
         told.into_iter().for_each(|told| ctx.tell(told));
+        hand.free_force.read_again();
         if hand.connection.status.armed == Some(epoch) {
             hand.disarm(ctx.now);
         }

@@ -53,10 +53,11 @@ pub(super) fn measure_block(state: &mut State, size_mm: f32) {
         ..
     } = state;
     let hand = hands.shown();
-    let (Some(gap_mm), Some(endpoint)) = (grip::held_gap(hand, *now), &hand.connection.endpoint)
+    let (Some(gap), Some(endpoint)) = (grip::held_gap(hand, *now), &hand.connection.endpoint)
     else {
         return;
     };
+    let gap_mm = gap.mm;
     let mut blocks = settings.size_blocks(Some(endpoint));
     match blocks.measure(Block { size_mm, gap_mm }) {
         Ok(()) => settings.keep_size_blocks(endpoint, blocks),

@@ -63,6 +63,8 @@ fn trial(number: usize, setting: TrialSetting, joints: &[Dof], recording: TrialR
         samples: None,
         rows: recording.rows().len(),
         rows_lost: 0,
+        repeated: false,
+        stall_s: None,
         joints: joints.iter().map(measured).collect(),
         others: toml::Table::new(),
     };

@@ -7,6 +7,7 @@ pub(crate) use args::CheckArgs;
 
 use crate::app::env::day_folder;
 use crate::app::files::settings_file;
+use crate::checkup::free_file;
 use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan, expected};
 use crate::cli::out::{Out, end};
@@ -82,6 +83,9 @@ fn files(args: &CheckArgs) -> anyhow::Result<CheckupFiles> {
     };
     Ok(CheckupFiles {
         hand: args.hand.clone(),
+        free_force: settings
+            .as_ref()
+            .and_then(|settings| free_file::file_of(settings, &args.hand)),
         kept: CheckupFiles::kept_in(&folder, &args.hand),
         report: args.out.clone(),
         recordings: args.recordings.clone().or_else(as_in_window),

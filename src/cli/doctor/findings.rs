@@ -1,7 +1,7 @@
 //! What is wrong with a hand or the connection to it, and what to do, in words.
 
 use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
-use crate::link::LinkStats;
+use crate::link::{LinkStats, priority};
 use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
 use crate::transport::{Endpoint, PortFacts, Route};
 use serde::Serialize;
@@ -25,6 +25,11 @@ const IMPLAUSIBLE_PER_MILLE: u64 = 10;
 const OTHER_MASTER: &str = "close the other program, or take the other master off the bus";
 /// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
+
+/// A stall of this computer that is longer costs a close its evidence.
+const STALL_HARMFUL: Duration = Duration::from_millis(50);
+/// So many short ones in a check say the same.
+const STALLS_MANY: u64 = 50;
 
 #[derive(Serialize)]
 pub(crate) struct Finding {
@@ -52,6 +57,27 @@ fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
     }
 }
 
+/// What this computer itself did not manage.
+fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
+    let stats = &measured.stats;
+    if stats.longest_stall < STALL_HARMFUL && stats.stalls < STALLS_MANY {
+        return;
+    }
+    let priority = if priority::is_raised() {
+        ""
+    } else {
+        "; the system grants this program no priority: 'ulimit -e 30' or LimitNICE=-10 in its unit would let it have some"
+    };
+    found.push(hint(
+        format!(
+            "this computer was too busy to attend to the hand {} times, {} ms at the longest",
+            stats.stalls,
+            stats.longest_stall.as_millis()
+        ),
+        format!("close what else runs while the hand moves{priority}"),
+    ));
+}
+
 /// All findings, the worst first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     let mut found = Vec::new();
@@ -59,7 +85,10 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     match &checkup.answer {
         // The sentence says itself what to do.
         Err(why) => found.push(wrong(why, "")),
-        Ok(measured) => answers(checkup, measured, &mut found),
+        Ok(measured) => {
+            answers(checkup, measured, &mut found);
+            stalls(measured, &mut found);
+        }
     }
     let measured = checkup.answer.as_ref().ok();
     match &checkup.connection {
@@ -125,6 +154,10 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
         reconnects,
         writes,
         dropped_events,
+        // Judged by themselves: they are this computer's.
+        stalls: _,
+        stalled: _,
+        longest_stall: _,
         // What goes well, and what is judged as a round trip.
         state_reads: _,
         tactile_reads: _,
@@ -402,7 +435,13 @@ mod tests {
     #[test]
     fn each_trouble_has_its_own_words_and_advice() {
         type Change = fn(&mut Measured);
-        let cases: [(ConnectionFacts, Change, bool, &str); 9] = [
+        let cases: [(ConnectionFacts, Change, bool, &str); 10] = [
+            (
+                ConnectionFacts::BuiltIn,
+                |measured| measured.stats.longest_stall = Duration::from_millis(90),
+                false,
+                "90 ms at the longest",
+            ),
             (usb(Some(16)), |_| (), true, "/ttyT0/latency_timer"),
             (
                 usb(None),
@@ -494,9 +533,13 @@ mod tests {
             reconnects: _,
             writes: _,
             dropped_events: _,
+            stalls: _,
+            stalled: _,
+            longest_stall: _,
             line: _,
         } = LinkStats::default();
-        let counts: [(Count, bool, &str); 11] = [
+        let counts: [(Count, bool, &str); 12] = [
+            (|stats| &mut stats.stalls, false, "too busy"),
             (|stats| &mut stats.timeouts, true, "without a reply"),
             (|stats| &mut stats.checksum_errors, true, "wrong checksum"),
             (|stats| &mut stats.resyncs, true, "no frame"),

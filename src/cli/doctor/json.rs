@@ -2,6 +2,8 @@
 
 use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
 use crate::cli::doctor::findings::Finding;
+use crate::cli::watch::telemetry::stalls_json;
+use crate::link::priority;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -83,6 +85,8 @@ fn errors_json(measured: &Measured) -> Value {
         "readings": stats.readings,
         "implausible": stats.implausible,
         "reconnects": stats.reconnects,
+        "stalls": stalls_json(stats),
+        "priority_raised": priority::is_raised(),
     })
 }
 

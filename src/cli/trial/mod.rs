@@ -30,7 +30,7 @@ pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     if let Some(why) = outcome.aborted_words() {
         bail!("{why}{}", stop_words(outcome.report.stop));
     }
-    if let Some(why) = outcome.dead_words() {
+    if let Some(why) = outcome.nothing_words() {
         bail!(why);
     }
     if let Some(criterion) = outcome.criterion.filter(|_| outcome.best.is_none()) {

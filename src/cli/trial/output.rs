@@ -6,6 +6,7 @@ use crate::link::Stop;
 use crate::tasks::series::SeriesReport;
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
+use crate::trials::measure::unseen::PeakDoubt;
 use crate::trials::{Criterion, JointMetrics, TrialPlan, TrialSetting, TrialSummary};
 use serde_json::{Value, json};
 
@@ -41,18 +42,26 @@ impl Outcome {
         self.report.aborted.map(|why| format!("ended early: {why}"))
     }
 
-    /// The joints of which nothing was measured because none of their trials moved them, if no joint at all moved.
-    pub(crate) fn dead_words(&self) -> Option<String> {
-        let joints = || self.trials.iter().flat_map(|trial| &trial.joints);
-        let are_dead = joints().next().is_some() && joints().all(|joint| joint.dead_drive);
-        let mut names: Vec<&str> = joints().map(|joint| joint.dof.name()).collect();
-        names.sort_unstable();
-        names.dedup();
-        are_dead.then(|| {
-            format!(
-                "nothing was measured: told to close, {} never moved; look at STATUS, ERROR and the supply, and move the joint from the window",
-                names.join(", ")
-            )
+    /// Why nothing was measured, if there is no trial of which anything is known.
+    pub(crate) fn nothing_words(&self) -> Option<String> {
+        let joints = self.trials.iter().flat_map(|trial| &trial.joints);
+        let empty = joints.map(|joint| Some((joint.dof, joint.dead_drive, joint.why_empty()?)));
+        let mut empty = empty.collect::<Option<Vec<_>>>()?;
+        empty.sort_unstable_by_key(|(dof, ..)| dof.index());
+        empty.dedup();
+        let advice = if empty.iter().any(|(_, is_dead, _)| *is_dead) {
+            "; look at STATUS, ERROR and the supply, and move the joint from the window"
+        } else {
+            ""
+        };
+        let why = empty.iter();
+        let why: Vec<String> = why
+            .map(|(dof, _, why)| format!("{}: {why}", dof.name()))
+            .collect();
+        Some(if why.is_empty() {
+            "nothing was measured: no trial got as far as its closing".into()
+        } else {
+            format!("nothing was measured of {}{advice}", why.join("; "))
         })
     }
 
@@ -131,9 +140,26 @@ pub(crate) fn trial_lines(trial: &TrialSummary, of: usize) -> Vec<String> {
         return vec![format!("{head} ended early: {why}")];
     }
     let joints = trial.joints.iter();
-    joints
-        .map(|joint| format!("{head} {}", joint_words(joint)))
-        .collect()
+    let joints = joints.map(|joint| format!("{head} {}", joint_words(joint)));
+    joints.chain(disturbed(trial)).collect()
+}
+
+/// What made a trial count for nothing, or kept this program from running in it.
+fn disturbed(trial: &TrialSummary) -> Option<String> {
+    let busy = trial.stall_s.map(|stall_s| {
+        format!("this computer was busy: the program did not run for {stall_s:.2} s")
+    });
+    let number = trial.number;
+    match (trial.repeated, busy) {
+        (false, None) => None,
+        (false, Some(busy)) => Some(format!("trial {number}: {busy}")),
+        (true, busy) => {
+            let why = busy.unwrap_or_else(|| "the hand sent none for a while".into());
+            Some(format!(
+                "trial {number} does not count and is repeated: the readings stopped at its peak; {why}"
+            ))
+        }
+    }
 }
 
 fn joint_words(joint: &JointMetrics) -> String {
@@ -147,5 +173,10 @@ fn joint_words(joint: &JointMetrics) -> String {
     } else {
         joint.end_status.as_deref().unwrap_or("-")
     };
-    format!("{} {}, {end}", joint.dof.name(), values.join(", "))
+    let doubt = match joint.peak_doubt {
+        None => "",
+        Some(PeakDoubt::Gap) => "; the readings stopped at the peak, which may have been higher",
+        Some(PeakDoubt::Brief) => "; the force fell at once, and may have been higher for a moment",
+    };
+    format!("{} {}, {end}{doubt}", joint.dof.name(), values.join(", "))
 }

@@ -6,7 +6,6 @@ use crate::hand::{Angle, Dof, PerDof};
 use crate::transport::Endpoint;
 use crate::trials::Limits;
 use crate::trials::search::SearchGoal;
-use crate::trials::search::tolerance::FREE_95;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -29,10 +28,10 @@ pub(crate) struct TuneArgs {
     /// Grams that each joint must still hold with, at most 80 % of the limit [default: 40 % of the limit]
     #[arg(long, value_name = "GRAMS")]
     pub(crate) hold: Option<i16>,
-    /// Closes that confirm the setting, 5 to 100 [default: 10; 59 with --distribution-free]
+    /// Closes that confirm the setting, 5 to 100: 59 hold however the peaks vary, fewer take them to vary normally [default: 59]
     #[arg(long, value_name = "N")]
     pub(crate) closes: Option<usize>,
-    /// Let the bound be the largest of the closes, whatever their distribution: 22 closes say 90 of 100, 59 say 95
+    /// Let the bound be the largest of fewer closes too, whatever their distribution: 22 closes say 90 of 100, 59 say 95
     #[arg(long)]
     pub(crate) distribution_free: bool,
     /// Angle where the joints start, 1000 is open
@@ -70,14 +69,9 @@ impl TuneArgs {
         for (dof, at) in self.pose.iter().filter(|(dof, _)| close[*dof].is_none()) {
             start[*dof] = Some(*at);
         }
-        let closes = if self.distribution_free {
-            FREE_95
-        } else {
-            usual.closes
-        };
         SearchGoal {
             hold_g: self.hold.unwrap_or(usual.hold_g),
-            closes: self.closes.unwrap_or(closes),
+            closes: self.closes.unwrap_or(usual.closes),
             distribution_free: self.distribution_free,
             start,
             close,

@@ -21,7 +21,7 @@ pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
         SettingsSearch::new(args.goal()).map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.arm {
         bail!(
-            "nothing was moved: this search closes {} on the hand at {} about twenty times; when nothing but the object is in the way, add --arm",
+            "nothing was moved: this search closes {} on the hand at {} about 65 times; when nothing but the object is in the way, add --arm",
             joints(&search.plan()),
             args.hand
         );

@@ -43,7 +43,9 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "peak_bound_g": claim.map(Claim::peak_bound_g),
         "confidence": claim.map(|claim| claim.assurance.confidence),
         "coverage": claim.map(|claim| claim.assurance.coverage),
-        "distribution_free": goal.distribution_free,
+        "distribution_free": claim.map_or(goal.distribution_free, |claim| claim.distribution_free),
+        "closes": claim.map(|claim| claim.closes),
+        "closes_here": claim.map(|claim| claim.here),
         "trials": report.tried.len(),
         "peaks_g": claim.map(peaks),
         "joints": claim.map(|claim| &claim.joints),
@@ -156,5 +158,5 @@ fn peaks(claim: &Claim) -> Vec<f64> {
             .filter_map(|joint| joint.peaks_g.get(nth));
         peaks.copied().fold(0.0, f64::max)
     };
-    (0..claim.closes).map(highest).collect()
+    (0..claim.here).map(highest).collect()
 }

@@ -65,7 +65,7 @@ impl<'a> Watch<'a> {
             args,
             out,
             clock,
-            grip: GripEstimator::default(),
+            grip: session::grip_estimator(&args.hand),
             taken: 0,
             last_text: None,
             answered: false,

@@ -83,8 +83,18 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
         "reconnects": stats.reconnects,
         "writes": stats.writes,
         "dropped_samples": stats.dropped_events,
+        "stalls": stalls_json(stats),
         "line": line_json(&stats.line),
     }})
+}
+
+/// Times that this program could not attend to the wire.
+pub(crate) fn stalls_json(stats: &LinkStats) -> Value {
+    json!({
+        "count": stats.stalls,
+        "total_ms": millis(Some(stats.stalled)),
+        "longest_ms": millis(Some(stats.longest_stall)),
+    })
 }
 
 fn line_json(line: &LineUse) -> Value {
@@ -335,6 +345,7 @@ mod tests {
             "checksum_errors",
             "resyncs",
             "reconnects",
+            "stalls",
             "line",
         ] {
             assert!(!json["stats"][key].is_null(), "{key}");

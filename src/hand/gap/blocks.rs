@@ -1,5 +1,6 @@
 //! Two blocks of known size correct what the model makes of the gap: size = scale x gap + offset.
 
+use crate::hand::gap::path::PinchGap;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -24,13 +25,15 @@ impl Block {
     pub const SIZES_MM: RangeInclusive<f32> = 1.0..=120.0;
 }
 
-/// A size, and what it rests on.
+/// The size of what is held, mm, and of which shape it is true.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldSize {
-    /// In mm.
-    pub mm: f32,
-    /// Whether two blocks were measured with this hand; otherwise it is by the model alone.
-    pub is_measured: bool,
+pub enum HeldSize {
+    /// Of an object like the two blocks that were measured with this hand.
+    Block(f32),
+    /// Diameter of a ball, by the model.
+    Ball(f32),
+    /// Of no shape: the pads are so far apart, by the model, and their edges may be what touches.
+    Pads(f32),
 }
 
 /// The blocks that were measured with one hand, two at most, the smaller first.
@@ -119,16 +122,17 @@ impl SizeBlocks {
         Ok(())
     }
 
-    /// The size of what is held at this gap, in mm; by the model alone until two blocks were measured. Never less than nothing.
-    pub fn size(&self, gap_mm: f32) -> HeldSize {
+    /// The size of what is held at this gap; by the model alone until two blocks were measured. Never less than nothing.
+    pub fn size(&self, gap: PinchGap) -> HeldSize {
         let correction = match self.0.as_slice() {
             [one, two] => Correction::of(*one, *two).ok(),
             _ => None,
         };
-        let mm = correction.map_or(gap_mm, |own| own.scale * gap_mm + own.offset_mm);
-        HeldSize {
-            mm: mm.max(0.0),
-            is_measured: correction.is_some(),
+        let block = correction.map(|own| own.scale * gap.mm + own.offset_mm);
+        match (block, gap.ball_mm) {
+            (Some(mm), _) => HeldSize::Block(mm.max(0.0)),
+            (None, Some(mm)) => HeldSize::Ball(mm),
+            (None, None) => HeldSize::Pads(gap.mm),
         }
     }
 }
@@ -152,6 +156,10 @@ mod tests {
         Block { size_mm, gap_mm }
     }
 
+    fn pads(mm: f32, ball_mm: Option<f32>) -> PinchGap {
+        PinchGap { mm, ball_mm }
+    }
+
     fn measured(blocks: &[Block]) -> SizeBlocks {
         let mut all = SizeBlocks::default();
         for block in blocks {
@@ -170,15 +178,16 @@ mod tests {
             (84.0, 70.0),
             (3.0, 0.0),
         ] {
-            let told = own.size(gap);
+            let told = own.size(pads(gap, None));
             assert!(
-                (told.mm - size).abs() < 0.01 && told.is_measured,
+                matches!(told, HeldSize::Block(mm) if (mm - size).abs() < 0.01),
                 "{told:?}"
             );
         }
         for few in [&[][..], &[block(10.0, 24.0)]] {
-            let model = measured(few).size(44.0);
-            assert_eq!((model.mm, model.is_measured), (44.0, false));
+            let own = measured(few);
+            assert_eq!(own.size(pads(44.0, Some(47.0))), HeldSize::Ball(47.0));
+            assert_eq!(own.size(pads(5.0, None)), HeldSize::Pads(5.0));
         }
     }
 

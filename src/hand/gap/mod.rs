@@ -8,5 +8,6 @@ mod path;
 pub use blocks::{Block, BlockError, HeldSize, SizeBlocks};
 pub use kind::{GripKind, NotOffered};
 pub use path::{
-    Gap, GapOutOfRange, PinchLeg, gap_on_path, held_gap, is_open_for_pinch, pad_distance,
+    Gap, GapOutOfRange, PinchGap, PinchLeg, gap_on_path, held_gap, is_open_for_pinch, pad_distance,
+    pinch_gap,
 };

@@ -3,8 +3,9 @@
 use crate::hand::dof::{Dof, Finger, PerDof};
 use crate::hand::feedback::reading::AngleReading;
 use crate::hand::grip::{Grip, GripState};
-use crate::hand::kinematics::{SegmentFrames, Side};
+use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::units::{Angle, Speed};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Index and thumb bend, in counts, at the corners of the path: where the pads meet, where the thumb is open, and where both
@@ -17,6 +18,23 @@ const ROTATED: Angle = Angle::MIN;
 const HALVINGS: u32 = 24;
 /// A joint that is farther from the path than this, in counts, does not pinch: the pads are not what touches.
 const ON_PATH_WITHIN: f32 = 80.0;
+
+/// Nearer than this the edges of the pads meet, mm.
+const EDGES_MEET_MM: f32 = 8.0;
+/// A ball that touches a pad farther from its middle than this touches its edge, mm: real pads are some 15 mm wide.
+const OFF_MIDDLE_MM: f32 = 5.0;
+/// The way that the thumb's pad lies in its last segment.
+const THUMB_PAD: Vec3 = Vec3::new(28.99, 17.30, 0.0);
+
+/// What the model makes of where thumb and index are, while their pads face each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PinchGap {
+    /// Between the middles of the pads, mm.
+    pub mm: f32,
+    /// Diameter of the ball that touches both pads nearest to their middles, mm. It is more than the gap, because the pads are tilted to
+    /// each other: 67 degrees at 16 mm, 17 at 71 mm. `None` where it would touch their edges.
+    pub ball_mm: Option<f32>,
+}
 
 /// A distance between the pads of thumb and index that the path has, in mm.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
@@ -184,8 +202,48 @@ pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     Gap::JOINTS.into_iter().all(is_near).then_some(gap)
 }
 
+/// What the model makes of a hand whose thumb and index are near the path; `None` where the pads do not face each other.
+///
+/// ```
+/// use handscope::hand::gap::{Gap, pinch_gap};
+///
+/// let angles = Gap::new(24.5)?.angles();
+/// let gap = pinch_gap(&angles.map(|angle| f32::from(angle.get()))).unwrap();
+/// assert!((gap.mm - 24.5).abs() < 0.2);
+/// assert!((gap.ball_mm.unwrap() - 28.0).abs() < 0.3);
+/// # Ok::<(), handscope::hand::gap::GapOutOfRange>(())
+/// ```
+pub fn pinch_gap(counts: &PerDof<f32>) -> Option<PinchGap> {
+    let mm = gap_on_path(counts)?;
+    let ball_mm = ball(&pads(counts)).filter(|_| mm >= EDGES_MEET_MM);
+    Some(PinchGap { mm, ball_mm })
+}
+
+/// The middle of a pad and where it looks.
+type Pad = (Vec3, Vec3);
+
+/// The pads of index and thumb.
+fn pads(counts: &PerDof<f32>) -> [Pad; 2] {
+    let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
+    let out = Vec3::new(-THUMB_PAD.y, THUMB_PAD.x, 0.0).normalize();
+    let index = frames.frame(Segment::Index2).matrix3 * Vec3::NEG_X;
+    let thumb = frames.frame(Segment::Thumb4).matrix3 * out;
+    [
+        (frames.tip(Finger::Index), index),
+        (frames.tip(Finger::Thumb), thumb),
+    ]
+}
+
+/// Diameter of the ball whose points of contact lie nearest to the middles of both pads.
+fn ball([(one, one_looks), (two, two_looks)]: &[Pad; 2]) -> Option<f32> {
+    let (apart, facing) = (two - one, one_looks - two_looks);
+    let radius = apart.dot(facing) / facing.length_squared();
+    let off_middle = (apart - facing * radius).length() / 2.0;
+    (off_middle <= OFF_MIDDLE_MM).then_some(2.0 * radius)
+}
+
 /// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.
-pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
+pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<PinchGap> {
     let holds = |state| {
         matches!(
             state,
@@ -196,7 +254,7 @@ pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<f32> {
         holds(estimate.state) == matches!(finger, Finger::Thumb | Finger::Index)
     });
     let counts = angles.map(|angle| angle.documented().map(f32::from));
-    gap_on_path(&counts.all()?).filter(|_| is_pinch)
+    pinch_gap(&counts.all()?).filter(|_| is_pinch)
 }
 
 /// Index and thumb bend so far along the path, in counts.
@@ -239,8 +297,8 @@ fn nearest_speed(speed: f32) -> Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand::kinematics::{RANGE, Segment};
-    use glam::{Mat3, Vec3};
+    use crate::hand::kinematics::RANGE;
+    use glam::Mat3;
 
     /// 100 poses of the model, reckoned apart from this code.
     const POSES: &str = include_str!("../../../tests/geometry/forward-kinematics.csv");
@@ -363,7 +421,7 @@ mod tests {
             held_gap(&grip, &angles)
         };
         let told = held(&[Finger::Index, Finger::Thumb]).unwrap();
-        assert!((told - 30.0).abs() < 0.2, "{told}");
+        assert!((told.mm - 30.0).abs() < 0.2, "{told:?}");
         assert_eq!(held(&[Finger::Index]), None);
         assert_eq!(held(&[Finger::Index, Finger::Thumb, Finger::Middle]), None);
         assert_eq!(held(&[]), None);
@@ -385,13 +443,54 @@ mod tests {
 
     /// Degrees between the line from pad to pad and where each pad looks: the index along its x, the thumb towards the palm.
     fn looks(counts: &PerDof<f32>) -> [f32; 2] {
-        let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
-        let line = frames.tip(Finger::Thumb) - frames.tip(Finger::Index);
-        let index = frames.frame(Segment::Index2).matrix3 * Vec3::NEG_X;
-        let along = Vec3::new(28.99, 17.30, 0.0).normalize();
-        let out = Vec3::new(-along.y, along.x, 0.0);
-        let thumb = frames.frame(Segment::Thumb4).matrix3 * out;
-        [index.angle_between(line), thumb.angle_between(-line)].map(f32::to_degrees)
+        let [(index, index_looks), (thumb, thumb_looks)] = pads(counts);
+        let line = thumb - index;
+        [
+            index_looks.angle_between(line),
+            thumb_looks.angle_between(-line),
+        ]
+        .map(f32::to_degrees)
+    }
+
+    #[test]
+    fn a_ball_between_the_pads_is_as_large_as_an_independent_reckoning_has_it() {
+        // Gap and ball, mm, by others' kinematics of the same public model.
+        for (gap, ball) in [
+            (8.2, 9.6),
+            (16.1, 19.0),
+            (24.5, 28.0),
+            (33.3, 36.7),
+            (42.4, 45.3),
+        ] {
+            let told = pinch_gap(&counts(Gap::nearest(gap))).unwrap();
+            let off = told.ball_mm.unwrap() - ball;
+            assert!(off.abs() < 0.3, "{told:?} {ball}");
+        }
+        for edges in [3.0, 5.0, 7.9, 120.0] {
+            let told = pinch_gap(&counts(Gap::nearest(edges)));
+            assert_eq!(told.and_then(|told| told.ball_mm), None, "{edges} mm");
+        }
+    }
+
+    #[test]
+    fn the_ball_touches_both_pads_near_their_middles() {
+        for gap in all_gaps() {
+            let pads = pads(&counts(gap));
+            let Some(told) = pinch_gap(&counts(gap)).and_then(|told| told.ball_mm) else {
+                continue;
+            };
+            let radius = told / 2.0;
+            let middle = pads.iter().map(|(at, looks)| at + looks * radius);
+            let middle = middle.sum::<Vec3>() / 2.0;
+            for (at, looks) in pads {
+                let depth = (middle - at).dot(looks);
+                let aside = (middle - at - looks * depth).length();
+                assert!(
+                    (depth - radius).abs() < 1.0 && aside < 6.0,
+                    "{gap:?}: {depth} {aside}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -4,7 +4,8 @@ use crate::hand::dof::PerFinger;
 use crate::hand::feedback::group::Groups;
 use crate::hand::feedback::sample::HandSample;
 use crate::hand::grip::evidence::{FingerEvidence, ReadingAt};
-use crate::hand::grip::finger::FingerEstimator;
+use crate::hand::grip::finger::{FingerEstimator, Scene};
+use crate::hand::grip::free::FreeForce;
 use crate::hand::grip::state::{Grip, GripEstimate, GripState};
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::moment::Moment;
@@ -24,6 +25,9 @@ pub struct GripEstimator {
     thresholds: GripThresholds,
     fingers: PerFinger<FingerEstimator>,
     grasp: GripEstimate,
+    free: FreeForce,
+    /// Closes that taught it something.
+    learned: u64,
 }
 
 impl Default for GripEstimator {
@@ -39,7 +43,32 @@ impl GripEstimator {
             thresholds,
             fingers: PerFinger::from_fn(|_| FingerEstimator::new(&thresholds)),
             grasp: GripEstimate::default(),
+            free: FreeForce::default(),
+            learned: 0,
         }
+    }
+
+    /// One that knows what this hand's joints read when they touch nothing.
+    pub fn knowing(free: FreeForce) -> Self {
+        Self {
+            free,
+            ..Self::default()
+        }
+    }
+
+    /// Knows from now on what this hand's joints read when they touch nothing.
+    pub const fn know(&mut self, free: FreeForce) {
+        self.free = free;
+    }
+
+    /// What it knows of that, with what it learnt since: each close that touches nothing teaches it.
+    pub const fn free_force(&self) -> &FreeForce {
+        &self.free
+    }
+
+    /// How many closes taught it something: what it knows is worth keeping again when this rises.
+    pub const fn learned(&self) -> u64 {
+        self.learned
     }
 
     /// What it judges by.
@@ -65,12 +94,24 @@ impl GripEstimator {
             fresh,
             fresh_for: self.thresholds.fresh_for(),
         };
+        let evidence = PerFinger::from_fn(|finger| FingerEvidence::of(sample, finger, reading));
+        let is_free = |own: &Option<FingerEvidence>| {
+            let own = own.as_ref();
+            own.is_some_and(|own| own.tip.is_some() && own.is_tip_free(&self.thresholds))
+        };
+        let scene = Scene {
+            at,
+            thresholds: &self.thresholds,
+            free: &self.free,
+            is_hand_free: evidence.as_array().iter().all(is_free),
+        };
         for (finger, estimator) in self.fingers.iter_mut() {
-            match FingerEvidence::of(sample, finger, reading) {
-                Some(evidence) => estimator.take(&evidence, at, &self.thresholds),
+            match &evidence[finger] {
+                Some(evidence) => estimator.take(evidence, scene),
                 None => estimator.forget(at, &self.thresholds),
             }
         }
+        self.learn();
         let fingers = PerFinger::from_fn(|finger| self.fingers[finger].estimate);
         let is_known = |finger: &GripEstimate| finger.state != GripState::Unknown;
         let known = fingers.as_array().iter().filter(|finger| is_known(finger));
@@ -79,6 +120,17 @@ impl GripEstimator {
         let asked = asked.or(self.grasp.asked);
         self.grasp.become_state(state, at, asked);
         self.grip()
+    }
+
+    /// Takes on what closes that touched nothing measured.
+    fn learn(&mut self) {
+        let mut is_news = false;
+        for (_, finger) in self.fingers.iter_mut() {
+            for (dof, close) in finger.learned.drain(..) {
+                is_news |= self.free.learn(dof, &close);
+            }
+        }
+        self.learned += u64::from(is_news);
     }
 
     /// The grip as of the newest reading.
@@ -181,9 +233,13 @@ mod tests {
                 ..HandSample::default()
             };
             let block = TactileBlock::decode(&[0; 58]).unwrap();
-            sample.tactile[Finger::Index] = self
-                .normal_n
-                .and_then(|normal_n| timed(TactileBlock { normal_n, ..block }, at));
+            for finger in Finger::ALL {
+                let pressed = self
+                    .normal_n
+                    .map(|n| if finger == Finger::Index { n } else { 0.0 });
+                sample.tactile[finger] =
+                    pressed.and_then(|normal_n| timed(TactileBlock { normal_n, ..block }, at));
+            }
             let fresh = crate::hand::Group::ALL.into_iter().collect();
             (sample, fresh)
         }
@@ -250,6 +306,13 @@ mod tests {
             Some(Duration::from_millis(600))
         );
         hand.normal_n = Some(0.0);
+        let told = hand.after(600);
+        assert_eq!(
+            told,
+            GripState::Unknown,
+            "force stopped it, from a zero that is not known"
+        );
+        hand.status = Status::PositionReached;
         assert_eq!(hand.after(600), GripState::Empty);
     }
 
@@ -267,6 +330,93 @@ mod tests {
         hand.estimator.judge_by(GripThresholds::default());
         hand.force_g = 231;
         assert_eq!(hand.after(100), GripState::Lost);
+    }
+
+    /// The index bends to 240 in the air, against a friction of so much there, and rests; the states that were told.
+    #[expect(clippy::cast_possible_truncation, reason = "at most 100 g")]
+    fn close_in_the_air(hand: &mut Reading, friction_g: i16) -> Vec<GripState> {
+        hand.status = Status::Grasping;
+        let mut told = Vec::new();
+        for angle in (240..1000).rev().step_by(10) {
+            hand.angle = angle;
+            let share = f32::from(1000 - angle) / 760.0;
+            hand.force_g = 230 + (share * f32::from(friction_g)) as i16;
+            told.push(hand.after(10));
+        }
+        hand.status = Status::PositionReached;
+        told.extend((0..100).map(|_| hand.after(10)));
+        told
+    }
+
+    fn open_again(hand: &mut Reading) {
+        hand.status = Status::Releasing;
+        (hand.angle, hand.force_g) = (600, 230);
+        hand.after(100);
+        (hand.angle, hand.status) = (1000, Status::PositionReached);
+        assert_eq!(hand.after(500), GripState::Open);
+    }
+
+    #[test]
+    fn friction_in_the_air_is_never_holding_and_is_learnt_by_the_close() {
+        let mut hand = Reading::new(Some(0.0));
+        assert_eq!(hand.after(200), GripState::Open);
+        let told = close_in_the_air(&mut hand, 87);
+        assert!(!told.contains(&GripState::Holding), "{told:?}");
+        let rests = told.last().copied().unwrap();
+        assert_eq!(rests, GripState::Unknown, "no close excuses itself");
+        open_again(&mut hand);
+        assert!(hand.estimator.learned() > 0);
+        let told = close_in_the_air(&mut hand, 87);
+        assert!(!told.contains(&GripState::Holding), "{told:?}");
+        assert_eq!(told.last(), Some(&GripState::Empty), "it knows it now");
+        hand.force_g = 900;
+        assert_eq!(hand.after(100), GripState::Holding, "by its side");
+        open_again(&mut hand);
+        // Another program begins with what this one learnt.
+        let free = *hand.estimator.free_force();
+        hand.estimator = GripEstimator::knowing(free);
+        assert_eq!(hand.after(200), GripState::Open);
+        let told = close_in_the_air(&mut hand, 87);
+        assert_eq!(told.last(), Some(&GripState::Empty));
+    }
+
+    #[test]
+    fn a_close_that_touched_something_teaches_nothing() {
+        let mut hand = Reading::new(Some(0.0));
+        assert_eq!(hand.after(200), GripState::Open);
+        close_in_the_air(&mut hand, 87);
+        hand.normal_n = Some(1.0);
+        assert_eq!(hand.after(100), GripState::Holding);
+        hand.normal_n = Some(0.0);
+        open_again(&mut hand);
+        assert_eq!(hand.estimator.learned(), 0);
+    }
+
+    #[test]
+    fn what_is_lost_is_told_however_far_the_zero_of_the_force_drifted_meanwhile() {
+        for drift_g in [-100, -45, 0, 25, 45, 60, 75, 100] {
+            let mut hand = Reading::new(Some(0.0));
+            assert_eq!(hand.after(200), GripState::Open);
+            (hand.angle, hand.status) = (400, Status::ForceReached);
+            (hand.normal_n, hand.force_g) = (Some(3.0), 530);
+            assert_eq!(hand.after(300), GripState::Holding);
+            hand.force_g += drift_g;
+            assert_eq!(hand.after(1000), GripState::Holding, "{drift_g}");
+            (hand.normal_n, hand.force_g) = (Some(0.0), 230 + drift_g);
+            assert_eq!(hand.after(100), GripState::Lost, "{drift_g}");
+            assert_eq!(hand.after(5000), GripState::Lost, "{drift_g}");
+        }
+    }
+
+    #[test]
+    fn a_fingertip_that_falls_silent_under_a_strong_grip_leaves_it_unknown() {
+        let mut hand = Reading::new(Some(0.0));
+        assert_eq!(hand.after(200), GripState::Open);
+        (hand.angle, hand.status) = (400, Status::ForceReached);
+        (hand.normal_n, hand.force_g) = (Some(6.0), 830);
+        assert_eq!(hand.after(300), GripState::Holding);
+        hand.normal_n = Some(0.0);
+        assert_eq!(hand.after(200), GripState::Unknown);
     }
 
     #[test]

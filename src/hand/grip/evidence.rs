@@ -6,7 +6,9 @@ use crate::hand::feedback::reading::CurrentReading;
 use crate::hand::feedback::sample::HandSample;
 use crate::hand::feedback::status::Status;
 use crate::hand::feedback::tactile::TactileBlock;
+use crate::hand::grip::contact::STILL_TOUCHES;
 use crate::hand::grip::slip::HeldMoment;
+use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::moment::{Moment, Timed};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -14,7 +16,7 @@ use std::time::Duration;
 /// Grams of a newton.
 const G_PER_N: f32 = 102.0;
 /// Joints of the thumb; the other fingers have one.
-const JOINTS_MAX: usize = 2;
+pub(super) const JOINTS_MAX: usize = 2;
 
 /// One joint of a finger.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +97,12 @@ impl FingerEvidence {
             angle_at: angle.received,
             asked: asked.into_iter().min().unwrap_or(angle.asked),
         })
+    }
+
+    /// Whether its fingertip touches nothing; true where it is not read.
+    pub(super) fn is_tip_free(&self, thresholds: &GripThresholds) -> bool {
+        let least = thresholds.contact_n * STILL_TOUCHES;
+        self.tip.is_none_or(|tip| tip.normal_n < least)
     }
 
     /// The joint that bends the finger.

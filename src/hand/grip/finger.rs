@@ -1,32 +1,56 @@
 //! The state of one finger, reading by reading.
 
-use crate::hand::dof::PerDof;
+use crate::hand::dof::{Dof, PerDof};
 use crate::hand::feedback::status::Status;
-use crate::hand::grip::evidence::{FingerEvidence, JointEvidence, TipEvidence};
+use crate::hand::grip::contact::{Contact, Felt};
+use crate::hand::grip::evidence::{FingerEvidence, JOINTS_MAX, JointEvidence, TipEvidence};
+use crate::hand::grip::free::{FreeClose, FreeForce};
 use crate::hand::grip::motion::JointMotion;
 use crate::hand::grip::slip::{HELD_N, SlipDetector};
 use crate::hand::grip::state::{GripEstimate, GripState};
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::moment::Moment;
+use arrayvec::ArrayVec;
+use std::time::Duration;
 
 /// Share of each newer force that the zero takes on while a finger is open and free.
 const ZERO_SHARE: f32 = 0.05;
 /// A finger that opened so far since its last contact let go by itself, units of angle.
 const LETS_GO: i16 = 8;
-/// Share of a contact threshold above which a finger that touched still does.
-const STILL_TOUCHES: f32 = 0.5;
 /// A slip is told for so long after it was last seen, s.
 const SLIP_TOLD_S: f64 = 0.15;
 /// A grip that was too hard is not any more below this share of the threshold.
 const SOFTER: f32 = 0.9;
+/// The force at the end of a free close counts for so long: later the sensor's zero drifts.
+const ARRIVED_FOR: Duration = Duration::from_millis(500);
 
 /// What a finger held, until it opens or touches something else.
 #[derive(Debug, Clone, Copy)]
 struct HeldAt {
     /// Angle of the finger when it was last in contact.
     angle: i16,
+    /// Its fingertip was in contact.
+    by_tip: bool,
     /// When contact was first missed.
     gone: Option<Moment>,
+}
+
+/// A close under way in which nothing was touched yet.
+#[derive(Debug, Clone, Default)]
+struct FreeWay {
+    joints: ArrayVec<(Dof, FreeClose), JOINTS_MAX>,
+    /// When it arrived at its target.
+    arrived: Option<Moment>,
+}
+
+/// What a finger is judged by besides its own evidence.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) at: Moment,
+    pub(super) thresholds: &'a GripThresholds,
+    pub(super) free: &'a FreeForce,
+    /// All fingertips are read, and none touches anything.
+    pub(super) is_hand_free: bool,
 }
 
 /// One finger, and what must be remembered of it.
@@ -37,6 +61,9 @@ pub(super) struct FingerEstimator {
     touches: bool,
     slip: SlipDetector,
     held: Option<HeldAt>,
+    way: Option<FreeWay>,
+    /// Free closes that are over, for the hand to take.
+    pub(super) learned: ArrayVec<(Dof, FreeClose), JOINTS_MAX>,
     pub(super) estimate: GripEstimate,
 }
 
@@ -48,6 +75,8 @@ impl FingerEstimator {
             touches: false,
             slip: SlipDetector::new(thresholds),
             held: None,
+            way: None,
+            learned: ArrayVec::new(),
             estimate: GripEstimate::default(),
         }
     }
@@ -63,73 +92,78 @@ impl FingerEstimator {
         self.touches = false;
         self.slip = SlipDetector::new(thresholds);
         self.held = None;
+        self.way = None;
         let asked = self.estimate.asked;
         self.estimate.become_state(GripState::Unknown, at, asked);
     }
 
     /// Takes what is known of the finger at this moment.
-    pub(super) fn take(
-        &mut self,
-        evidence: &FingerEvidence,
-        at: Moment,
-        thresholds: &GripThresholds,
-    ) {
+    pub(super) fn take(&mut self, evidence: &FingerEvidence, scene: Scene<'_>) {
         for joint in &evidence.joints {
             self.motion[joint.dof].take(evidence.angle_at, joint.angle);
         }
-        self.feel(evidence.tip, thresholds);
-        let Some(now) = self.look(evidence, at, thresholds) else {
-            self.forget(at, thresholds);
+        self.feel(evidence.tip, scene.thresholds);
+        let Some(now) = self.look(evidence, scene) else {
+            self.forget(scene.at, scene.thresholds);
             return;
         };
-        if !now.is_moving && now.is_open(thresholds) && self.is_free(evidence.tip, thresholds) {
+        let is_open = now.is_open(scene.thresholds);
+        if !now.is_moving && is_open && evidence.is_tip_free(scene.thresholds) {
             self.learn_zero(evidence);
         }
-        let state = self.state(&now, thresholds);
-        self.estimate.become_state(state, at, Some(evidence.asked));
+        self.watch_way(evidence, &now, scene);
+        let state = self.state(&now, scene.thresholds);
+        let asked = Some(evidence.asked);
+        self.estimate.become_state(state, scene.at, asked);
     }
 
-    fn look(
-        &mut self,
-        evidence: &FingerEvidence,
-        at: Moment,
-        thresholds: &GripThresholds,
-    ) -> Option<FingerNow> {
+    fn look(&mut self, evidence: &FingerEvidence, scene: Scene<'_>) -> Option<FingerNow> {
         let bend = evidence.bend()?;
         let joints = evidence.joints.iter();
+        let felt = self.felt(evidence, bend.status == Status::ForceReached, scene);
+        let contact = Contact::of(&felt, scene.thresholds);
+        self.touches = contact == Contact::Touching;
         let load_g = |joint: &JointEvidence| {
             f32::from(joint.force_g) - self.zero_g[joint.dof].unwrap_or_default()
         };
-        let is_zero_known = |joint: &JointEvidence| self.zero_g[joint.dof].is_some();
-        let felt_g = joints.clone().filter(|joint| is_zero_known(joint));
-        let felt_g = felt_g.map(load_g).reduce(f32::max);
-        let normal_n = evidence.tip.map(|tip| tip.normal_n);
-        let share = if self.touches { STILL_TOUCHES } else { 1.0 };
-        let reaches = |value: f32, least: f32| value >= least * share;
-        let by_force = felt_g.map(|g| reaches(g, f32::from(thresholds.contact_g)));
-        let by_tip = normal_n.map(|n| reaches(n, thresholds.contact_n));
-        let contact = match (by_tip, by_force) {
-            (None, None) => None,
-            (tip, force) => Some(tip.unwrap_or(false) || force.unwrap_or(false)),
-        };
-        self.touches = contact == Some(true);
         let tip_g = evidence.tip.map_or(0.0, |tip| tip.normal_g());
         let drives = |is: fn(Status) -> bool| joints.clone().any(|joint| is(joint.status));
         Some(FingerNow {
-            at,
+            at: scene.at,
             angle: bend.angle,
             is_moving: joints
                 .clone()
-                .any(|joint| self.motion[joint.dof].is_moving(at, joint.status)),
+                .any(|joint| self.motion[joint.dof].is_moving(scene.at, joint.status)),
             is_releasing: bend.status == Status::Releasing,
             is_stopped_by_force: bend.status == Status::ForceReached,
-            is_blocked: drives(Status::is_protective),
+            is_stopped: drives(|status| status.is_protective() || status == Status::ForceReached),
             is_overloaded: drives(|status| status == Status::CurrentProtection),
-            is_force_known: by_force.is_some(),
+            is_force_known: felt.over_g.is_some(),
             contact,
+            by_tip: felt.tip_n.is_some_and(|n| n >= scene.thresholds.contact_n),
             load_g: joints.clone().map(load_g).fold(tip_g, f32::max),
             current_ma: joints.clone().filter_map(|joint| joint.current_ma).max(),
         })
+    }
+
+    fn felt(&self, evidence: &FingerEvidence, is_stopped: bool, scene: Scene<'_>) -> Felt {
+        let over = |joint: &JointEvidence| {
+            let load_g = f32::from(joint.force_g) - self.zero_g[joint.dof]?;
+            let free = scene.free.at(joint.dof, joint.angle);
+            Some((load_g - free.unwrap_or_default(), free.is_some()))
+        };
+        let joints = evidence.joints.iter().filter_map(over);
+        let most = joints.reduce(|most, own| if own.0 > most.0 { own } else { most });
+        Felt {
+            tip_n: evidence.tip.map(|tip| tip.normal_n),
+            over_g: most.map(|(over_g, _)| over_g),
+            // Where it rests and touches nothing, no friction was met.
+            is_free_known: most.is_some_and(|(_, is_known)| is_known)
+                || self.estimate.state == GripState::Empty,
+            is_stopped_by_force: is_stopped,
+            touched: self.touches,
+            held_by_tip: self.held.map(|held| held.by_tip),
+        }
     }
 
     /// The slip detector begins anew with each contact.
@@ -144,10 +178,6 @@ impl FingerEstimator {
         }
     }
 
-    fn is_free(&self, tip: Option<TipEvidence>, thresholds: &GripThresholds) -> bool {
-        tip.is_none_or(|tip| tip.normal_n < thresholds.contact_n * STILL_TOUCHES)
-    }
-
     fn learn_zero(&mut self, evidence: &FingerEvidence) {
         for joint in &evidence.joints {
             let force = f32::from(joint.force_g);
@@ -156,28 +186,60 @@ impl FingerEstimator {
         }
     }
 
-    fn state(&mut self, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
-        let Some(touches) = now.contact else {
-            return if now.is_moving {
-                GripState::Moving
-            } else {
-                GripState::Unknown
-            };
+    /// Follows a close in which nothing is touched. What it measures counts once it is over: no close excuses itself.
+    fn watch_way(&mut self, evidence: &FingerEvidence, now: &FingerNow, scene: Scene<'_>) {
+        let is_open = now.is_open(scene.thresholds);
+        if now.is_releasing || is_open && !now.is_moving {
+            let arrived = self.way.take().filter(|way| way.arrived.is_some());
+            self.learned = arrived.map_or_else(ArrayVec::new, |way| way.joints);
+            self.way = (is_open && !now.is_moving).then(FreeWay::default);
+            return;
+        }
+        if !scene.is_hand_free || now.is_stopped {
+            self.way = None;
+        }
+        let Some(way) = &mut self.way else {
+            return;
         };
-        if touches {
-            return self.touching(now, thresholds);
+        if !now.is_moving {
+            way.arrived.get_or_insert(now.at);
         }
-        match self.held {
-            Some(held) if now.is_let_go(held.angle) => self.held = None,
-            Some(held) => return self.missing(held, now, thresholds),
-            None => {}
+        if way.arrived.is_some_and(|at| now.at.since(at) > ARRIVED_FOR) {
+            return;
         }
-        match now {
-            now if now.is_moving => GripState::Moving,
-            now if now.is_open(thresholds) => GripState::Open,
+        for joint in &evidence.joints {
+            let Some(zero_g) = self.zero_g[joint.dof] else {
+                continue;
+            };
+            if way.joints.iter().all(|(dof, _)| *dof != joint.dof) {
+                let _full = way.joints.try_push((joint.dof, FreeClose::default()));
+            }
+            let own = way.joints.iter_mut().find(|(dof, _)| *dof == joint.dof);
+            if let Some((_, close)) = own {
+                close.take(joint.angle, f32::from(joint.force_g) - zero_g);
+            }
+        }
+    }
+
+    fn state(&mut self, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
+        if self.held.is_some_and(|held| now.is_let_go(held.angle))
+            && now.contact != Contact::Touching
+        {
+            self.held = None;
+        }
+        match (now.contact, self.held) {
+            (Contact::Touching, _) => self.touching(now, thresholds),
+            (Contact::Nothing, Some(held)) => self.missing(held, now, thresholds),
+            (Contact::Nothing | Contact::Unclear | Contact::Unknown, _) if now.is_moving => {
+                GripState::Moving
+            }
+            (Contact::Unknown, _) => GripState::Unknown,
+            (Contact::Nothing | Contact::Unclear, _) if now.is_open(thresholds) => GripState::Open,
+            (Contact::Unclear, _) if self.is_too_hard(now, thresholds) => GripState::TooHard,
+            (Contact::Unclear, _) => GripState::Unknown,
             // Something stopped it, which the fingertip alone does not feel.
-            now if now.is_blocked && !now.is_force_known => GripState::Unknown,
-            _ => GripState::Empty,
+            (Contact::Nothing, None) if now.is_stopped && !now.is_force_known => GripState::Unknown,
+            (Contact::Nothing, None) => GripState::Empty,
         }
     }
 
@@ -193,6 +255,7 @@ impl FingerEstimator {
         if is_held && !now.is_releasing {
             self.held = Some(HeldAt {
                 angle: now.angle,
+                by_tip: now.by_tip || self.held.is_some_and(|held| held.by_tip),
                 gone: None,
             });
         }
@@ -237,13 +300,14 @@ struct FingerNow {
     is_moving: bool,
     is_releasing: bool,
     is_stopped_by_force: bool,
-    /// A drive stopped to protect itself.
-    is_blocked: bool,
+    /// A drive stopped at its force threshold, or to protect itself.
+    is_stopped: bool,
     is_overloaded: bool,
     /// The zero of its force sensors is known.
     is_force_known: bool,
-    /// `None` if no fingertip tells, and the zero of the force sensor was not learnt yet.
-    contact: Option<bool>,
+    contact: Contact,
+    /// Its fingertip touches.
+    by_tip: bool,
     /// The largest of fingertip and joints.
     load_g: f32,
     current_ma: Option<i16>,

@@ -1,13 +1,16 @@
 //! What is gripped: the state of each finger and of the grasp, from what the hand reads. No clock; each reading brings its moment.
 
+mod contact;
 mod estimator;
 mod evidence;
 mod finger;
+mod free;
 mod motion;
 pub mod slip;
 mod state;
 mod thresholds;
 
 pub use estimator::GripEstimator;
+pub use free::{FreeClose, FreeForce, NoFreeForce};
 pub use state::{Grip, GripEstimate, GripState};
 pub use thresholds::{GripThreshold, GripThresholds};

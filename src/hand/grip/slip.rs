@@ -1,4 +1,5 @@
-//! Slips of a held object: jumps of friction or of the tangential force's direction, reading by reading.
+//! Slips of a held object: friction that rises, at once or for seconds, reading by reading. A tangential force that only turns is the
+//! wrist's.
 
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::statistics::median;
@@ -12,8 +13,14 @@ const BEFORE_S: f64 = 0.5;
 pub const APART_S: f64 = 0.4;
 /// Values that are needed before a jump can be told.
 pub const BEFORE_LEAST: usize = 3;
-/// Moments that are kept: half a second of a sensor that is read 500 times a second.
-const KEPT_MAX: usize = 256;
+/// Friction creeps if its median is so much above that of half a second earlier. What it was before it began to is the reference then.
+const CREEPS: f64 = 0.02;
+/// Creeping is judged by the median of so many readings.
+const LEVEL_COUNT: usize = 5;
+/// Share of the rise that is enough where the tangential force turns as well.
+const TURNED_SHARE: f64 = 0.75;
+/// Moments that are kept: a second of a sensor that is read 500 times a second.
+const KEPT_MAX: usize = 512;
 
 /// One moment of holding.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,15 +44,19 @@ pub struct SlipJump {
     pub turn_deg: Option<f64>,
 }
 
-/// Finds slips on one fingertip. A jump counts if two readings in a row show it, so slips are seen one reading late.
+/// Finds slips on one fingertip. A rise counts if two readings in a row show it, so slips are seen one reading late.
 #[derive(Debug, Clone)]
 pub struct SlipDetector {
     ratio_jump: f64,
     turn_deg: f64,
     held: VecDeque<HeldMoment>,
+    /// The ratio before it began to creep.
+    crept_from: Option<f64>,
     pending: Option<SlipJump>,
     /// When it was last seen to slip.
     last: Option<f64>,
+    /// When the ratio was last seen to jump.
+    jumped: Option<f64>,
 }
 
 impl SlipDetector {
@@ -55,8 +66,10 @@ impl SlipDetector {
             ratio_jump: thresholds.slip_ratio,
             turn_deg: thresholds.slip_turn_deg,
             held: VecDeque::new(),
+            crept_from: None,
             pending: None,
             last: None,
+            jumped: None,
         }
     }
 
@@ -71,23 +84,28 @@ impl SlipDetector {
         self.last
     }
 
-    /// Takes the next moment of holding. Gives the first and the second of two jumps in a row.
+    /// Takes the next moment of holding. Gives the first and the second of two rises in a row.
     pub fn take(&mut self, now: HeldMoment) -> Option<(SlipJump, SlipJump)> {
         let jump = self.jump(&now);
         if self.held.len() >= KEPT_MAX {
             self.held.pop_front();
         }
         self.held.push_back(now);
+        let crept = self.crept(&now);
+        if jump.is_some() {
+            self.jumped = Some(now.t);
+        }
+        let rise = jump.or(crept);
         let first = self.pending.take();
-        self.pending = jump;
-        let both = first.zip(jump);
+        self.pending = rise;
+        let both = first.zip(rise);
         if both.is_some() {
             self.last = Some(now.t);
         }
         both
     }
 
-    /// How a moment differs from those before it. Moments of a slip that is going on are no measure.
+    /// How a moment differs from those just before it. Moments of a slip that is going on are no measure.
     fn jump(&self, now: &HeldMoment) -> Option<SlipJump> {
         let is_recent = |moment: &&HeldMoment| moment.t >= now.t - BEFORE_S;
         let is_calm = |moment: &&HeldMoment| {
@@ -95,20 +113,47 @@ impl SlipDetector {
                 .is_none_or(|last| moment.t < last - APART_S || moment.t > last)
         };
         let before: Vec<&HeldMoment> = self.held.iter().filter(is_recent).filter(is_calm).collect();
-        if before.len() < BEFORE_LEAST {
+        let rise = now.ratio - middle(&before)?;
+        (rise >= self.ratio_jump).then(|| SlipJump {
+            t: now.t,
+            ratio: rise,
+            turn_deg: turn(&before, now),
+        })
+    }
+
+    /// How far the ratio rose since it began to creep, if it still does.
+    fn crept(&mut self, now: &HeldMoment) -> Option<SlipJump> {
+        // What jumped is where it is now, whatever it was before.
+        let begins = self.jumped.unwrap_or(f64::NEG_INFINITY);
+        let is_newer = |moment: &&HeldMoment| moment.t > now.t - BEFORE_S;
+        let since = self.held.iter().filter(|moment| moment.t > begins);
+        let (newer, older): (Vec<_>, Vec<_>) = since.partition(is_newer);
+        let is_old = |moment: &&&HeldMoment| moment.t > now.t - 2.0 * BEFORE_S;
+        let older: Vec<&HeldMoment> = older.iter().filter(is_old).copied().collect();
+        let (newer_ratio, older_ratio) = (middle(&newer)?, middle(&older));
+        let creeps = older_ratio.is_some_and(|older| newer_ratio - older >= CREEPS);
+        if !creeps {
+            self.crept_from = older_ratio;
             return None;
         }
-        let ratios: Vec<f64> = before.iter().map(|moment| moment.ratio).collect();
-        let ratio = now.ratio - median(&ratios)?;
-        let turn_deg = turn(&before, now);
-        let is_slip =
-            ratio >= self.ratio_jump || turn_deg.is_some_and(|turn| turn >= self.turn_deg);
-        is_slip.then_some(SlipJump {
+        let from = *self.crept_from.get_or_insert(older_ratio?);
+        let level: Vec<&HeldMoment> = newer.iter().rev().take(LEVEL_COUNT).copied().collect();
+        let rise = middle(&level)? - from;
+        let turn_deg = turn(&older, now);
+        let turns = turn_deg.is_some_and(|turn| turn >= self.turn_deg);
+        let share = if turns { TURNED_SHARE } else { 1.0 };
+        (rise >= self.ratio_jump * share).then_some(SlipJump {
             t: now.t,
-            ratio,
+            ratio: rise,
             turn_deg,
         })
     }
+}
+
+/// The median ratio; `None` of too few moments.
+fn middle(moments: &[&HeldMoment]) -> Option<f64> {
+    let ratios: Vec<f64> = moments.iter().map(|moment| moment.ratio).collect();
+    median(&ratios).filter(|_| moments.len() >= BEFORE_LEAST)
 }
 
 /// Degrees between a direction and the middle of those before, the short way round.
@@ -121,4 +166,59 @@ fn turn(before: &[&HeldMoment], now: &HeldMoment) -> Option<f64> {
         .filter_map(|moment| Some(round(moment.direction? - first)))
         .collect();
     Some(round(direction - first - median(&away)?).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// When slips were seen, s, on a fingertip that is read 30 times a second.
+    fn slips(ratio: impl Fn(f64) -> f64, direction: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut detector = SlipDetector::new(&GripThresholds::default());
+        let moments = (0..180).map(|n| f64::from(n) / 30.0);
+        let seen = moments.filter(|t| {
+            let moment = HeldMoment {
+                t: *t,
+                ratio: ratio(*t),
+                direction: Some(direction(*t).rem_euclid(360.0)),
+            };
+            detector.take(moment).is_some()
+        });
+        seen.collect()
+    }
+
+    #[test]
+    fn a_rise_of_friction_is_seen_before_it_is_over_however_slow_it_is() {
+        for (rise, seconds) in [
+            (0.2, 0.15),
+            (0.4, 0.5),
+            (0.2, 0.7),
+            (0.2, 1.0),
+            (0.2, 1.5),
+            (0.5, 2.0),
+            (0.2, 3.0),
+        ] {
+            let ratio = |t: f64| 0.2 + rise * ((t - 2.0) / seconds).clamp(0.0, 1.0);
+            let seen = slips(ratio, |_| 10.0);
+            let first = seen.first().copied().unwrap_or(f64::INFINITY);
+            let in_time = (2.0..=2.0 + seconds).contains(&first);
+            assert!(in_time, "{rise} in {seconds} s: {seen:?}");
+            let last = seen.last().copied().unwrap_or_default();
+            assert!(last < 2.0 + seconds + 0.8, "it holds again: {seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_alone_a_bump_and_a_ratio_that_wanders_are_no_slip() {
+        for seconds in [0.2, 0.8, 2.0] {
+            let turns = |t: f64| 300.0 + 120.0 * ((t - 2.0) / seconds).clamp(0.0, 1.0);
+            assert_eq!(slips(|_| 0.3, turns), [0.0; 0], "a turn in {seconds} s");
+        }
+        let bump = |t: f64| if (2.0..2.15).contains(&t) { 0.2 } else { 0.3 };
+        assert_eq!(slips(bump, |_| 10.0), [0.0; 0]);
+        let wanders = |t: f64| 0.3 + 0.05 * (1.3 * t).sin();
+        assert_eq!(slips(wanders, |_| 10.0), [0.0; 0]);
+        let shakes = |t: f64| 0.3 + 0.055 * (17.0 * t).sin();
+        assert_eq!(slips(shakes, |_| 10.0), [0.0; 0]);
+    }
 }

@@ -16,9 +16,9 @@ pub struct GripThresholds {
     pub too_hard_g: u16,
     /// Current from which a drive with contact presses too hard, mA.
     pub too_hard_ma: u16,
-    /// Rise of tangential by normal force over that of the half second before that is a slip.
+    /// Rise of tangential by normal force that is a slip: over that of the half second before, or since it began to creep.
     pub slip_ratio: f64,
-    /// Turn of the tangential force that is a slip, degrees.
+    /// Turn of the tangential force with which less of a rise is a slip, degrees. A turn alone is none: the wrist turns, too.
     pub slip_turn_deg: f64,
     /// Contact is lost if it stays away for so long and the finger did not open, ms.
     pub lost_after_ms: u16,

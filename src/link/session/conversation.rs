@@ -21,6 +21,7 @@ use crate::link::session::motion::Motion;
 use crate::link::session::pending::PendingStop;
 use crate::link::session::rest::RestWatch;
 use crate::link::session::slowness::Slowness;
+use crate::link::session::stall::{STALL_MIN, StallMeter, watched};
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::heat::HeatWatch;
 use crate::link::session::watch::other_controller::OtherController;
@@ -77,6 +78,7 @@ pub(crate) struct Session {
     pub(crate) broken_off: Option<Box<dyn FnOnce() + Send + Sync>>,
     pub(crate) saving: SaveWatch,
     pub(crate) sleep: SleepWatch,
+    pub(crate) stalls: StallMeter,
     silent: u32,
     /// When the first of the unanswered requests in a row was asked.
     silent_since: Option<Moment>,
@@ -126,6 +128,7 @@ impl Session {
             leaves_line: false,
             broken_off: None,
             saving: SaveWatch::default(),
+            stalls: StallMeter::default(),
             silent: 0,
             silent_since: None,
             absence: Absence::default(),
@@ -239,7 +242,8 @@ impl Session {
     /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
     /// A stop that came while there was no live link is kept; nothing else is.
     fn begin(&mut self, bus: &dyn Bus) {
-        self.forget_wishes_but(|wanted| wanted.stop);
+        self.keep_pressed_stop();
+        self.forget_wishes();
         if self.sample != HandSample::default() {
             self.counters.stats.reconnects += 1;
         }
@@ -296,15 +300,8 @@ impl Session {
 
     /// Empties the slot of wishes, but not the wish to close and how often to read.
     pub(crate) fn forget_wishes(&self) {
-        self.forget_wishes_but(|_| false);
-    }
-
-    fn forget_wishes_but(&self, stop: fn(&PendingControl) -> bool) {
         self.ends.wanted.send_if_modified(|wanted| {
-            *wanted = PendingControl {
-                stop: stop(wanted),
-                ..wanted.lasting()
-            };
+            *wanted = wanted.lasting();
             false
         });
     }
@@ -348,7 +345,7 @@ impl Session {
         let Some(since) = self.silent_since else {
             return limit;
         };
-        let left = SILENCE_MAX.saturating_sub(self.now().since(since));
+        let left = SILENCE_MAX.saturating_sub(self.silent_for(since));
         limit.min(left.max(on_wire + least))
     }
 
@@ -407,24 +404,27 @@ impl Session {
             BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
-            let silent = self.silent;
             let said = self.absence.last();
-            return Err(WireEnd::Lost(
-                said.map_or(LinkTrouble::Silent { silent }, |exception| {
-                    self.gateway_alone(exception)
-                }),
-            ));
+            return Err(WireEnd::Lost(said.map_or_else(
+                || self.silence(),
+                |exception| self.gateway_alone(exception),
+            )));
         }
         if self.motion.hold.is_some() {
             return Ok(());
         }
         // A stop does not wait for the line to settle.
         let stop = stopped(Arc::clone(&self.ends.wanted));
-        tokio::select! {
-            biased;
-            () = stop => Ok(()),
-            settled = bus.quiet() => unless_lost(settled),
-        }
+        let settle = async {
+            tokio::select! {
+                biased;
+                () = stop => Ok(()),
+                settled = bus.quiet() => unless_lost(settled),
+            }
+        };
+        let (settled, late) = watched(settle).await;
+        self.stalled(late);
+        settled
     }
 
     /// A request was refused. Only the hand's own refusals are answers of the hand.
@@ -469,12 +469,51 @@ impl Session {
             _ => Duration::ZERO,
         };
         let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
-        self.silent += 1;
+        // A reply that nobody was there to read was not missing.
+        let stalled = self.stalls.since(asked);
+        if stalled.is_zero() || stalled * 2 < waited {
+            self.silent += 1;
+        }
         let since = *self.silent_since.get_or_insert(asked);
-        let one_more = now.since(since) + self.slowness.least_wait();
+        let one_more = self.silent_for(since) + self.slowness.least_wait();
         // Over a connection nothing is lost: there a reply is late, and tells how late it is.
         let are_many = self.silent >= SILENT_MAX && !self.has_numbers;
         are_many || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
+    }
+
+    /// How long the hand is silent since then: what this program stalled is not counted as the hand's silence.
+    fn silent_for(&self, since: Moment) -> Duration {
+        let passed = self.now().since(since);
+        passed.saturating_sub(self.stalls.since(since))
+    }
+
+    /// This program attended to the wire so much too late.
+    pub(crate) fn stalled(&mut self, late: Duration) {
+        let now = self.now();
+        let Some(stall) = self.stalls.late(late, now) else {
+            return;
+        };
+        let stats = &mut self.counters.stats;
+        stats.stalls += 1;
+        stats.stalled += stall.lasted;
+        stats.longest_stall = stats.longest_stall.max(stall.lasted);
+        self.status.stall = Some(stall);
+        self.publish();
+    }
+
+    /// A silence is not the hand's alone if this program stalled in it.
+    fn silence(&self) -> LinkTrouble {
+        let silent = self.silent;
+        let stalled = self
+            .silent_since
+            .map_or(Duration::ZERO, |since| self.stalls.since(since));
+        if stalled < STALL_MIN {
+            return LinkTrouble::Silent { silent };
+        }
+        LinkTrouble::Stalled {
+            silent,
+            stalled_ms: u32::try_from(stalled.as_millis()).unwrap_or(u32::MAX),
+        }
     }
 
     /// Goes to a state and tells the window.

@@ -27,6 +27,7 @@ pub(crate) struct HoldWatch {
     pub(crate) at: Moment,
     pub(crate) sent: u32,
     pub(crate) alarmed: bool,
+    /// When the frames began that go on now.
     follows_from: Moment,
     pose: PerDof<Target>,
     first_sent: Option<Moment>,
@@ -63,7 +64,6 @@ impl HoldWatch {
     /// A stop that was asked for at `at` over a link that was lost, of a hand that answers again now.
     pub(crate) const fn resumed(at: Moment, now: Moment) -> Self {
         Self {
-            alarmed: true,
             follows_from: now,
             ..Self::new(at, true)
         }
@@ -126,7 +126,7 @@ impl HoldWatch {
 
     /// True if the alarm is to be raised now.
     pub(crate) fn alarm_due(&self, now: Moment) -> bool {
-        !self.alarmed && now.since(self.at) >= HOLD_ALARM_AFTER
+        !self.alarmed && now.since(self.follows_from) >= HOLD_ALARM_AFTER
     }
 
     /// Applies a sample; true if it shows that all joints but those in doubt rest. Only angles that were asked for

@@ -15,4 +15,5 @@ pub(crate) mod rest;
 pub(crate) mod serve;
 pub(crate) mod settings;
 mod slowness;
+pub(crate) mod stall;
 pub(crate) mod watch;

@@ -170,15 +170,7 @@ impl Motion {
 
 fn round(setpoints: &Setpoints) -> ArrayVec<RegisterWrite, ROUND_MAX> {
     let mut round = ArrayVec::new();
-    let mut commands: ArrayVec<HandCommand, 3> = ArrayVec::new();
-    commands.push(HandCommand::Speeds(setpoints.speed));
-    commands.push(HandCommand::Forces(setpoints.force));
-    if setpoints.angle.iter().any(|(_, angle)| angle.is_some()) {
-        commands.push(HandCommand::Angles(
-            setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave)),
-        ));
-    }
-    for write in commands.iter().flat_map(HandCommand::writes) {
+    for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
         let _full = round.try_push(write);
     }
     round

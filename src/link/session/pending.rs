@@ -49,9 +49,11 @@ impl Session {
         let Some(stop) = self.pending_stop.take() else {
             return;
         };
-        self.status.hold = Hold::Alarm { at: stop.at };
+        let at = stop.at;
+        self.status.hold = Hold::Alarm { at };
         if is_in_time {
-            self.motion.hold = Some(HoldWatch::resumed(stop.at, self.now()));
+            self.motion.hold = Some(HoldWatch::resumed(at, self.now()));
+            self.status.hold = Hold::Asked { at, sent: 0 };
             self.go(LinkState::Holding);
         }
         self.publish();

@@ -6,6 +6,7 @@ use crate::link::bus::Bus;
 use crate::link::bus::client::Urgent;
 use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
+use crate::link::session::stall::watched;
 use crate::link::status::LinkTrouble;
 use crate::record::{Disarmed, LinkState, Record};
 use std::sync::Arc;
@@ -93,13 +94,15 @@ impl Session {
         };
         let limit = self.reply_limit(bus, span.len);
         let asked = self.now();
-        let result = bus.read_unless(span, limit, urgent).await;
+        let (result, late) = watched(bus.read_unless(span, limit, urgent)).await;
+        self.stalled(late);
         let received = self.now();
         let took = received.since(asked);
         match result {
             Ok(None) => Ok(()),
             Ok(Some(bytes)) => {
-                self.answered(took);
+                // What we stalled says nothing of how slow the hand is.
+                self.answered(took.saturating_sub(late));
                 self.watch_ticks(span.len, took);
                 self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;

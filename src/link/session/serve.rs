@@ -13,6 +13,7 @@ use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{ANGLE_FRESH, ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::stall::watched;
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
@@ -22,6 +23,8 @@ use tokio::time::{sleep_until, timeout};
 
 /// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
 const HOLDER_TIMEOUT: Duration = Duration::from_millis(250);
+/// So much of a stall of this program leaves a hand armed whose angles grow old by it: the hand goes on as it was told, and is read next.
+const STALL_FORGIVEN: Duration = Duration::from_secs(1);
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
 
@@ -153,6 +156,7 @@ impl Session {
         let is_armed = self.status.armed.is_some();
         let ends = self.ends.wanted.borrow().ends().filter(|_| is_armed);
         let due = ends.map_or(due, |end| end.min(due));
+        let due_at = due;
         let due = self.config.clock.instant(due);
         let mut wanted = self.ends.wanted.subscribe();
         let is_news =
@@ -163,6 +167,7 @@ impl Session {
             Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
             () = sleep_until(due) => {}
         }
+        self.stalled(self.now().since(due_at));
     }
 
     /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
@@ -313,12 +318,18 @@ impl Session {
         self.publish();
     }
 
+    /// How old the angles of an armed hand may be: what this program stalled since is not counted, up to a limit.
+    fn angle_lost(&self) -> Duration {
+        let asked = self.sample.angle.map_or(Moment::ZERO, |angle| angle.asked);
+        ANGLE_LOST + self.stalls.since(asked).min(STALL_FORGIVEN)
+    }
+
     /// An armed hand whose pose is not known any more is not armed.
     fn watch_age(&mut self) {
-        if self.status.armed.is_some() && !self.sample.angles_fresh(self.now(), ANGLE_LOST) {
+        let now = self.now();
+        if self.status.armed.is_some() && !self.sample.angles_fresh(now, self.angle_lost()) {
             self.disarm(Disarmed::Stale);
         }
-        let now = self.now();
         if self.status.armed.is_some() && self.ends.wanted.borrow().is_let_go(now) {
             self.begin_hold(Disarmed::Released);
         }
@@ -525,7 +536,8 @@ impl Session {
             cause,
             write: write.into(),
         });
-        let written = bus.write_unless(permitted, limit, urgent).await;
+        let (written, late) = watched(bus.write_unless(permitted, limit, urgent)).await;
+        self.stalled(late);
         let answered = self.now();
         let took = answered.since(asked);
         self.tell(Record::Answered {
@@ -539,7 +551,7 @@ impl Session {
         let span = write.span();
         self.ends.image.send_modify(|image| image.forget(span));
         written?;
-        self.answered(took);
+        self.answered(took.saturating_sub(late));
         Ok(())
     }
 
@@ -565,7 +577,9 @@ impl Session {
 
     /// Waits for the line; of all failures it can only be lost.
     pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
-        unless_lost(bus.turn().await)
+        let (turned, late) = watched(bus.turn()).await;
+        self.stalled(late);
+        unless_lost(turned)
     }
 }
 

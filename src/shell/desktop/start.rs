@@ -22,6 +22,7 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .thread_name("links")
+        .on_thread_start(crate::link::priority::raise)
         .enable_all()
         .build()
         .map_err(|error| DesktopError::Runtime {

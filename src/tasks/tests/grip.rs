@@ -2,6 +2,7 @@
 
 use crate::hand::feedback::tactile::TactileBlock;
 use crate::hand::gap::Gap;
+use crate::hand::grip::GripEstimator;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, HandSample, PerDof, Setpoints,
     Speed, Status, Target, Timed,
@@ -23,6 +24,8 @@ struct Bench {
     hand: FakeHand,
     /// What the hand holds of what it was told.
     holds: Cell<Option<Setpoints>>,
+    /// It keeps "no action" in ANGLE_SET as it was written, as the manual has it and some hands do.
+    keeps_leave: Cell<bool>,
     /// Another controller writes so to its little finger: an angle, and a speed.
     foreign: Cell<[Option<i16>; 2]>,
     end: Option<oneshot::Sender<()>>,
@@ -40,6 +43,7 @@ impl Bench {
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
+            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         let (end, ended) = oneshot::channel::<()>();
@@ -53,6 +57,7 @@ impl Bench {
         Self {
             hand,
             holds: Cell::new(None),
+            keeps_leave: Cell::new(false),
             foreign: Cell::new([None; 2]),
             end: Some(end),
             task,
@@ -118,7 +123,9 @@ impl Bench {
                 Asked::Move(setpoints) => Some(*setpoints),
                 _ => None,
             });
-        self.holds.set(moved.or(self.holds.get()));
+        let known = self.holds.get();
+        let told = moved.map(|moved| self.taken(&moved, known.as_ref()));
+        self.holds.set(told.or(known));
         let Some(holds) = self.holds.get() else {
             return;
         };
@@ -141,6 +148,17 @@ impl Bench {
             asked: now,
             received: now,
         });
+    }
+
+    /// What the hand holds once it was told this.
+    fn taken(&self, told: &Setpoints, known: Option<&Setpoints>) -> Setpoints {
+        let mut taken = known.copied().unwrap_or(*told);
+        for dof in Dof::ALL {
+            let leave = self.keeps_leave.get().then_some(Target::Leave);
+            taken.angle[dof] = told.angle[dof].or(leave).or(taken.angle[dof]);
+            taken.speed[dof] = told.speed[dof].or(taken.speed[dof]);
+        }
+        taken
     }
 
     fn moves(&self, yes: bool) {
@@ -197,7 +215,7 @@ async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
     bench.at(end, false, 3).await;
     let report = bench.task.await.unwrap();
     assert_eq!((report.end, report.stop), (GripEnd::Reached, None));
-    assert!((report.gap_mm.unwrap() - 30.0).abs() < 0.2);
+    assert!((report.gap.unwrap().mm - 30.0).abs() < 0.2);
     assert_eq!(bench.hand.asked(), [Asked::Disarm]);
 }
 
@@ -210,7 +228,7 @@ async fn what_thumb_and_index_hold_ends_it_with_its_size() {
     bench.at(angles(45.0), true, 3).await;
     let report = bench.task.await.unwrap();
     assert_eq!(report.end, GripEnd::Held);
-    assert!((report.gap_mm.unwrap() - 45.0).abs() < 0.2);
+    assert!((report.gap.unwrap().mm - 45.0).abs() < 0.2);
     let asked = bench.hand.asked();
     assert_eq!(asked.last(), Some(&Asked::Disarm));
     assert!(!asked.contains(&Asked::Stop), "it goes on holding");
@@ -228,7 +246,7 @@ async fn what_is_in_the_way_and_not_held_is_told_apart() {
     let bench = Bench::start();
     bench.at(PerDof::splat(400), false, 60).await;
     let report = bench.task.await.unwrap();
-    assert_eq!((report.end, report.gap_mm), (GripEnd::NotOpened, None));
+    assert_eq!((report.end, report.gap), (GripEnd::NotOpened, None));
     assert!(report.stop.is_some());
 }
 
@@ -318,14 +336,49 @@ async fn what_another_writes_to_any_joint_ends_it_even_where_the_next_part_would
 
 #[tokio::test(start_paused = true)]
 async fn one_wrong_reading_and_a_hand_that_rounds_end_nothing() {
-    let bench = Bench::opened().await;
+    let bench = Bench::start();
+    bench.moves(true);
+    let rounds = [Some(997), Some(103)];
+    bench.foreign.set(rounds);
+    bench.at(PerDof::splat(1000), false, 3).await;
+    bench.at(angles(120.0), false, 20).await;
     bench.at(angles(110.0), false, 20).await;
-    bench.foreign.set([Some(500), None]);
+    bench.foreign.set([Some(500), Some(103)]);
     bench.at(angles(105.0), false, 1).await;
-    bench.foreign.set([Some(997), Some(103)]);
+    bench.foreign.set(rounds);
     bench.at(angles(90.5), false, 20).await;
-    assert_eq!(bench.sent().len(), 1, "it goes on along the path");
+    assert_eq!(bench.sent().len(), 3, "it goes on along the path");
     assert!(!bench.task.is_finished());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_keeps_no_action_where_it_was_written_is_not_another_controller() {
+    let bench = Bench::start();
+    bench.keeps_leave.set(true);
+    bench.moves(true);
+    // The maker's fist: the thumb turns out before the fingers open, so that each joint is left alone once.
+    let fist = PerDof::new([0, 0, 0, 0, 400, 600]);
+    let mut at = fist;
+    let mut parts = 0;
+    for _ in 0..10 {
+        bench.at(at, false, 3).await;
+        let holds = bench.holds.get().unwrap();
+        let to = |dof: Dof| holds.angle[dof].and_then(Target::angle);
+        at = PerDof::from_fn(|dof| to(dof).map_or(at[dof], Angle::get));
+        bench.at(at, false, 30).await;
+        let asked = bench.hand.asked().into_iter();
+        parts += asked
+            .filter(|asked| matches!(asked, Asked::Move(_)))
+            .count();
+        if at == angles(30.0) {
+            break;
+        }
+    }
+    assert!(parts >= 3, "each part was sent: {parts}");
+    bench.moves(false);
+    bench.at(at, false, 60).await;
+    let report = bench.task.await.unwrap();
+    assert_eq!(report.end, GripEnd::Reached);
 }
 
 #[tokio::test(start_paused = true)]

@@ -270,8 +270,8 @@ async fn a_lost_link_and_another_arming_end_it() {
             Abort::LinkLost,
             Some(Stop::LinkLost),
         ),
-        (|hand| hand.arm_as(2), Abort::Disarmed, None),
-        (|hand| hand.disarm(), Abort::Disarmed, None),
+        (|hand| hand.arm_as(2), Abort::ArmedAnew, None),
+        (|hand| hand.disarm(), Abort::Disarmed { why: None }, None),
     ];
     for (break_off, why, stop) in ways {
         let bench = Bench::running().await;

@@ -1,6 +1,6 @@
 //! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
 
-use crate::hand::statistics::median;
+use crate::hand::statistics::{count, median, spread};
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 
 /// Level and noise of a curve at rest.
@@ -8,12 +8,16 @@ use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 pub struct RestLevel {
     /// The median.
     pub level: f64,
-    /// The standard deviation that the median deviation stands for, so that single wild values do not count.
+    /// The standard deviation; single wild values do not count.
     pub sigma: f64,
 }
 
 /// Values below which nothing can be said of a curve's noise.
 const REST_LEAST: usize = 3;
+/// A value is wild if it is so many standard deviations off, as the median deviation has them …
+const WILD_SIGMAS: f64 = 4.0;
+/// … of readings that are whole numbers: the median deviation of little noise is nothing.
+const WHOLE: f64 = 1.0;
 
 /// Level and noise between two times; `None` with fewer than 3 values.
 pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
@@ -25,9 +29,13 @@ pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
     }
     let level = median(&values)?;
     let away: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();
+    let about = (median(&away)? * BY_MEDIAN).max(WHOLE);
+    let is_tame = |value: &f64| (value - level).abs() <= WILD_SIGMAS * about;
+    let tame: Vec<f64> = values.into_iter().filter(is_tame).collect();
+    let freedom = (count(&tame) - 1.0).max(1.0);
     Some(RestLevel {
         level,
-        sigma: median(&away)? * BY_MEDIAN,
+        sigma: (spread(&tame) / freedom).sqrt(),
     })
 }
 
@@ -97,6 +105,30 @@ mod tests {
         let curve: TimeSeries = points.into_iter().collect();
         assert_eq!(passes(curve.between(0.0, 1.0), 10.0), None);
         assert_eq!(rest(&curve, 0.0, 1.0).unwrap().sigma, 0.0);
+    }
+
+    #[test]
+    fn the_noise_of_whole_grams_is_no_multiple_of_a_median_deviation() {
+        let mut rng = fastrand::Rng::with_seed(3);
+        let mut normal = |sigma: f64| {
+            let sum: f64 = (0..12).map(|_| rng.f64()).sum();
+            (sigma * (sum - 6.0)).round()
+        };
+        for truth in [1.0, 2.0, 3.0, 4.0, 6.0] {
+            let sigmas: Vec<f64> = (0..200)
+                .map(|_| {
+                    let curve = (0..45).map(|n| (f64::from(n) * 0.01, normal(truth)));
+                    let curve: TimeSeries = curve.collect();
+                    rest(&curve, 0.0, 1.0).unwrap().sigma
+                })
+                .collect();
+            let mean = sigmas.iter().sum::<f64>() / 200.0;
+            assert!((mean / truth - 1.0).abs() < 0.06, "{truth}: {mean}");
+            // 45 readings tell it within 11 %, one standard deviation.
+            let off = sigmas.iter().map(|own| (own / truth - 1.0).abs());
+            let far = off.filter(|off| *off > 0.25).count();
+            assert!(far <= 15, "{truth}: {far} of 200");
+        }
     }
 
     #[test]

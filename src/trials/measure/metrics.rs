@@ -8,9 +8,11 @@
 //!   the wire before it, so dead time and time to contact hold up to one transaction more (15 ms on a slow hand);
 //! * motion: half a unit of ANGLE_ACT more, which is 12 ms at speed 25 and nothing at 250;
 //! * forces: the reading at rest is taken away, so a sensor's offset does not count. A peak is the highest reading: too
-//!   low if the force peaked between two reads, too high by up to 2 S. At the sensor's end it is a lower bound (`clipped`);
+//!   low if the force peaked between two reads (`peak_doubt`, if that may have been much), too high by up to 2 S. At the
+//!   sensor's end it is a lower bound (`clipped`);
 //! * contact by force: at 15 g or 5 S, whichever is more; by touch: at 0.1 N;
-//! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most;
+//! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most, of the middle of three
+//!   readings: a single wild one does not count;
 //! * temperatures are whole degrees, read some times a second.
 
 use crate::hand::statistics::median;
@@ -18,6 +20,7 @@ use crate::hand::{Angle, Dof, Status};
 use crate::trials::measure::curve::{CurvePoint, JointCurves, TimeSeries};
 use crate::trials::measure::detect::{RestLevel, begins, passes, rest};
 use crate::trials::measure::slip::{SlipEvent, slips};
+use crate::trials::measure::unseen::{PeakDoubt, RiseSpan, unseen};
 use crate::trials::plan::{TrialPlan, TrialSetting};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
 use serde::{Deserialize, Serialize};
@@ -71,6 +74,12 @@ pub struct JointMetrics {
     pub time_to_stop_s: Option<f64>,
     /// Highest force, g.
     pub peak_force_g: Option<f64>,
+    /// Why it may have been higher than any reading; `None` if readings were as near to each other as they usually are.
+    #[serde(default)]
+    pub peak_doubt: Option<PeakDoubt>,
+    /// What it may have been more between two readings, g.
+    #[serde(default)]
+    pub peak_missed_g: Option<f64>,
     /// Whether the sensor was at its end, so that the force was higher than that.
     pub clipped: Option<bool>,
     /// Highest force above the threshold, g; negative if it stayed below.
@@ -98,6 +107,23 @@ pub struct JointMetrics {
     pub longest_gap_s: Option<f64>,
     #[serde(default, rename = "slip", skip_serializing_if = "Vec::is_empty")]
     pub slips: Vec<SlipEvent>,
+}
+
+impl JointMetrics {
+    /// Why nothing of the close is known, if so. A finger that met nothing has at least stopped.
+    pub fn why_empty(&self) -> Option<&'static str> {
+        let has_none = self.time_to_stop_s.is_none() && self.peak_force_g.is_none();
+        let why = if self.dead_drive {
+            "it was told to close and never moved"
+        } else if self.rate_hz.is_none() {
+            "its force was hardly read"
+        } else if self.rest_force_g.is_none() {
+            "its force was hardly read before the command"
+        } else {
+            "it met nothing, and was not seen to stop, before it was opened again"
+        };
+        has_none.then_some(why)
+    }
 }
 
 /// Measures a recorded trial, joint by joint in register order.
@@ -188,14 +214,27 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         ),
     };
     let pressed = contact.is_some() || touched == Some(true);
+    // A hand that moves within one reading of the command shows no dead time, but moves.
+    let moves_from = motion.or_else(|| moved(&curves.angle, end).then_some(0.0));
     let stop = match span.slow_s {
-        None => motion.and_then(|from| stop(curves, from, end)),
+        None => moves_from.and_then(|from| stop(curves, from, end)),
         Some(slow) => stop_after_slow(curves, slow, end),
     };
     let peak = highest(&force, end).filter(|_| pressed);
     let steady = stop.and_then(|stop| steady(&force, stop, end));
     let steady = steady.filter(|_| pressed);
     let held = stop.and_then(|stop| slips(curves, stop, end));
+    let rate_hz = rate(&force, end);
+    let rise = contact.or(touch).zip(stop).zip(rate_hz.zip(at_rest));
+    let rise = rise.map(|((contact_s, stop_s), (rate_hz, rest))| RiseSpan {
+        contact_s,
+        stop_s,
+        rate_hz,
+        noise_g: rest.sigma,
+    });
+    let hidden = rise
+        .filter(|_| peak.is_some())
+        .map(|rise| unseen(&force, rise));
     JointMetrics {
         dof,
         rest_force_g: at_rest.map(|rest| rest.level),
@@ -207,6 +246,8 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         contact_angle: contact.or(touch).and_then(|at| curves.angle.at(at)),
         time_to_stop_s: stop,
         peak_force_g: peak,
+        peak_doubt: hidden.and_then(|own| own.doubt),
+        peak_missed_g: hidden.map(|own| own.missed_g),
         clipped: peak.map(|_| is_clipped(&curves.force, end)),
         overshoot_g: peak.map(|peak| peak - span.threshold_g),
         settle_time_s: settle(&force, contact, steady.zip(at_rest), end),
@@ -217,7 +258,7 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         end_status: status_at(&curves.status, end),
         dead_drive: false,
         slip_count: held.as_ref().map(Vec::len),
-        rate_hz: rate(&force, end),
+        rate_hz,
         longest_gap_s: longest_gap(&force, end),
         slips: held.unwrap_or_default(),
     }
@@ -231,6 +272,16 @@ fn motion_start(angle: &TimeSeries) -> Option<f64> {
         .map(|point| (point.t, (point.v - still.level).abs()))
         .collect();
     begins(&away, 0.0, MOTION)
+}
+
+/// Whether a reading after the command is away from the rest before it.
+fn moved(angle: &TimeSeries, end: f64) -> bool {
+    let still = rest(angle, -REST_S, 0.0);
+    let is_away = |still: RestLevel| {
+        let mut after = angle.between(0.0, end);
+        after.any(|point| (point.v - still.level).abs() >= MOTION)
+    };
+    still.is_some_and(is_away)
 }
 
 /// Whether the fingertip felt something before the command.
@@ -251,12 +302,13 @@ fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
     if said.next().is_some() {
         return said.find(stopped).map(|point| point.t);
     }
+    let still = rest(&curves.angle, -REST_S, 0.0)?.level;
     let angles: Vec<CurvePoint> = curves.angle.between(from, end).collect();
     angles.iter().enumerate().find_map(|(at, first)| {
         let rest = angles.get(at..)?;
         let last = rest.last()?;
         let mut soon = rest.iter().take_while(|p| p.t <= first.t + STILL_S);
-        let moved = (first.v - curves.angle.at(0.0)?).abs() >= MOTION;
+        let moved = (first.v - still).abs() >= MOTION;
         let is_still = soon.all(|p| (p.v - first.v).abs() <= STILL);
         (moved && is_still && last.t >= first.t + STILL_S).then_some(first.t)
     })
@@ -302,12 +354,28 @@ fn settle(
         .max(SETTLED_G)
         .max(SETTLED_SIGMAS * rest.sigma);
     let outside = |point: &CurvePoint| (point.v - steady).abs() > band;
-    let last = force.between(contact, end).rfind(outside);
+    let after: Vec<CurvePoint> = force.between(contact, end).collect();
+    let middles = middle_of_three(&after);
+    let last = middles.iter().rfind(|point| outside(point));
     let settled = match last {
         None => contact,
-        Some(last) => force.between(contact, end).find(|p| p.t > last.t)?.t,
+        Some(last) => after.iter().find(|point| point.t > last.t)?.t,
     };
     Some(settled - contact)
+}
+
+/// Each with the middle of its value and its neighbours'; the ends as they are.
+fn middle_of_three(points: &[CurvePoint]) -> Vec<CurvePoint> {
+    let middle = |at: usize, point: &CurvePoint| {
+        let around = at.checked_sub(1).and_then(|from| points.get(from..at + 2));
+        let values = around.map(|own| own.iter().map(|point| point.v).collect::<Vec<_>>());
+        CurvePoint {
+            t: point.t,
+            v: values.and_then(|own| median(&own)).unwrap_or(point.v),
+        }
+    };
+    let points = points.iter().enumerate();
+    points.map(|(at, point)| middle(at, point)).collect()
 }
 
 /// The temperature is followed to the end of the recording: heat comes late.

@@ -4,6 +4,7 @@
 use crate::hand::{Dof, Status};
 use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use crate::trials::measure::metrics::{DwellSpan, JointMetrics, measure_joint};
+use crate::trials::measure::unseen::PeakDoubt;
 
 const DEAD_S: f64 = 0.064;
 const CONTACT_S: f64 = 0.664;
@@ -158,7 +159,61 @@ fn noise_moves_times_by_a_reading_and_the_peak_by_the_noise() {
         let grasp = Grasp { noise_g, ..PLAIN };
         let metrics = grasp.measured();
         check(&metrics, grasp, 0.0075, 100.0 + noise_g);
-        near("noise", metrics.noise_g, noise_g * 0.577, noise_g * 0.4);
+        near("noise", metrics.noise_g, noise_g * 0.577, noise_g * 0.08);
+    }
+}
+
+#[test]
+fn a_single_wild_reading_does_not_move_the_settle_time() {
+    let settle = |wild_at: Option<f64>| {
+        let mut curves = PLAIN.curves(|_| true);
+        let wild = |t: f64| wild_at.is_some_and(|at| (t - at).abs() < 0.0026);
+        let points = curves.force.points().iter();
+        curves.force = points
+            .map(|p| (p.t, if wild(p.t) { p.v + 80.0 } else { p.v }))
+            .collect();
+        measured(&curves).settle_time_s
+    };
+    let plain = settle(None).unwrap();
+    for at in [1.3, 1.5, 1.7, 1.95] {
+        near("settle", settle(Some(at)), plain, 0.0051);
+    }
+}
+
+#[test]
+fn a_hand_that_moves_within_a_reading_of_the_command_has_a_stop_and_a_steady_force() {
+    // Without a dead time; read every 25 ms, it is far from its rest in the first reading, and its drive reports nothing but the stop.
+    for says_that_it_moves in [true, false] {
+        let rare = Grasp {
+            rate_hz: 40.0,
+            ..PLAIN
+        };
+        let mut curves = rare.curves(|_| true);
+        let early = |t: f64| if t > 0.0 { t + DEAD_S } else { t };
+        let points = |curve: &TimeSeries| curve.points().to_vec();
+        let times = points(&curves.angle);
+        curves.angle = times
+            .iter()
+            .map(|p| (p.t, Grasp::angle(early(p.t)).round()))
+            .collect();
+        curves.force = times
+            .iter()
+            .map(|p| (p.t, rare.force(early(p.t))))
+            .collect();
+        let status = |t: f64| match t {
+            t if t < 0.0 => Status::PositionReached,
+            t if t < STOP_S - DEAD_S && says_that_it_moves => Status::Grasping,
+            _ => Status::ForceReached,
+        };
+        curves.status = times
+            .iter()
+            .map(|p| (p.t, status(p.t).raw().into()))
+            .collect();
+        let metrics = measured(&curves);
+        assert_eq!(metrics.dead_time_s, None);
+        near("stop", metrics.time_to_stop_s, STOP_S - DEAD_S, 0.075);
+        near("steady", metrics.steady_force_g, STEADY_G, 4.0);
+        assert!(metrics.settle_time_s.is_some());
     }
 }
 
@@ -171,12 +226,14 @@ fn missing_readings_cost_their_own_time_and_are_told() {
     let hole = |t: f64| !(0.3..0.45).contains(&t);
     let metrics = measured(&slow.curves(hole));
     check(&metrics, slow, 0.011, 200.0);
+    assert_eq!(metrics.peak_doubt, None);
     near("gap", metrics.longest_gap_s, 0.16, 0.011);
     // A hole over the contact: its time is somewhere in the hole, the peak is too low, nothing else suffers.
     let blind = |t: f64| !(0.65..0.75).contains(&t);
     let metrics = measured(&slow.curves(blind));
     near("contact", metrics.time_to_contact_s, CONTACT_S, 0.1);
     assert!(metrics.peak_force_g.unwrap() < 900.0);
+    assert_eq!(metrics.peak_doubt, Some(PeakDoubt::Gap));
     near("steady", metrics.steady_force_g, STEADY_G, 4.0);
     near("dead time", metrics.dead_time_s, DEAD_S, 0.011);
 }

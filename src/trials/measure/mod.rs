@@ -6,3 +6,4 @@ pub mod metrics;
 #[cfg(test)]
 pub(crate) mod metrics_tests;
 pub mod slip;
+pub mod unseen;

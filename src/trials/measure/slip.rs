@@ -1,4 +1,4 @@
-//! Slips of a held object: jumps of friction or of the tangential force's direction. Computes from curves, nothing else.
+//! Slips of a held object: friction that jumps or creeps. Computes from curves, nothing else.
 
 use crate::hand::grip::GripThresholds;
 use crate::hand::grip::slip::{APART_S, BEFORE_LEAST, HELD_N, HeldMoment, SlipDetector, SlipJump};
@@ -123,17 +123,30 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_through_north_is_a_slip_and_two_far_apart_are_two() {
-        let turns = |t: f64| match t {
-            t if t < 1.0 => 350.0,
-            t if t < 2.0 => 30.0,
-            _ => 90.0,
+    fn a_wrist_that_turns_through_north_is_no_slip_and_two_jumps_far_apart_are_two() {
+        let turns = |t: f64| 330.0 + 90.0 * ((t - 1.0) / 0.8).clamp(0.0, 1.0);
+        assert_eq!(slips(&grip(|_| 0.2, turns), 0.0, 3.0), Some(Vec::new()));
+        let jumps = |t: f64| match t {
+            t if t < 1.0 => 0.2,
+            t if t < 2.0 => 0.4,
+            _ => 0.6,
         };
-        let found = slips(&grip(|_| 0.2, turns), 0.0, 3.0).unwrap();
+        let turned = |t: f64| if t < 1.0 { 350.0 } else { 30.0 };
+        let found = slips(&grip(jumps, turned), 0.0, 3.0).unwrap();
         assert_eq!(found.len(), 2, "{found:?}");
         assert!((found[0].turn_deg.unwrap() - 40.0).abs() < 1.0);
         assert!((found[1].at_s - 2.0).abs() < 0.021);
-        assert!((found[1].turn_deg.unwrap() - 60.0).abs() < 1.0);
+        assert!(found[1].turn_deg.unwrap() < 1.0);
+    }
+
+    #[test]
+    fn friction_that_rises_for_seconds_is_one_slip_before_the_rise_is_over() {
+        for (rise, seconds) in [(0.2, 1.5), (0.3, 2.0), (0.25, 2.0)] {
+            let creeps = |t: f64| 0.2 + rise * ((t - 0.8) / seconds).clamp(0.0, 1.0);
+            let found = slips(&grip(creeps, |_| 10.0), 0.0, 3.0).unwrap();
+            assert_eq!(found.len(), 1, "{rise} in {seconds} s: {found:?}");
+            assert!(found[0].at_s < 0.8 + seconds, "{found:?}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::hand::statistics::median;
 use crate::hand::{Dof, Status};
-use crate::trials::measure::curve::{JointCurves, TimeSeries};
+use crate::trials::measure::curve::JointCurves;
 use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::summary::Trial;
@@ -11,18 +11,6 @@ use crate::trials::summary::Trial;
 const REST_S: f64 = 0.3;
 /// The least way into an object that tells its stiffness, units of ANGLE_ACT; an angle is a whole number.
 const PRESSED_LEAST: f64 = 4.0;
-
-/// Readings of the force no further apart than this miss no peak: a grip stays where the impact took it for longer, s.
-pub(crate) const GAP_S: f64 = 0.025;
-/// So many times what is usual between two readings, a gap is unusual.
-const GAP_TIMES: f64 = 2.5;
-/// A peak may come this long after the drive reports its stop, s: a report is not read at once.
-const PEAK_LATE_S: f64 = 0.05;
-/// A reading after the highest that is lower than this share of it: the impact was shorter than the time between two.
-const BRIEF_BELOW: f64 = 0.7;
-/// So much lower, as a multiple of the noise and some grams, it is no noise.
-const BRIEF_SIGMAS: f64 = 6.0;
-const BRIEF_G: f64 = 20.0;
 
 /// One joint in one close. Forces are above the reading at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +72,6 @@ impl CloseFacts {
         let end = when(TrialEvent::Release).or_else(|| when(TrialEvent::Aborted));
         let curves = JointCurves::of(&trial.recording, joint.dof);
         let resting = end.and_then(|end| median(&curves.angle.values(end - REST_S, end)));
-        let unseen = unseen(&curves.force, joint);
         let pressed = joint.contact_angle.zip(resting);
         let pressed = pressed.map(|(contact, resting)| contact - resting);
         let pressed = joint.steady_force_g.zip(pressed);
@@ -106,8 +93,8 @@ impl CloseFacts {
                 .zip(slow)
                 .map(|(stop, slow)| stop - slow),
             peak_g: joint.peak_force_g,
-            missed_g: unseen.missed_g,
-            is_uncertain: unseen.is_unusual,
+            missed_g: joint.peak_missed_g.unwrap_or_default(),
+            is_uncertain: joint.peak_doubt.is_some(),
             offset_g: joint.rest_force_g.unwrap_or_default(),
             is_clipped: joint.clipped == Some(true),
             steady_g: joint.steady_force_g,
@@ -119,46 +106,4 @@ impl CloseFacts {
             longest_gap_s: joint.longest_gap_s,
         }
     }
-}
-
-/// What readings of a rising force may not have shown.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Unseen {
-    missed_g: f64,
-    is_unusual: bool,
-}
-
-/// What may have been missed from the contact to the stop. Between two readings that are far apart, or beside a single one that is
-/// far above the next, the force may have risen on as fast as it ever rose.
-fn unseen(force: &TimeSeries, joint: &JointMetrics) -> Unseen {
-    let contact = joint.time_to_contact_s.or(joint.time_to_touch_s);
-    let Some((from, stop)) = contact.zip(joint.time_to_stop_s) else {
-        return Unseen::default();
-    };
-    let usual = joint.rate_hz.map_or(GAP_S, |rate| 1.0 / rate.max(1.0));
-    let rest = joint.rest_force_g.unwrap_or_default();
-    let points: Vec<(f64, f64)> = force
-        .between(from - 2.0 * usual - GAP_S, stop + PEAK_LATE_S + GAP_S)
-        .map(|point| (point.t, point.v - rest))
-        .collect();
-    let pairs = points.iter().zip(points.iter().skip(1));
-    let slopes = pairs
-        .clone()
-        .map(|((t, v), (t2, v2))| (v2 - v) / (t2 - t).max(1e-3));
-    let steepest = slopes.fold(0.0, f64::max);
-    let peak = points.iter().map(|(_, v)| *v).fold(0.0, f64::max);
-    let told = BRIEF_SIGMAS * joint.noise_g.unwrap_or_default() + BRIEF_G;
-    let mut unseen = Unseen::default();
-    for ((t, v), (t2, v2)) in
-        pairs.filter(|((t, _), (t2, _))| *t2 >= from && *t <= stop + PEAK_LATE_S)
-    {
-        let apart = t2 - t;
-        let is_brief = *v >= peak && *v2 < BRIEF_BELOW * peak && v - v2 > told;
-        if apart > GAP_S || is_brief {
-            let missed = v.max(0.0) + steepest * apart - peak;
-            unseen.missed_g = unseen.missed_g.max(missed);
-        }
-        unseen.is_unusual |= apart > GAP_S.max(GAP_TIMES * usual) || is_brief;
-    }
-    unseen
 }

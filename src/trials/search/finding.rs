@@ -67,8 +67,10 @@ pub struct Claim {
     pub joints: Vec<JointClaim>,
     /// From the command to the last joint's stop, mean, s.
     pub close_s: f64,
-    /// Closes that confirm it.
+    /// Closes that the bound rests on.
     pub closes: usize,
+    /// Those of them that were closed with this setting.
+    pub here: usize,
     pub assurance: Assurance,
     /// Whether the bound is the largest of them, whatever their distribution.
     pub distribution_free: bool,
@@ -97,11 +99,16 @@ impl std::fmt::Display for Claim {
         } = self.assurance;
         write!(
             f,
-            "{names} on this object: {verb} in {:.2} s, peak at most {:.0} g in {:.0} of 100 closes ({:.0} % sure, {} closes)",
+            "{names} on this object: {verb} in {:.2} s, peak at most {:.0} g in {:.0} of 100 closes ({:.0} % sure {}, {} closes)",
             self.close_s,
             self.peak_bound_g().ceil(),
             coverage * 100.0,
             confidence * 100.0,
+            if self.distribution_free {
+                "however the peaks vary"
+            } else {
+                "if the peaks vary normally"
+            },
             self.closes,
         )
     }
@@ -151,6 +158,15 @@ pub enum NoClaim {
         /// g for each unit of ANGLE_ACT.
         before_g: f64,
         now_g: f64,
+    },
+    /// The object does not stay where it is.
+    #[error(
+        "the object creeps: {} meets it {:.1} counts {} with each close; fix it, or put it where it cannot move", dof.name(), counts.abs(), if *counts > 0.0 { "earlier" } else { "later" }
+    )]
+    Creeps {
+        dof: Dof,
+        /// Units of ANGLE_ACT from one close to the next.
+        counts: f64,
     },
     /// The object slipped even at the slowest.
     #[error(
@@ -263,6 +279,10 @@ pub enum Untold {
     Offset { dof: Dof, offset_g: f64 },
     #[error("whether the peaks are normally distributed, on which the bound rests")]
     Distribution,
+    #[error(
+        "whether stops are as late at this speed as at the others, at which {closes} of the closes were made"
+    )]
+    OtherSpeeds { closes: usize },
 }
 
 impl Untold {
@@ -273,7 +293,8 @@ impl Untold {
             | (Self::Stiffness { dof }, Self::Stiffness { dof: same })
             | (Self::Offset { dof, .. }, Self::Offset { dof: same, .. })
             | (Self::Gaps { dof, .. }, Self::Gaps { dof: same, .. }) => dof == same,
-            (Self::Distribution, Self::Distribution) => true,
+            (Self::Distribution, Self::Distribution)
+            | (Self::OtherSpeeds { .. }, Self::OtherSpeeds { .. }) => true,
             _ => false,
         }
     }

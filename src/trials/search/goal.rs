@@ -20,7 +20,7 @@ const FIRST_SHARE: f64 = 0.3;
 /// Closes that confirm a setting.
 pub const CLOSES_MIN: usize = 5;
 pub const CLOSES_MAX: usize = 100;
-pub const CLOSES: usize = 10;
+pub const CLOSES: usize = FREE_95;
 /// How far past the limit a force may be before the hand is stopped: a trial over the limit is told from a crash.
 const CEILING_SHARE: f64 = 1.4;
 const CEILING_MORE_G: f64 = 100.0;
@@ -206,7 +206,10 @@ mod tests {
             (|w| w.limit_g = 2001, "30 and 2000"),
             (|w| w.hold_g = 401, "at most 400 g"),
             (|w| w.closes = 4, "5 and 100"),
-            (|w| w.distribution_free = true, "59 say 95 of 100"),
+            (
+                |w| (w.distribution_free, w.closes) = (true, 21),
+                "59 say 95 of 100",
+            ),
             (|w| w.close = PerDof::splat(None), "no joint takes part"),
         ] {
             let mut goal = good.clone();

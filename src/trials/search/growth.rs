@@ -3,7 +3,7 @@
 //! least scatter of its peaks. Pure.
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
-use crate::hand::statistics::{count, mean, spread};
+use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::offset::{Compared, OffsetEvidence};
 
 /// Mixtures of the two published shapes that are tried.
@@ -28,6 +28,11 @@ const COMPARED_POSSIBLE: f64 = 25.0;
 const COMPARED_TOLD: f64 = 9.0;
 /// A best fit worse than this for each trial means that no shape is like this hand.
 const STRANGE: f64 = 6.0;
+/// Closes that are this much slower, as a share of the speed, tell of the same stops.
+const NEAR: f64 = 0.3;
+/// Closes whose middle is known, and how much it may differ from what the shape says.
+const MIDDLE_LEAST: usize = 5;
+const CARRY_MOST: f64 = 2.0;
 /// Then the worst shape is taken, and so much more.
 const STRANGE_MORE: f64 = 1.3;
 
@@ -50,6 +55,19 @@ pub struct SeenPeak {
     pub peak_g: f64,
     /// What it may have been more between two readings, g.
     pub missed_g: f64,
+    /// Whether its readings were as near to each other as they usually are.
+    pub is_certain: bool,
+}
+
+/// The peaks of closes, as they would be at one speed and threshold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CarriedPeaks {
+    /// All of them, g.
+    pub peaks_g: Vec<f64>,
+    /// Those that were closed with it, g.
+    pub here_g: Vec<f64>,
+    /// How many of all are certain.
+    pub certain: usize,
 }
 
 /// What one joint's closes measured.
@@ -186,6 +204,54 @@ impl PeakGrowth {
             }
         });
         most.reduce(f64::max)
+    }
+
+    /// The peaks of the closes at this speed or faster, and of those slower that still tell of the same stops, carried to it along the
+    /// shape that fits best: a stop that came late in one of them would come as late in this one. As soon as some were closed
+    /// with it, their middle says how much the others are carried.
+    pub fn carried(&self, at: Contact) -> CarriedPeaks {
+        let Some(best) = self.best.as_ref() else {
+            return CarriedPeaks::default();
+        };
+        let stops_at = best.compared.stops_at(at.threshold_g, self.offset_g());
+        let there = best.shape.peak_g(at.speed, stops_at, best.scale) - stops_at;
+        let mut carried = CarriedPeaks::default();
+        let mut elsewhere = Vec::new();
+        for own in self
+            .seen
+            .iter()
+            .filter(|own| own.at.speed >= NEAR * at.speed)
+        {
+            carried.certain += usize::from(own.is_certain);
+            if own.at == at {
+                carried.here_g.push(own.peak_g);
+                continue;
+            }
+            let from = best.over_g(own);
+            let over = best.compared.over_g(own);
+            let grown = if over > 0.0 {
+                there / from.max(f64::EPSILON)
+            } else {
+                1.0
+            };
+            elsewhere.push(over * grown);
+        }
+        let least = elsewhere.len().min(carried.here_g.len());
+        let middles = median(&carried.here_g).zip(median(&elsewhere));
+        let carry = middles
+            .filter(|_| least >= MIDDLE_LEAST)
+            .map_or(1.0, |(here, other)| {
+                ((here - stops_at) / other.max(1.0)).clamp(1.0 / CARRY_MOST, CARRY_MOST)
+            });
+        let here = carried.here_g.iter().copied();
+        let elsewhere = elsewhere.iter().map(|over| stops_at + over * carry);
+        carried.peaks_g = here.chain(elsewhere).collect();
+        carried
+    }
+
+    /// How many closes were seen.
+    pub fn closes(&self) -> usize {
+        self.seen.len()
     }
 
     /// Standard deviation of single closes around what is likely, g.
@@ -373,6 +439,7 @@ mod tests {
             offset_g,
             peak_g,
             missed_g: 0.0,
+            is_certain: true,
         }
     }
 

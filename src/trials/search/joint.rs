@@ -40,6 +40,12 @@ const STOPS_SHARE: f64 = 0.06;
 /// FORCE_SET is at least this, g, whatever a sensor reads at rest.
 const THRESHOLD_MIN_G: f64 = 5.0;
 
+/// A contact that moves so many standard deviations of its trend, and so far in all, units of ANGLE_ACT, does not stay where it is.
+const CREEP_SIGMAS: f64 = 4.5;
+const CREEP_LEAST: f64 = 8.0;
+/// Of fewer closes no trend is told.
+const CREEP_CLOSES: usize = 10;
+
 /// What one close left of its peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Left {
@@ -86,6 +92,7 @@ impl JointModel {
                 offset_g: facts.offset_g,
                 peak_g,
                 missed_g: facts.missed_g,
+                is_certain: !facts.is_uncertain,
             });
         }
         let gives = self.gives(facts, at);
@@ -150,6 +157,17 @@ impl JointModel {
         let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
         let pressed = steady / stiffness.max(0.01) - self.step(facts, at);
         (pressed > 0.0).then(|| steady / pressed)
+    }
+
+    /// How the contact moves from close to close, where it does: the object does not stay where it is.
+    pub(crate) fn creeps(&self) -> Option<NoClaim> {
+        let (counts, unsure) = trend(&self.contacts)?;
+        let is_told = counts.abs() > CREEP_SIGMAS * unsure;
+        let way = counts.abs() * count(&self.contacts);
+        (is_told && way > CREEP_LEAST).then_some(NoClaim::Creeps {
+            dof: self.dof,
+            counts,
+        })
     }
 
     /// Noise of the force, g.
@@ -259,5 +277,56 @@ impl JointModel {
         };
         let line = mean_share + slope.min(0.0) * (over - mean_over);
         line.clamp(0.0, 1.0)
+    }
+}
+
+/// By how much values rise from one to the next, and the standard deviation of that; `None` of too few.
+fn trend(values: &[f64]) -> Option<(f64, f64)> {
+    if values.len() < CREEP_CLOSES {
+        return None;
+    }
+    let n = count(values);
+    let middle = mean(values)?;
+    let at = |nth: usize| u32::try_from(nth).map_or(0.0, f64::from) - (n - 1.0) / 2.0;
+    let points = || {
+        values
+            .iter()
+            .enumerate()
+            .map(|(nth, own)| (at(nth), own - middle))
+    };
+    let width: f64 = points().map(|(x, _)| x * x).sum();
+    let slope = points().map(|(x, y)| x * y).sum::<f64>() / width;
+    let rest: f64 = points().map(|(x, y)| (y - slope * x).powi(2)).sum();
+    Some((slope, (rest / (n - 2.0) / width).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_object_that_creeps_is_told_from_one_that_scatters() {
+        let mut rng = fastrand::Rng::with_seed(9);
+        let mut contacts = |creep: f64, closes: u32| {
+            let mut joint = JointModel::new(Dof::Index);
+            joint.contacts = (0..closes)
+                .map(|n| {
+                    let sum: f64 = (0..12).map(|_| rng.f64()).sum();
+                    (500.0 + creep * f64::from(n) + 3.75 * (sum - 6.0)).round()
+                })
+                .collect();
+            joint.creeps()
+        };
+        let told = |creeps: Vec<Option<NoClaim>>| creeps.into_iter().flatten().count();
+        let still: Vec<_> = (0..300).map(|_| contacts(0.0, 25)).collect();
+        assert!(told(still) <= 1);
+        for creep in [1.0, -1.0] {
+            let creeping: Vec<_> = (0..100).map(|_| contacts(creep, 25)).collect();
+            assert!(told(creeping) >= 97);
+            let Some(NoClaim::Creeps { counts, .. }) = contacts(creep, 40) else {
+                panic!("{creep}");
+            };
+            assert!((counts - creep).abs() < 0.25, "{counts}");
+        }
     }
 }

@@ -11,6 +11,8 @@ pub mod finding;
 pub mod goal;
 pub mod growth;
 mod joint;
+#[cfg(test)]
+mod late_stops;
 pub mod offset;
 pub mod settings_search;
 pub mod tolerance;

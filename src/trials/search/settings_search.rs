@@ -4,10 +4,11 @@
 
 use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::trials::measure::unseen::GAP_S;
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::seconds;
-use crate::trials::search::close::{CloseFacts, GAP_S};
-use crate::trials::search::confirm::Confirmation;
+use crate::trials::search::close::CloseFacts;
+use crate::trials::search::confirm::{Confirmation, bound_g, has_tail, largest_g};
 use crate::trials::search::finding::{
     Claim, ComparedThreshold, Finding, FoundApproach, NoClaim, SearchProgress, SearchStage, Tried,
     Untold,
@@ -16,7 +17,7 @@ use crate::trials::search::goal::{GoalError, LIMIT_MIN_G, SearchGoal, whole};
 use crate::trials::search::growth::Contact;
 use crate::trials::search::joint::JointModel;
 use crate::trials::search::offset::Compared;
-use crate::trials::search::tolerance::tolerance_factor;
+use crate::trials::search::tolerance::{Assurance, FREE_95, tolerance_factor};
 use crate::trials::summary::Trial;
 use std::time::Duration;
 
@@ -47,9 +48,16 @@ const WORTH_ONE: f64 = 0.02;
 const WORTH_TEN: f64 = 0.05;
 /// Steps upwards, and settings that are tried for confirmation.
 const RISES_MAX: usize = 10;
-const CONFIRMATIONS_MAX: usize = 8;
+const CONFIRMATIONS_MAX: usize = 20;
 /// After so many closes a claim is taken as it is, even if something quicker may be left.
 const RISING_UNTIL: usize = 40;
+/// Closes of the setting itself that a claim rests on, whatever else it rests on.
+const HERE_LEAST: usize = 10;
+/// Until so many closes are left, a stop is taken to be possible that runs on this many times as far as they usually do: most closes
+/// are run slower than the last, so that a late stop is met where it does little.
+const LATE: f64 = 3.0;
+/// What the largest of many closes is taken to be above what is likely, as a multiple of their standard deviation.
+const LARGEST_SIGMAS: f64 = 2.7;
 /// What is aimed at of the room under the limit: bounds of few closes scatter themselves.
 const AIM: f64 = 0.97;
 /// All closes of a search.
@@ -111,6 +119,8 @@ pub struct SettingsSearch {
     /// Closes in a row whose peak is not certain, or that ended in the air.
     repeats: usize,
     confirmations: usize,
+    /// A peak was far above the others: they do not vary normally.
+    has_tail: bool,
     tried: Vec<Tried>,
     untold: Vec<Untold>,
     result: Option<Result<Claim, NoClaim>>,
@@ -144,6 +154,7 @@ impl SettingsSearch {
             hold_more_g: 0.0,
             repeats: 0,
             confirmations: 0,
+            has_tail: false,
             tried: Vec::new(),
             untold: Vec::new(),
             result: None,
@@ -185,7 +196,7 @@ impl SettingsSearch {
 
     /// Where it stands.
     pub fn progress(&self) -> SearchProgress {
-        let of = self.goal.closes;
+        let of = self.needed();
         let (stage, closes_left) = match &self.phase {
             _ if self.result.is_some() => (SearchStage::Over, 0),
             SearchPhase::First => (SearchStage::Probing, of + 8),
@@ -195,8 +206,18 @@ impl SettingsSearch {
                 of + 6_usize.saturating_sub(*rises).max(1),
             ),
             SearchPhase::Confirming(confirmation) => {
-                let done = confirmation.closes();
-                (SearchStage::Confirming { done, of }, of - done.min(of))
+                let here = confirmation.closes();
+                let done = if self.is_free() {
+                    self.told(self.at(self.speed()))
+                } else {
+                    here
+                };
+                // The last of them are of the setting itself.
+                let left = of
+                    .saturating_sub(done)
+                    .max(self.here_least() - here.min(self.here_least()));
+                let done = done.min(of.saturating_sub(left));
+                (SearchStage::Confirming { done, of }, left)
             }
         };
         let each = self.took.unwrap_or(CLOSE_TAKES);
@@ -235,10 +256,14 @@ impl SettingsSearch {
 
     /// Takes a close that ended well, and chooses the next.
     pub fn learn(&mut self, trial: &Trial) {
-        let facts = CloseFacts::of(trial);
         self.took = took(trial).or(self.took);
-        self.note(trial.summary.number, &facts);
-        if let Err(none) = self.take(&facts) {
+        self.learn_facts(trial.summary.number, &CloseFacts::of(trial));
+    }
+
+    /// Takes what a close that ended well says, and chooses the next.
+    pub(crate) fn learn_facts(&mut self, number: usize, facts: &[CloseFacts]) {
+        self.note(number, facts);
+        if let Err(none) = self.take(facts) {
             self.result.get_or_insert(Err(none));
         }
         if self.result.is_none() && self.tried.len() >= TRIALS_MAX {
@@ -299,7 +324,7 @@ impl SettingsSearch {
                 self.rise(rises)
             }
             SearchPhase::Confirming(confirmation) => {
-                confirmation.add(facts, &self.joints, at);
+                confirmation.add(facts);
                 self.confirmed()
             }
         }
@@ -528,7 +553,48 @@ impl SettingsSearch {
 
     /// The bound that is likely to be confirmed.
     fn expected(&self, joint: &JointModel, at: Contact) -> Option<f64> {
-        Some(joint.growth.likely(at)? + self.factor * joint.growth.scatter(at))
+        let bound = self.expected_at_last(joint, at)?;
+        if !self.is_early(joint, at) {
+            return Some(bound);
+        }
+        let stops_at = joint.growth.stops_at(at.threshold_g);
+        Some(bound.max(stops_at + LATE * (joint.growth.likely(at)? - stops_at)))
+    }
+
+    /// The same once enough was closed to know how late stops are.
+    fn expected_at_last(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+        let factor = if self.is_free() {
+            LARGEST_SIGMAS
+        } else {
+            self.factor
+        };
+        let usual = joint.growth.likely(at)? + factor * joint.growth.scatter(at);
+        // What was over the limit once counts for all settings to come.
+        Some(usual.max(largest_g(joint, at)))
+    }
+
+    /// Whether the bound is the largest of all closes: it was asked for, so many were, or their peaks are not normal.
+    const fn is_free(&self) -> bool {
+        self.goal.distribution_free || self.goal.closes >= FREE_95 || self.has_tail
+    }
+
+    /// Closes that a claim needs.
+    const fn needed(&self) -> usize {
+        if self.has_tail && !self.goal.distribution_free && self.goal.closes < FREE_95 {
+            return FREE_95;
+        }
+        self.goal.closes
+    }
+
+    /// Whether too little was closed to know how late stops are.
+    fn is_early(&self, joint: &JointModel, at: Contact) -> bool {
+        self.is_free() && joint.growth.carried(at).certain + HERE_LEAST < self.needed()
+    }
+
+    /// Closes that tell of this one.
+    fn told(&self, at: Contact) -> usize {
+        let told = self.joints.iter().map(|own| own.growth.carried(at).certain);
+        told.min().unwrap_or_default()
     }
 
     fn is_under(
@@ -765,83 +831,152 @@ impl SettingsSearch {
         }
     }
 
-    /// Looks at a setting that was confirmed as often as asked: a claim, something slower, or something faster.
+    /// Closes of a setting before it is looked at.
+    const fn here_least(&self) -> usize {
+        if self.is_free() {
+            HERE_LEAST
+        } else {
+            self.goal.closes
+        }
+    }
+
+    /// Looks at a setting after each of its closes: a claim, something slower, something faster, or one more.
     fn confirmed(&mut self) -> Result<(), NoClaim> {
         let SearchPhase::Confirming(confirmation) = &self.phase else {
             return Ok(());
         };
-        if confirmation.closes() < self.goal.closes {
+        let (here, least_hold) = (confirmation.closes(), confirmation.least_hold());
+        let now = self.at(self.speed());
+        self.has_tail |= self.joints.iter().any(|own| has_tail(own, now));
+        let bound = self.bound(now);
+        let is_over = bound > self.limit();
+        if here < self.here_least() && !(is_over && self.is_free()) {
             return Ok(());
         }
-        let confirmation = confirmation.clone();
-        let bound = confirmation.bound(&self.goal);
-        let (dof, holds_g) = confirmation.least_hold();
-        let wanted = f64::from(self.goal.hold_g);
-        if holds_g < wanted {
-            self.hold_more_g = self.hold_more_g.max(wanted) + (wanted - holds_g) + 2.0;
-            return match self.quickest_likely() {
-                Some(at) => self.confirm(at),
-                None => Err(NoClaim::HoldsTooLittle {
-                    dof,
-                    holds_g,
-                    wanted_g: self.goal.hold_g,
-                }),
-            };
+        if let Some(creeps) = self.joints.iter().find_map(JointModel::creeps) {
+            return Err(creeps);
         }
-        let now = self.at(self.speed());
-        if bound > self.limit() {
+        if least_hold.1 < f64::from(self.goal.hold_g) {
+            return self.hold_more(least_hold);
+        }
+        if is_over {
             self.bar(now);
-        }
-        // What the bound is of what was expected here, it may be of what is expected elsewhere.
-        let expected = self
-            .joints
-            .iter()
-            .filter_map(|joint| self.expected(joint, now));
-        let times = bound / expected.fold(1.0, f64::max) / AIM;
-        let better = self.quickest(self.fastest_step(), |own, joint, at| {
-            let expected = times * own.expected(joint, at)?;
-            let is_known = at.speed <= now.speed && at.threshold_g <= now.threshold_g;
-            let safe = own.safe(joint, at).filter(|_| !is_known);
-            Some(expected.max(safe.unwrap_or_default()))
-        });
-        if bound > self.limit() {
-            return match better {
+            return match self.better(now, bound) {
                 Some(at) => self.confirm(at),
                 None => self.slower(),
             };
         }
         // By now the contact is known better too, so that even the same speed may be quicker with less before it.
-        let better = better.filter(|at| self.gain(*at) > WORTH_TEN);
-        match better {
-            Some(at) if self.tried.len() < RISING_UNTIL => self.confirm(at),
-            _ => {
-                self.claim(&confirmation);
+        let better = self.better(now, bound);
+        match better.filter(|at| self.gain(*at) > WORTH_TEN) {
+            Some(at) => self.confirm(at),
+            None if self.told(now) >= self.needed() || !self.is_free() => {
+                self.claim();
                 Ok(())
             }
+            None => Ok(()),
         }
     }
 
-    fn claim(&mut self, confirmation: &Confirmation) {
-        let closes = confirmation.closes();
-        let first = self.tried.len().saturating_sub(closes);
+    /// What peaks to come stay below, g: the highest bound of all joints.
+    fn bound(&self, now: Contact) -> f64 {
+        let bounds = self
+            .joints
+            .iter()
+            .map(|own| bound_g(own, now, self.is_free()));
+        bounds.fold(0.0, f64::max)
+    }
+
+    /// A setting that holds with more.
+    fn hold_more(&mut self, (dof, holds_g): (Dof, f64)) -> Result<(), NoClaim> {
+        let wanted = f64::from(self.goal.hold_g);
+        self.hold_more_g = self.hold_more_g.max(wanted) + (wanted - holds_g) + 2.0;
+        match self.quickest_likely() {
+            Some(at) => self.confirm(at),
+            None => Err(NoClaim::HoldsTooLittle {
+                dof,
+                holds_g,
+                wanted_g: self.goal.hold_g,
+            }),
+        }
+    }
+
+    /// What else is worth confirming, by a setting whose bound is known.
+    fn better(&self, now: Contact, bound: f64) -> Option<Contact> {
+        let safe = |own: &Self, joint: &JointModel, at: Contact| {
+            let is_known = at.speed <= now.speed && at.threshold_g <= now.threshold_g;
+            let safe = own.safe(joint, at).filter(|_| !is_known);
+            safe.unwrap_or_default()
+        };
+        let SearchPhase::Confirming(confirmation) = &self.phase else {
+            return None;
+        };
+        if !self.is_free() {
+            // What the bound is of what was expected here, it may be of what is expected elsewhere.
+            let joints = self.joints.iter();
+            let expected = joints.filter_map(|joint| self.expected(joint, now));
+            let times = bound / expected.fold(1.0, f64::max) / AIM;
+            let may = bound > self.limit() || self.tried.len() < RISING_UNTIL;
+            return may.then_some(()).and_then(|()| {
+                self.quickest(self.fastest_step(), |own, joint, at| {
+                    Some((times * own.expected(joint, at)?).max(safe(own, joint, at)))
+                })
+            });
+        }
+        let closes = self.joints.iter().map(|own| own.growth.closes()).min()?;
+        if closes + HERE_LEAST >= self.needed() {
+            let last = self.quickest(self.fastest_step(), |own, joint, at| {
+                Some((own.expected_at_last(joint, at)? / AIM).max(safe(own, joint, at)))
+            });
+            let is_early = |at: &Contact| self.joints.iter().any(|own| self.is_early(own, *at));
+            if let Some(at) = last.filter(|at| !is_early(at)) {
+                return Some(at);
+            }
+        }
+        let is_first_look = confirmation.closes() == HERE_LEAST || bound > self.limit();
+        is_first_look.then_some(()).and_then(|()| {
+            self.quickest(self.fastest_step(), |own, joint, at| {
+                Some((own.expected(joint, at)? / AIM).max(safe(own, joint, at)))
+            })
+        })
+    }
+
+    fn claim(&mut self) {
+        let SearchPhase::Confirming(confirmation) = &self.phase else {
+            return;
+        };
+        let now = self.at(self.speed());
+        let is_free = self.is_free();
+        let here = confirmation.closes();
+        let first = self.tried.len().saturating_sub(here);
+        let joints = confirmation.claims(&self.joints, now, is_free);
+        let close_s = confirmation.close_s();
         for own in self.tried.iter_mut().skip(first) {
             own.confirms = true;
         }
-        let joints = confirmation.claims(&self.joints, &self.goal);
         for joint in joints.iter().filter(|joint| joint.stiffness_g.is_none()) {
             self.untold.push(Untold::Stiffness { dof: joint.dof });
         }
-        if !self.goal.distribution_free {
-            self.untold.push(Untold::Distribution);
-        }
+        let closes = if is_free { self.told(now) } else { here };
+        self.untold.extend(match closes - here.min(closes) {
+            _ if !is_free => Some(Untold::Distribution),
+            0 => None,
+            slower => Some(Untold::OtherSpeeds { closes: slower }),
+        });
+        let assurance = if self.goal.distribution_free {
+            self.goal.assurance()
+        } else {
+            Assurance::USUAL
+        };
         self.result = Some(Ok(Claim {
             setting: self.choice.setting,
             approach: self.choice.approach,
             joints,
-            close_s: confirmation.close_s(),
+            close_s,
             closes,
-            assurance: self.goal.assurance(),
-            distribution_free: self.goal.distribution_free,
+            here,
+            assurance,
+            distribution_free: is_free,
         }));
     }
 }

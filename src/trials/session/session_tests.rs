@@ -83,6 +83,8 @@ fn trial(number: usize, aborted: Option<Abort>) -> Trial {
         samples: None,
         rows: recording.rows().len(),
         rows_lost: recording.lost(),
+        repeated: false,
+        stall_s: None,
         joints: measure(&recording, &plan(), setting),
         others: toml::Table::new(),
     };

@@ -2,6 +2,7 @@
 
 use crate::app::hands::grip;
 use crate::app::readings::Freshness;
+use crate::hand::gap::HeldSize;
 use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
@@ -184,15 +185,14 @@ fn grip(pane: &Pane<'_>) -> Grip {
 /// The size of what thumb and index hold, in words; `None` while they hold nothing alone.
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
     let hand = pane.hand();
-    let gap_mm = grip::held_gap(hand, pane.state.now)?;
+    let gap = grip::held_gap(hand, pane.state.now)?;
     let endpoint = hand.connection.endpoint.as_ref();
-    let size = pane.state.settings.size_blocks(endpoint).size(gap_mm);
-    let text = if size.is_measured {
-        poses::HELD_MEASURED
-    } else {
-        poses::HELD_MODEL
+    let (text, mm) = match pane.state.settings.size_blocks(endpoint).size(gap) {
+        HeldSize::Block(mm) => (poses::HELD_MEASURED, mm),
+        HeldSize::Ball(mm) => (poses::HELD_BALL, mm),
+        HeldSize::Pads(mm) => (poses::HELD_PADS, mm),
     };
-    Some(pane.look.fill(text, &[&format!("{:.0}", size.mm)]))
+    Some(pane.look.fill(text, &[&format!("{mm:.0}")]))
 }
 
 /// What the grasp does to an object, in one line under the picture.

@@ -99,6 +99,7 @@ chinese! {
         LinkTrouble::OtherSeries { place } => "{place} 像灵巧手一样应答，但不属于本系列：其寄存器含义不同，因此不显示也不写入任何内容。";
         LinkTrouble::OnlyEcho { place } => "{place} 只送回所发送的内容：适配器有回显，其后没有灵巧手应答；请检查灵巧手的电源与线缆。";
         LinkTrouble::Silent { silent } => "灵巧手停止应答：连续 {silent} 次请求没有应答。";
+        LinkTrouble::Stalled { silent, stalled_ms } => "灵巧手停止应答：连续 {silent} 次请求没有应答，其间本机过于繁忙，停顿了 {stalled_ms} 毫秒。";
         LinkTrouble::Ambiguous => "线路上有迟到的应答：已重新打开，以免把旧数据当作新数据。";
         LinkTrouble::Suspended { slept_s } => "本机休眠了 {slept_s} 秒：之前显示的数据已过时。";
     }
@@ -622,6 +623,10 @@ mod tests {
             LinkTrouble::OtherSeries { place: place() },
             LinkTrouble::OnlyEcho { place: place() },
             LinkTrouble::Silent { silent: 5 },
+            LinkTrouble::Stalled {
+                silent: 5,
+                stalled_ms: 300,
+            },
             LinkTrouble::Ambiguous,
             LinkTrouble::Suspended { slept_s: 9 },
         ];

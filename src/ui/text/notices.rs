@@ -129,7 +129,7 @@ fn disarmed(look: Look, why: Disarmed) -> String {
     }
 }
 
-const fn disarmed_zh(why: Disarmed) -> &'static str {
+pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
     match why {
         Disarmed::Stop => "已取消使能：按下了停止。",
         Disarmed::Person => "已取消使能。",

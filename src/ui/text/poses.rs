@@ -29,9 +29,10 @@ texts! {
     GAP_KEEP: "Keep as pose", "存为姿态", "Adds a pose by size with this gap. Nothing is sent.", "以此间距添加一个按尺寸的姿态，不发送任何内容。";
     GAP_POSE: "Pinch {} mm", "捏 {} mm";
     GAP_CLOSED: "Open for the grip first: from here thumb and index could meet.", "请先张开：从当前位置出发，拇指与食指可能相碰。";
-    HELD_SIZE: "Held", "夹持尺寸", "The distance of the pads while thumb and index alone hold something. Two blocks of known size correct it for this hand.", "仅拇指与食指夹住物体时指腹之间的距离。用两个已知尺寸的块可为此手校准。";
+    HELD_SIZE: "Held", "夹持尺寸", "The ball that touches both pads where thumb and index are, while they alone hold something; where their edges meet, the distance of the pads. Two blocks of known size make it that of things like them.", "仅拇指与食指夹住物体时，与两个指腹同时相切的球的直径；指腹边缘相接时为指腹间距。用两个已知尺寸的块校准后，为同类物体的尺寸。";
     HELD_NONE: "nothing between thumb and index", "拇指与食指之间没有物体";
-    HELD_MODEL: "about {} mm, by the model", "约 {} mm（按模型）";
+    HELD_BALL: "a ball of about {} mm, by the model", "约 {} mm 的球（按模型）";
+    HELD_PADS: "pads about {} mm apart, by the model", "指腹相距约 {} mm（按模型）";
     HELD_MEASURED: "about {} mm, measured", "约 {} mm（已校准）";
     BLOCK: "Size of a block that is held, mm", "所夹块的真实尺寸 mm", "Keeps its size and what the hand tells of it. Two blocks that differ by 10 mm or more make the sizes true.", "记下其尺寸与手的读数。两个相差 10 mm 以上的块即可校准。";
     BLOCK_NOT_HELD: "Let thumb and index alone hold the block.", "请仅用拇指与食指夹住该块。";

@@ -266,7 +266,7 @@ impl<'a> TrialSheet<'a, '_> {
             let style = compare_list::style(self.comparison.sessions(), session);
             dash::sample(ui.painter(), swatch, style, Stroke::new(theme::BAR, color));
             ui.add_space(theme::STEP);
-            if self.comparison.is_best(tried.setting) && !tried.is_probe() {
+            if self.comparison.is_best(tried.setting) && tried.counts() {
                 let star = Label::new(theme::BEST, look.palette.ok);
                 let star = star.font(theme::icon_high(theme::SIGN_SMALL));
                 star.named(look.say(tune::BEST_SIGN)).ui(ui);

@@ -126,10 +126,15 @@ fn blocks_that_were_measured_in_the_window_make_its_sizes_true() {
     let told = grip(folder.path());
     let (gap, size) = (told["gap_mm"].as_f64(), told["size_mm"].as_f64());
     assert!((gap.unwrap() - 14.0 - size.unwrap()).abs() < 0.1, "{told}");
-    assert_eq!(told["size_by"], "blocks");
+    assert_eq!(
+        (&told["size_by"], &told["size_of"]),
+        (&"blocks".into(), &"block".into())
+    );
     let told = grip(&folder.path().join("empty"));
     assert_eq!(
-        (&told["size_by"], &told["size_mm"]),
-        (&"model".into(), &told["gap_mm"])
+        (&told["size_by"], &told["size_of"]),
+        (&"model".into(), &"ball".into())
     );
+    let more = told["size_mm"].as_f64().unwrap() - told["gap_mm"].as_f64().unwrap();
+    assert!((0.5..3.0).contains(&more), "the pads are tilted: {told}");
 }

@@ -16,5 +16,6 @@ mod rtu_over_tcp;
 mod scan;
 mod settings;
 mod several_hands;
+mod stall;
 mod stop;
 mod tap;

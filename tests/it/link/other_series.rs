@@ -4,12 +4,13 @@
 use crate::setup::device::crc;
 use crate::setup::hand;
 use crate::setup::link::{self, Client};
+use crate::setup::referee::RefereeHand;
 use handscope::codec::rs485::{RequestDecoder, Rs485Request, encode_read_reply, encode_write_ack};
 use handscope::hand::{Angle, ArmEpoch, Dof, HandCommand, Setpoints, Target};
 use handscope::link::{LinkStatus, LinkTrouble, Series};
 use handscope::record::LinkState;
 use handscope::sim::{Personality, SWITCHES, SimConfig};
-use handscope::transport::Pipe;
+use handscope::transport::{Pipe, SystemDial};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -151,6 +152,19 @@ async fn every_simulated_hand_passes_whatever_it_does_and_however_cold_it_is() {
             joint.warmer_by_c = -30.0;
         }
         is_ours(cold, wire, "cold").await;
+    }
+}
+
+/// Over real sockets, in a process of its own.
+#[tokio::test]
+async fn the_hand_by_another_author_passes_warm_or_cold() {
+    for keys in [&[][..], &["ambient=0"]] {
+        let Some(referee) = RefereeHand::start(3, keys) else {
+            return;
+        };
+        let mut link = link::connect(&referee.endpoint(), Arc::new(SystemDial));
+        let ours = |status: &LinkStatus| status.series == Series::Ours && status.state.is_live();
+        link::until(&mut link, Duration::from_secs(20), ours).await;
     }
 }
 

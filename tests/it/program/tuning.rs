@@ -8,6 +8,7 @@ use handscope::app::notices::NoticeKind;
 use handscope::app::trials::{SeriesKind, SessionOrigin, StartRefusal, TrialAction};
 use handscope::hand::{Angle, Dof, Force, Speed};
 use handscope::poses::Preset;
+use handscope::record::Disarmed;
 use handscope::trials::Abort;
 use handscope::trials::plan::TrialPlan;
 use handscope::trials::session::load;
@@ -194,7 +195,12 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
     type Break = fn(&mut Bench);
     let ways: [(Break, Abort); 3] = [
         (|bench| bench.act(Action::Stop), Abort::Person),
-        (|bench| bench.act(Action::Disarm), Abort::Disarmed),
+        (
+            |bench| bench.act(Action::Disarm),
+            Abort::Disarmed {
+                why: Some(Disarmed::Person),
+            },
+        ),
         (|bench| bench.act(Action::Disconnect), Abort::LinkLost),
     ];
     for (break_off, why) in ways {

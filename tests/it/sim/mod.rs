@@ -7,4 +7,5 @@ mod hand;
 mod personalities;
 #[cfg(unix)]
 mod referee;
+mod referee_grip;
 mod servers;

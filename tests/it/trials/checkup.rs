@@ -3,6 +3,7 @@
 use crate::trials::virtual_hand::{VirtualHand, object};
 use crate::trials::worn::{JOINT, WEARS, checked, finds, started, told};
 use handscope::checkup::check::{checks, stopped_early};
+use handscope::checkup::free_file;
 use handscope::checkup::report::{CheckupReport, Keeping};
 use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
@@ -322,6 +323,7 @@ fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones()
     let folder = tempfile::tempdir().unwrap();
     let hand: Endpoint = "rtu:/dev/ttyUSB0".parse().unwrap();
     let files = CheckupFiles {
+        free_force: Some(folder.path().join("free.json")),
         kept: CheckupFiles::kept_in(folder.path(), &hand),
         report: Some(folder.path().join("out")),
         recordings: None,
@@ -336,6 +338,8 @@ fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones()
     };
     assert_eq!(first.keeping, keeping);
     assert_eq!(files.earlier().unwrap(), []);
+    let free = || free_file::read(files.free_force.as_deref().unwrap()).unwrap();
+    assert_eq!(free().known().next(), None);
     for (earlier, backlash) in [0.0, 3.0, 6.0, 9.0, 12.0].into_iter().enumerate() {
         let report = concluded(&files, backlash, None);
         assert_eq!(
@@ -345,6 +349,16 @@ fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones()
             report.aborted
         );
         assert_eq!(report.earlier, earlier);
+    }
+    // Nothing was in the way, so what the joints read then is their free motion.
+    for dof in Dof::ALL {
+        for angle in [100, 500, 900] {
+            let known = free().at(dof, angle);
+            assert!(
+                known.is_some_and(|g| g.abs() < 30.0),
+                "{dof:?} {angle}: {known:?}"
+            );
+        }
     }
     let (last, page) = files.last().unwrap().unwrap();
     assert_eq!(page, files.report);

@@ -23,6 +23,14 @@ fn goal() -> SearchGoal {
     SearchGoal::new(&[Dof::Index], LIMIT)
 }
 
+/// With few closes, where what happens in a search does not hang on their number.
+fn quick() -> SearchGoal {
+    SearchGoal {
+        closes: 10,
+        ..goal()
+    }
+}
+
 #[test]
 fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
     let (mut above, mut checked) = (0, 0);
@@ -31,7 +39,7 @@ fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
         assert!(case.claims, "{case:?}");
         assert!(case.close_s < 1.15 * case.best_s, "{case:?}");
         assert!(case.highest_g < 1.1 * f64::from(LIMIT), "{case:?}");
-        assert!(case.trials <= 45 && case.took_s < 200.0, "{case:?}");
+        assert!(case.trials <= 90 && case.took_s < 420.0, "{case:?}");
         above += case.above;
         checked += case.checked;
     }
@@ -209,11 +217,11 @@ fn highest_g(run: &Run) -> f64 {
 #[test]
 fn a_slip_ends_the_search_or_narrows_it_to_what_is_slower() {
     let mut hand = VirtualHand::new(random(1), 1, &object(13.0, None));
-    let run = hand.tune(&goal());
+    let run = hand.tune(&quick());
     assert!(run.finding.unwrap().result.is_ok());
     let (mut ended, mut narrowed) = (0, 0);
     for slips_at in 0..run.trials.len() {
-        let mut search = SettingsSearch::new(goal()).unwrap();
+        let mut search = SettingsSearch::new(quick()).unwrap();
         for (number, trial) in run.trials[..=slips_at].iter().enumerate() {
             let mut trial = trial.clone();
             if number == slips_at {
@@ -268,9 +276,9 @@ fn what_keeps_it_from_a_claim_is_said() {
     let usual = BodyParams::default();
     let block = object(13.0, None);
     let dof = Dof::Index;
-    let no_object = meanwhile(usual, &Object::none(), &goal(), |_, _| ());
+    let no_object = meanwhile(usual, &Object::none(), &quick(), |_, _| ());
     assert_eq!(none(no_object), NoClaim::NoContact { dof });
-    let mut short = goal();
+    let mut short = quick();
     short.close[dof] = Some(Angle::nearest(700));
     let out_of_reach = meanwhile(usual, &block, &short, |_, _| ());
     assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
@@ -281,24 +289,24 @@ fn what_keeps_it_from_a_claim_is_said() {
             breaks_at_g: None,
         })),
     };
-    let touching = none(meanwhile(usual, &at_start, &goal(), |_, _| ()));
+    let touching = none(meanwhile(usual, &at_start, &quick(), |_, _| ()));
     assert_eq!(touching, NoClaim::Touching { dof });
     let mut noisy = usual;
     noisy.joints[dof].force_noise_g = 60.0;
     let low = SearchGoal::new(&[dof], 200);
     let noise = none(meanwhile(noisy, &block, &low, |_, _| ()));
     assert!(matches!(noise, NoClaim::Noise { .. }), "{noise}");
-    let dead = none(meanwhile(usual, &block, &goal(), |hand, number| {
+    let dead = none(meanwhile(usual, &block, &quick(), |hand, number| {
         hand.set_dead(dof, number >= 1);
     }));
     assert_eq!(dead, NoClaim::Dead { dof });
-    let taken = none(meanwhile(usual, &block, &goal(), |hand, number| {
+    let taken = none(meanwhile(usual, &block, &quick(), |hand, number| {
         if number == 6 {
             hand.set_object(&Object::none());
         }
     }));
     assert_eq!(taken, NoClaim::Lost { dof });
-    let gives = none(meanwhile(usual, &block, &goal(), |hand, number| {
+    let gives = none(meanwhile(usual, &block, &quick(), |hand, number| {
         if number == 6 {
             hand.set_object(&object(4.0, None));
         }
@@ -314,7 +322,7 @@ fn what_keeps_it_from_a_claim_is_said() {
 fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     let usual = BodyParams::default();
     let block = object(13.0, None);
-    let fault = meanwhile(usual, &block, &goal(), |hand, number| {
+    let fault = meanwhile(usual, &block, &quick(), |hand, number| {
         if number == 5 {
             hand.inject_fault(Dof::Middle, Fault::OverCurrent);
         }
@@ -328,7 +336,7 @@ fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     ));
     assert!(fault.stopped && fault.finding.is_none());
     assert_eq!(fault.trials.len(), 5);
-    let locked = meanwhile(usual, &block, &goal(), |hand, _| {
+    let locked = meanwhile(usual, &block, &quick(), |hand, _| {
         hand.set_jam(Dof::Index, Some(800.0));
     });
     assert!(matches!(
@@ -365,10 +373,20 @@ fn without_a_distribution_the_bound_is_the_largest_of_22_closes() {
     let mut hand = VirtualHand::new(random(1), 1, &object(25.0, None));
     let finding = hand.tune(&free).finding.unwrap();
     let claim = finding.result.unwrap();
-    assert_eq!((claim.closes, claim.assurance.coverage), (22, 0.9));
-    let highest = claim.joints[0].peaks_g.iter().copied().fold(0.0, f64::max);
-    assert_eq!(claim.peak_bound_g(), highest);
-    assert_eq!(finding.tried.iter().filter(|own| own.confirms).count(), 22);
+    assert!(
+        claim.closes >= 22 && claim.assurance.coverage == 0.9,
+        "{claim}"
+    );
+    let peaks = &claim.joints[0].peaks_g;
+    let highest = peaks.iter().copied().fold(0.0, f64::max);
+    let bound = claim.peak_bound_g();
+    assert!(
+        (highest..1.1 * highest).contains(&bound),
+        "{claim} {peaks:?}"
+    );
+    assert!(claim.here >= 10 && claim.here == peaks.len());
+    let confirm = finding.tried.iter().filter(|own| own.confirms).count();
+    assert_eq!(confirm, claim.here);
 }
 
 /// How a search over a link ended.
@@ -396,7 +414,7 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
             seen = *sample;
         }
     }
-    let mut goal = goal();
+    let mut goal = quick();
     goal.start[Dof::Index] = Some(Angle::nearest(620));
     let search = SettingsSearch::new(goal).unwrap();
     let lease = link.grant(Owner::Task);

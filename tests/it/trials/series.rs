@@ -5,7 +5,7 @@ use crate::setup::hand;
 use crate::setup::link::{self, Client};
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
 use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus};
-use handscope::record::{Hold, LinkState, Record};
+use handscope::record::{Disarmed, Hold, LinkState, Record};
 use handscope::sim::{Personality, Scenario, SharedHand, SimConfig};
 use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
@@ -93,10 +93,16 @@ impl Bench {
             self.next(&mut series).await;
             let own = series.as_mut().unwrap();
             let view = {
-                let LinkStatus { state, armed, .. } = self.link.status();
+                let LinkStatus {
+                    state,
+                    armed,
+                    disarmed,
+                    ..
+                } = self.link.status();
                 LinkView {
                     state,
                     armed,
+                    disarmed,
                     ..LinkView::default()
                 }
             };
@@ -301,7 +307,8 @@ async fn a_stop_a_fault_heat_and_force_end_the_series_with_a_stop() {
             bench.link.stop();
         }
     });
-    assert_eq!(why.await, Abort::Disarmed);
+    let why_disarmed = Some(Disarmed::Stop);
+    assert_eq!(why.await, Abort::Disarmed { why: why_disarmed });
     let why = ended_by(slow(), Scenario::Rigid, |bench, series| {
         if closing(series, bench) {
             bench

@@ -59,7 +59,7 @@ fn a_search_is_the_first_thing_and_what_it_finds_becomes_a_pose_and_the_default(
     begin(&mut bench);
     bench.wait(8000);
     said(&bench, "closes so far");
-    finish(&mut bench, 400_000);
+    finish(&mut bench, 700_000);
     let claim = claim(&bench);
     assert!(claim.peak_bound_g() <= 700.0, "{claim}");
     said(&bench, "on this object");

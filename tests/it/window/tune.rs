@@ -6,7 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::trials::{TrialAction, TrialSession};
 use handscope::hand::{Dof, Fault};
 use handscope::params::rows::{ParamId, Value};
-use handscope::record::Rest;
+use handscope::record::{Disarmed, Rest};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::trials::{Abort, EarlyEnd, TrialPlan};
 use handscope::ui::View;
@@ -538,8 +538,13 @@ fn disarming_ends_it_with_a_stop() {
     let mut bench = running();
     bench.click("Disarm the hand");
     finish(&mut bench, 1000);
-    assert_eq!(ended_by(&bench), Abort::Disarmed);
-    assert!(!bench.texts_with("no longer armed for it").is_empty());
+    let why = Some(Disarmed::Person);
+    assert_eq!(ended_by(&bench), Abort::Disarmed { why });
+    assert!(
+        !bench
+            .texts_with("Not armed any more: it was disarmed")
+            .is_empty()
+    );
 }
 
 #[test]

@@ -124,7 +124,7 @@ pub(crate) async fn serve<'a>(
     let mut script = Script {
         told: Told::to(out),
         seen: HandSample::default(),
-        grip: GripEstimator::default(),
+        grip: session::grip_estimator(hand.endpoint),
         missed: 0,
         right: None,
         owes_stop: false,

@@ -25,6 +25,8 @@ pub(crate) struct OtherController {
     angles: SetpointWatch,
     forces: SetpointWatch,
     speeds: SetpointWatch,
+    /// The last reading of angles, forces, speeds proved nothing.
+    doubted: [bool; 3],
     /// Setpoints that changed though nobody here wrote them.
     pub(crate) changes: u64,
     /// The last such setpoint.
@@ -42,6 +44,7 @@ impl Default for OtherController {
             angles: SetpointWatch::new(SetpointRegister::AngleSet),
             forces: SetpointWatch::new(SetpointRegister::ForceSet),
             speeds: SetpointWatch::new(SetpointRegister::SpeedSet),
+            doubted: [false; 3],
             changes: 0,
             foreign: None,
             not_taken: None,
@@ -56,6 +59,7 @@ impl OtherController {
         self.angles.begin();
         self.forces.begin();
         self.speeds.begin();
+        self.doubted = [false; 3];
         self.not_taken = None;
     }
 
@@ -121,10 +125,12 @@ impl OtherController {
             }),
         ];
         let mut again = false;
-        for (seen, at) in seen.into_iter().flatten() {
+        let read = self.doubted.iter_mut().zip(seen);
+        for (doubted, (seen, at)) in read.filter_map(|(doubted, seen)| Some((doubted, seen?))) {
+            *doubted = seen == Seen::Doubtful;
+            again |= *doubted;
             match seen {
-                Seen::Usual => {}
-                Seen::Doubtful => again = true,
+                Seen::Usual | Seen::Doubtful => {}
                 Seen::NotTaken(conflict) => self.not_taken = Some(conflict),
                 Seen::Foreign(conflict) => {
                     self.changes += 1;
@@ -134,6 +140,11 @@ impl OtherController {
             }
         }
         again
+    }
+
+    /// True if the last reading of a group showed what nobody here wrote, which one reading does not prove.
+    pub(crate) fn is_doubted(&self) -> bool {
+        self.doubted.contains(&true)
     }
 
     /// True while another controller is at work.

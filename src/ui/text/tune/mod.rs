@@ -2,6 +2,7 @@
 
 pub(crate) mod search;
 
+use crate::app::settings::Language;
 use crate::app::trials::SessionDifference;
 use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
@@ -12,14 +13,17 @@ use crate::trials::plan::PlanField;
 use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
 use crate::ui::style::phrase::texts;
 use crate::ui::style::{Look, format};
-use crate::ui::text::{Text, words};
+use crate::ui::text::{Text, notices, words};
+use std::time::Duration;
 
 texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
     ENDED_EARLY: "Trials ended early: {}. {}", "试验提前结束，共 {} 次。{}";
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
     BY_PERSON: "Ended by a person.", "由操作者结束。";
-    DISARMED: "The hand is no longer armed for it.", "灵巧手的使能已取消。";
+    DISARMED: "Not armed any more: {}.", "{}";
+    NOT_ARMED: "The hand is no longer armed.", "灵巧手的使能已取消。";
+    ARMED_ANEW: "The hand was armed anew.", "灵巧手已重新使能。";
     OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通信。";
     OTHER_WROTE: "Another controller wrote {}.", "另有控制器写入 {}。";
     LINK_LOST: "The link was lost.", "连接断开。";
@@ -28,7 +32,9 @@ texts! {
     CEILING: "{} presses harder than the limit: {} g, limit {} g.", "{}的力超过上限：{} g，上限 {} g。";
     UNREACHED: "{} did not reach {} in time.", "{}未按时到达 {}。";
     LIMITS_REFUSED: "{} does not show the speed and force threshold that were set.", "{}没有显示已设置的速度与力阈值。";
-    NOT_READ: "The hand cannot be watched: its {} is not known yet, or old.", "无法监视灵巧手：{}读数尚未获取或已过时。";
+    NOT_READ: "The hand cannot be watched: its {} was not read yet.", "无法监视灵巧手：{}读数尚未获取。";
+    GREW_OLD: "The hand cannot be watched: its last {} is {} s old, and no newer one comes.", "无法监视灵巧手：最近的{}读数已是 {} 秒前，此后没有新读数。";
+    STALLED: "The hand could not be watched: this computer was busy, and the program did not run for {} s; the last {} is {} s old.", "无法监视灵巧手：本机繁忙，程序停滞 {} 秒；最近的{}读数已是 {} 秒前。";
     BLIND: "{} cannot be watched: its {} makes no sense.", "无法监视{}：{}读数不合理。";
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
     NOT_EMPTY: "The hand is not empty, or something is in its way: {} pressed with {} g at {}.", "手中有物体或有障碍：{}压力达 {} g，角度 {}。";
@@ -271,7 +277,12 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     match why {
         Abort::Person => look.say(BY_PERSON).into(),
-        Abort::Disarmed => look.say(DISARMED).into(),
+        Abort::ArmedAnew => look.say(ARMED_ANEW).into(),
+        Abort::Disarmed { why: None } => look.say(NOT_ARMED).into(),
+        Abort::Disarmed { why: Some(why) } => match look.language {
+            Language::En => look.fill(DISARMED, &[&why]),
+            Language::Zh => notices::disarmed_zh(why).into(),
+        },
         Abort::OtherController { wrote: None } => look.say(OTHER_CONTROLLER).into(),
         Abort::OtherController { wrote: Some(wrote) } => {
             look.fill(OTHER_WROTE, &[&words::setpoint(look, &wrote)])
@@ -295,7 +306,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         } => look.fill(CEILING, &[&joint(dof), &grams, &ceiling]),
         Abort::Unreached { dof, target } => look.fill(UNREACHED, &[&joint(dof), &target]),
         Abort::LimitsRefused { dof } => look.fill(LIMITS_REFUSED, &[&joint(dof)]),
-        Abort::NotRead { what } => look.fill(NOT_READ, &[&look.say(group(what))]),
+        Abort::NotRead { what, age, stall } => not_read(look, what, (age, stall)),
         Abort::Blind { what, dof } => look.fill(BLIND, &[&joint(dof), &look.say(group(what))]),
         Abort::TooWarm {
             dof,
@@ -306,6 +317,21 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
             look.fill(NOT_EMPTY, &[&joint(dof), &grams, &angle])
         }
         Abort::NoContact { dof } => look.fill(NO_CONTACT, &[&joint(dof)]),
+    }
+}
+
+/// Why readings are missing or old, by the age of the last and the time in which the program did not run.
+fn not_read(
+    look: Look,
+    what: &'static str,
+    (age, stall): (Option<Duration>, Option<Duration>),
+) -> String {
+    let seconds = |time: Duration| format!("{:.1}", time.as_secs_f64());
+    let what = look.say(group(what));
+    match (age.map(seconds), stall.map(seconds)) {
+        (None, _) => look.fill(NOT_READ, &[&what]),
+        (Some(age), None) => look.fill(GREW_OLD, &[&what, &age]),
+        (Some(age), Some(stall)) => look.fill(STALLED, &[&stall, &what, &age]),
     }
 }
 

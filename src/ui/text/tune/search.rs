@@ -16,7 +16,7 @@ texts! {
     GOAL: "Peak at most {} g, hold at least {} g, confirm with {} closes.", "峰值不超过 {} g，至少保持 {} g，确认 {} 次。";
     LIMIT: "peak at most, g", "峰值上限 g", "No close is to press harder than this.", "任何一次闭合都不应超过此力。";
     HOLD: "hold at least, g", "至少保持 g", "What is to be left of the grip once it has settled.", "抓握稳定后至少保留的力。";
-    CLOSES: "confirm with", "确认次数", "So often the setting that was found is closed again: the more, the tighter the bound.", "找到的设置将重复闭合这么多次：次数越多，上界越紧。";
+    CLOSES: "confirm with", "确认次数", "59 closes hold however the peaks vary; fewer take them to vary normally.", "59 次闭合不依赖峰值的分布；更少则假设峰值服从正态分布。";
     FREE: "Whatever the distribution", "不假设分布", "The bound is then the largest of all closes; that needs 22 or 59 of them.", "此时上界取所有闭合的最大值，需要 22 或 59 次。";
     PROBING: "Slow closes look for the contact.", "慢速闭合，寻找接触位置。";
     RISING: "Faster, as long as it stays under the limit.", "在不超过上限的前提下逐步加快。";
@@ -24,7 +24,9 @@ texts! {
     OVER: "Search over.", "寻找结束。";
     LEFT: "{} closes so far, about {} more.", "已闭合 {} 次，约还需 {} 次。";
     NONE: "The search was ended: nothing was found out.", "寻找被中止，没有结果。";
-    CLAIM: "{} on this object: {} s to close, peak at most {} g in {} of 100 closes ({} % sure, {} closes).", "{}（此物体）：闭合用时 {} 秒，峰值不超过 {} g，100 次闭合中至少 {} 次成立（置信度 {} %，试验 {} 次）。";
+    CLAIM: "{} on this object: {} s to close, peak at most {} g in {} of 100 closes ({} % sure {}, {} closes).", "{}（此物体）：闭合用时 {} 秒，峰值不超过 {} g，100 次闭合中至少 {} 次成立（置信度 {} %，{}，试验 {} 次）。";
+    IF_NORMAL: "if the peaks vary normally", "假设峰值服从正态分布";
+    HOWEVER: "however the peaks vary", "不假设峰值的分布";
     SETTING: "Speed {}, threshold {} g", "速度 {}，力阈值 {} g";
     TWO: "Speed {} up to {} before the contact, then {}; threshold {} g", "速度 {} 直到接触前 {}，然后 {}；力阈值 {} g";
     UNTOLD: "What could not be told: {}", "无法判断：{}";
@@ -45,6 +47,8 @@ texts! {
     NOTHING_MET: "{} met nothing on its way: put the object where it closes, or let it close further.", "{}一路没有碰到物体：请把物体放在闭合处，或允许闭合更多。";
     LOST: "{} met nothing where it had met the object: put it back, and see that it cannot move away.", "{}在原接触处没有碰到物体：请放回物体并确保它不会移动。";
     GIVES: "The object gives under {}: {} g for each count before and {} g now. Look whether it is damaged, and ask for a lower limit.", "物体在{}下变软：此前每单位 {} g，现在 {} g。请检查是否受损，并降低上限。";
+    EARLIER: "The object creeps: {} meets it {} counts earlier with each close. Fix it, or put it where it cannot move.", "物体在移动：{}每次闭合都早 {} 个单位碰到它。请固定物体，或放在不会移动的位置。";
+    LATER: "The object creeps: {} meets it {} counts later with each close. Fix it, or put it where it cannot move.", "物体在移动：{}每次闭合都晚 {} 个单位碰到它。请固定物体，或放在不会移动的位置。";
     SLIPS: "The object slips under {} even at a slow close: hold it with more, or place it better.", "即使慢速闭合，物体也在{}下滑动：请增大保持力或重新摆放。";
     NOISE: "A limit of {} g cannot be told from the noise of {}, {} g: ask for at least {} g.", "上限 {} g 与{}的噪声（{} g）无法区分：请至少设为 {} g。";
     TOO_STRONG: "Even at speed {} {} may peak at {} g with the threshold that holds: raise the limit, or hold with less.", "即使速度为 {}，以能保持的力阈值，{}的峰值仍可能达 {} g：请提高上限或降低保持力。";
@@ -60,6 +64,7 @@ texts! {
     UNTOLD_OFFSET: "whether the drive of {} counts the {} g that its sensor reads at rest", "{}的驱动器是否计入传感器静止时的 {} g";
     AS_READ: "{} compares its threshold with FORCE_ACT as read: the {} g at rest count.", "{}以 FORCE_ACT 的读数与力阈值比较：静止时的 {} g 计入。";
     ABOVE_REST: "{} compares its threshold with the force above rest: the {} g at rest do not count.", "{}以高于静止读数的力与力阈值比较：静止时的 {} g 不计入。";
+    UNTOLD_SPEEDS: "whether stops are as late at this speed as at the others, at which {} of the closes were made", "在此速度下停止的延迟是否与其他速度（{} 次闭合）相同";
     UNTOLD_DISTRIBUTION: "whether the peaks are normally distributed, on which the bound rests", "峰值是否服从上界所依据的正态分布";
 }
 
@@ -92,12 +97,18 @@ pub(crate) fn claim(look: Look, claim: &Claim) -> String {
         .map(|own| look.say(words::dof(own.dof)))
         .collect();
     let percent = |share: f64| format!("{:.0}", share * 100.0);
-    let parts: [&dyn std::fmt::Display; 6] = [
+    let assumed = if claim.distribution_free {
+        HOWEVER
+    } else {
+        IF_NORMAL
+    };
+    let parts: [&dyn std::fmt::Display; 7] = [
         &look.list(&names),
         &format!("{:.2}", claim.close_s),
         &format!("{:.0}", claim.peak_bound_g().ceil()),
         &percent(claim.assurance.coverage),
         &percent(claim.assurance.confidence),
+        &look.say(assumed),
         &claim.closes,
     ];
     look.fill(CLAIM, &parts)
@@ -117,6 +128,10 @@ pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
             before_g,
             now_g,
         } => look.fill(GIVES, &[&joint(dof), &grams(before_g), &grams(now_g)]),
+        NoClaim::Creeps { dof, counts } => {
+            let sentence = if counts > 0.0 { EARLIER } else { LATER };
+            look.fill(sentence, &[&joint(dof), &format!("{:.1}", counts.abs())])
+        }
         NoClaim::Slips { dof } => look.fill(SLIPS, &[&joint(dof)]),
         NoClaim::Noise {
             dof,
@@ -157,6 +172,7 @@ pub(crate) fn untold(look: Look, what: Untold) -> String {
             look.fill(UNTOLD_OFFSET, &[&joint(dof), &grams])
         }
         Untold::Distribution => look.say(UNTOLD_DISTRIBUTION).into(),
+        Untold::OtherSpeeds { closes } => look.fill(UNTOLD_SPEEDS, &[&closes]),
     }
 }
 

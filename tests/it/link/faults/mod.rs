@@ -96,7 +96,8 @@ fn every_seeded_schedule_keeps_the_rules() {
     assert!(seen.full > schedules / 10, "{seen:?}");
     assert!(seen.disturbed > schedules, "{seen:?}");
     assert!(seen.rests > schedules / 16, "{seen:?}");
-    assert!(seen.doubts > schedules / 200, "{seen:?}");
+    // Nor are there many joints that move for long enough: `link::frozen` tries that alone.
+    assert!(seen.doubts > schedules / 1000, "{seen:?}");
     // In a second and a half of faults and holds of our own, few of them can be: `link::others` tries that alone.
     assert!(seen.foreign_noticed > schedules / 500, "{seen:?}");
 }

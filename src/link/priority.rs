@@ -1,0 +1,47 @@
+//! The priority of the thread that links run on. The system may refuse it; then nothing is said but by the doctor.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is asked for: ahead of compilers and browsers, behind nothing that the system needs.
+#[cfg(target_os = "linux")]
+const NICE: i32 = -10;
+
+static IS_RAISED: AtomicBool = AtomicBool::new(false);
+
+/// Asks the system to prefer the calling thread, on which links are to run.
+pub fn raise() {
+    IS_RAISED.store(asked(), Ordering::Relaxed);
+}
+
+/// True if the system prefers the thread that links run on.
+pub fn is_raised() -> bool {
+    IS_RAISED.load(Ordering::Relaxed)
+}
+
+/// On Linux, process 0 of this call is the calling thread alone.
+#[cfg(target_os = "linux")]
+fn asked() -> bool {
+    rustix::process::setpriority_process(None, NICE).is_ok()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn asked() -> bool {
+    false
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_reported_is_what_the_system_granted() {
+        let thread = std::thread::spawn(|| {
+            let before = rustix::process::getpriority_process(None).unwrap_or_default();
+            let granted = asked();
+            let after = rustix::process::getpriority_process(None).unwrap_or_default();
+            (before, granted, after)
+        });
+        let (before, granted, after) = thread.join().unwrap_or_default();
+        assert_eq!(after, if granted { NICE } else { before });
+    }
+}

@@ -1,0 +1,272 @@
+//! Whole searches against the physics of a hand by another author (a spring with relaxation, a drive that stops some time after its
+//! threshold, read every ten milliseconds), without a wire: how many of their claims are false, by the closes to come. The
+//! environment variable `HANDSCOPE_SEARCHES` says how many there are of each hand.
+
+use crate::hand::Dof;
+use crate::trials::plan::{Approach, Until};
+use crate::trials::search::close::CloseFacts;
+use crate::trials::search::finding::Claim;
+use crate::trials::search::goal::SearchGoal;
+use crate::trials::search::settings_search::{NextClose, SettingsSearch};
+
+const LIMIT_G: i16 = 500;
+/// Closes to come that a claim is checked by.
+const CHECKS: u32 = 1500;
+/// Where the object is, units of ANGLE_ACT, and how stiff, g for each of them.
+const CONTACT: f64 = 500.0;
+const CONTACT_SD: f64 = 3.75;
+const STIFFNESS: f64 = 25.0;
+/// Share of the force that relaxes, and in which time, ms.
+const RELAXES: f64 = 0.08;
+const RELAXES_MS: f64 = 150.0;
+/// Counts a millisecond for each unit of speed.
+const RATE: f64 = 0.00152;
+const NOISE_G: f64 = 3.0;
+const DEAD_S: f64 = 0.064;
+
+/// How late stops are, ms.
+#[derive(Debug, Clone, Copy)]
+struct Stops {
+    mean: f64,
+    sd: f64,
+    /// Share of stops that are later, by an exponential distribution with this mean.
+    tail: (f64, f64),
+}
+
+const fn stops(sd: f64, tail: (f64, f64)) -> Stops {
+    Stops {
+        mean: 60.0,
+        sd,
+        tail,
+    }
+}
+
+struct Hand {
+    stops: Stops,
+    rng: fastrand::Rng,
+}
+
+struct Close {
+    /// Highest force, g, and the highest that was read.
+    peak_g: f64,
+    read_g: f64,
+    steady_g: f64,
+    contact: f64,
+    /// From the contact to the stop, s.
+    stop_s: f64,
+}
+
+impl Hand {
+    fn normal(&mut self, mean: f64, sd: f64) -> f64 {
+        let u = self.rng.f64().max(f64::MIN_POSITIVE);
+        let v = self.rng.f64();
+        mean + sd * (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+    }
+
+    fn stop_ms(&mut self) -> f64 {
+        let Stops { mean, sd, tail } = self.stops;
+        let late = if self.rng.f64() < tail.0 {
+            -tail.1 * self.rng.f64().max(f64::MIN_POSITIVE).ln()
+        } else {
+            0.0
+        };
+        self.normal(mean, sd).max(0.0) + late
+    }
+
+    fn close(&mut self, speed: f64, threshold_g: f64) -> Close {
+        let contact = self.normal(CONTACT, CONTACT_SD);
+        let mut pressed = -self.rng.f64() * speed * RATE;
+        let (mut relaxed, mut t, mut stop_at) = (0.0, 0.0, None);
+        let mut next_reading = 10.0 * self.rng.f64();
+        let mut noise = self.normal(0.0, NOISE_G);
+        let (mut peak_g, mut read_g, mut steady_g): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        while stop_at.is_none_or(|at: f64| t < at + 600.0) {
+            t += 1.0;
+            if t % 5.0 == 0.0 {
+                noise = self.normal(0.0, NOISE_G);
+            }
+            if stop_at.is_none_or(|at| t < at) {
+                pressed += speed * RATE;
+            }
+            let elastic = STIFFNESS * pressed.max(0.0);
+            relaxed += (RELAXES * elastic - relaxed) / RELAXES_MS;
+            let force = (elastic - relaxed).max(0.0);
+            if stop_at.is_none() && force + noise >= threshold_g && force > 2.0 {
+                stop_at = Some(t + self.stop_ms());
+            }
+            peak_g = peak_g.max(force);
+            if t >= next_reading {
+                next_reading += 8.0 + 4.0 * self.rng.f64();
+                steady_g = (force + noise).round();
+                read_g = read_g.max(steady_g);
+            }
+        }
+        Close {
+            peak_g,
+            read_g,
+            steady_g,
+            contact,
+            stop_s: stop_at.unwrap_or(t) / 1000.0,
+        }
+    }
+
+    fn facts(&mut self, next: &NextClose) -> (Close, CloseFacts) {
+        let speed = f64::from(next.setting.speed.get());
+        let close = self.close(speed, f64::from(next.setting.force.get()));
+        let counts_per_s = 1000.0 * RATE;
+        let (fast_s, way) = match next.plan.approach {
+            Approach::OneStage => (0.0, 1000.0 - close.contact),
+            Approach::TwoStage { fast, until } => {
+                let Until::Measured { margin } = until else {
+                    unreachable!("a search measures the contact");
+                };
+                let halt = f64::from(next.contact[Dof::Index].unwrap().get() + margin);
+                let fast_s = (1000.0 - halt) / (f64::from(fast.get()) * counts_per_s);
+                (fast_s + 0.1, (halt - close.contact).max(0.0))
+            }
+        };
+        let to_contact_s = DEAD_S + fast_s + way / (speed * counts_per_s);
+        let facts = CloseFacts {
+            dof: Dof::Index,
+            is_dead: false,
+            stopped_by_force: true,
+            touched_before: false,
+            contact: Some(close.contact.round()),
+            to_contact_s: Some(to_contact_s),
+            dead_time_s: Some(DEAD_S),
+            close_s: Some(to_contact_s + close.stop_s),
+            slow_s: None,
+            peak_g: Some(close.read_g),
+            missed_g: 0.0,
+            is_uncertain: false,
+            offset_g: 0.0,
+            is_clipped: false,
+            steady_g: Some(close.steady_g),
+            noise_g: NOISE_G,
+            stiffness: Some(STIFFNESS),
+            stiffness_at_least: None,
+            slips: Some(0),
+            reading_s: Some(0.01),
+            longest_gap_s: Some(0.012),
+        };
+        (close, facts)
+    }
+
+    /// A search; `None` where the ceiling ended it.
+    fn search(&mut self, goal: &SearchGoal) -> Option<(Claim, Vec<f64>)> {
+        let ceiling = goal.plan(goal.first_setting()).limits.ceiling_g;
+        let mut search = SettingsSearch::new(goal.clone()).unwrap();
+        let mut peaks = Vec::new();
+        while let Some(next) = search.next() {
+            let (close, facts) = self.facts(&next);
+            if close.read_g >= f64::from(ceiling) {
+                return None;
+            }
+            peaks.push(close.peak_g);
+            search.learn_facts(peaks.len(), &[facts]);
+        }
+        let claim = search.finding().unwrap().result.unwrap();
+        Some((claim, peaks))
+    }
+
+    /// Share of closes to come that are above a claim's bound.
+    fn above(&mut self, claim: &Claim) -> f64 {
+        let (speed, force) = (claim.setting.speed.get(), claim.setting.force.get());
+        let bound = claim.peak_bound_g();
+        let above = (0..CHECKS)
+            .filter(|_| self.close(speed.into(), force.into()).peak_g > bound)
+            .count();
+        f64::from(u32::try_from(above).unwrap()) / f64::from(CHECKS)
+    }
+}
+
+/// Claims, false ones, and those that say that they rest on a normal distribution.
+#[derive(Debug, Default)]
+struct Count {
+    searches: usize,
+    claims: usize,
+    falses: usize,
+    normal: usize,
+}
+
+fn count(stops: Stops, goal: &SearchGoal, most: usize) -> Count {
+    let asked = std::env::var("HANDSCOPE_SEARCHES").ok();
+    let searches = asked.and_then(|n| n.parse().ok()).unwrap_or(most);
+    let mut count = Count::default();
+    for seed in 0..searches {
+        let rng = fastrand::Rng::with_seed(u64::try_from(seed).unwrap());
+        let mut hand = Hand { stops, rng };
+        count.searches += 1;
+        let Some((claim, _)) = hand.search(goal) else {
+            continue;
+        };
+        count.claims += 1;
+        count.normal += usize::from(!claim.distribution_free);
+        count.falses += usize::from(hand.above(&claim) > 0.05);
+    }
+    println!("{stops:?}: {count:?}");
+    count
+}
+
+#[test]
+fn of_claims_on_hands_whose_stops_are_sometimes_late_few_are_false() {
+    let goal = SearchGoal::new(&[Dof::Index], LIMIT_G);
+    let (mut searches, mut claims, mut falses) = (0, 0, 0);
+    for tail in [
+        (0.0, 0.0),
+        (0.05, 40.0),
+        (0.1, 40.0),
+        (0.15, 40.0),
+        (0.1, 80.0),
+    ] {
+        let count = count(stops(2.0, tail), &goal, 5);
+        assert_eq!(count.normal, 0, "{tail:?}");
+        searches += count.searches;
+        claims += count.claims;
+        falses += count.falses;
+    }
+    for sd in [6.0, 12.0] {
+        let count = count(stops(sd, (0.0, 0.0)), &goal, 3);
+        searches += count.searches;
+        claims += count.claims;
+        falses += count.falses;
+    }
+    assert!(2 * claims > searches, "{claims} of {searches}");
+    assert!(20 * falses <= claims + 20, "{falses} of {claims}");
+}
+
+#[test]
+fn a_claim_of_few_closes_says_what_it_takes_for_granted_unless_a_stop_was_late() {
+    let quick = SearchGoal {
+        closes: 10,
+        ..SearchGoal::new(&[Dof::Index], LIMIT_G)
+    };
+    let mut hand = Hand {
+        stops: stops(2.0, (0.0, 0.0)),
+        rng: fastrand::Rng::with_seed(1),
+    };
+    let (claim, peaks) = hand.search(&quick).unwrap();
+    assert!(!claim.distribution_free && claim.closes == 10);
+    assert!(peaks.len() < 30, "{}", peaks.len());
+    let words = claim.to_string();
+    assert!(
+        words.contains("95 % sure if the peaks vary normally"),
+        "{words}"
+    );
+    // One stop in five is late: ten closes show it.
+    let late = (0..5).find_map(|seed| {
+        let mut hand = Hand {
+            stops: stops(2.0, (0.2, 20.0)),
+            rng: fastrand::Rng::with_seed(seed),
+        };
+        hand.search(&quick)
+    });
+    let (claim, peaks) = late.unwrap();
+    assert!(claim.distribution_free && claim.closes >= 59, "{claim}");
+    assert!(peaks.len() >= 59);
+    let words = claim.to_string();
+    assert!(
+        words.contains("95 % sure however the peaks vary"),
+        "{words}"
+    );
+}
