@@ -203,7 +203,7 @@ pub fn reason(
     // Heat disarms as well; the reading says more than that.
     let by_heat = matches!(link.disarmed, Some(Disarmed::Hot | Disarmed::HeatUnknown));
     let by_heat = link.armed.is_none() && by_heat;
-    let heated = by_heat.then(|| blind(seen).or_else(|| heat(seen.sample, HOT)));
+    let heated = by_heat.then(|| blind(seen, link.stall).or_else(|| heat(seen.sample, HOT)));
     fault(seen.sample)
         .or(heated.flatten())
         .or_else(|| link.arming_ended(epoch))
