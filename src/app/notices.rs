@@ -78,6 +78,8 @@ pub enum NoticeKind {
     DisarmedByOther(SetpointConflict),
     /// What the hand followed fell silent; the hand was stopped.
     SourceSilent(Owner),
+    /// The window did not look for so long that so many steps of what goes on were left out.
+    StepsLost(u64),
     /// This hand was stopped or lost while another led it, and that one was stopped, too.
     LeaderStopped,
     /// An armed hand was asked nothing for so long that it was disarmed, as the settings say.

@@ -19,9 +19,8 @@ const COUNTS: f64 = 2.0;
 const HALF_WAY: f64 = 500.0;
 /// The middle of a stroke, where a joint goes at its full speed.
 const MIDDLE: RangeInclusive<f64> = 0.25..=0.75;
-/// Pressed above its zero by this before it is nearly bent, a joint met something, g: free fingers of a published hand read up to 92.
-/// What is nearly bent may meet the palm.
-const MET_G: f64 = 120.0;
+/// Pressed above its zero by this before it is nearly bent, a joint met something, g. What is nearly bent may meet the palm.
+const MET_G: f64 = 80.0;
 const NEARLY_BENT: f64 = 100.0;
 
 /// One figure; `None` where it could not be measured.
@@ -138,13 +137,13 @@ impl StepRecord {
 
     /// What the sensor of a joint read over its zero on the way, by angle.
     pub(crate) fn free_close(&self, dof: Dof, zero_g: f64) -> FreeClose {
-        let told = self.told.secs();
+        // Angle and force may have been read one after the other.
+        let angle = self.curve(dof, |own| own.angle);
         let mut close = FreeClose::default();
-        for own in self.readings.iter().filter(|own| own.at_s >= told) {
-            let both = own.angle.zip(own.force);
-            if let Some((angle, force)) = both.map(|(angle, force)| (angle[dof], force[dof])) {
+        for force in self.curve(dof, |own| own.force).points() {
+            if let Some(angle) = angle.at(force.t) {
                 #[expect(clippy::cast_possible_truncation, reason = "both were 16 bits")]
-                close.take(angle as i16, (force - zero_g) as f32);
+                close.take(angle as i16, (force.v - zero_g) as f32);
             }
         }
         close

@@ -3,7 +3,7 @@
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::follow::ENDS_AFTER;
-use crate::inputs::line::{LineFault, StreamLine};
+use crate::inputs::line::{LineFault, LineField, LineRefusal, StreamLine};
 use crate::link::rate::EventRate;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -19,6 +19,12 @@ pub struct IntakeView {
     pub taken: u64,
     /// Lines that were refused, by reason.
     pub refused: BTreeMap<LineFault, u64>,
+    /// The newest of the reasons, with the field.
+    pub last_refused: Option<LineRefusal>,
+    /// Lines that stopped the hand, or let go of the dead-man, although something else in them was wrong.
+    pub odd_stops: u64,
+    /// The newest of them: its sender, and what was wrong.
+    pub last_odd: Option<(SocketAddr, LineRefusal)>,
 }
 
 /// Takes lines in.
@@ -26,7 +32,7 @@ pub struct IntakeView {
 pub struct Intake {
     side: Side,
     view: IntakeView,
-    seq: Option<u64>,
+    seq: Option<f64>,
     rate: EventRate,
 }
 
@@ -44,33 +50,40 @@ impl Intake {
     /// Takes a line of a sender. A stop passes whoever sends it.
     ///
     /// # Errors
-    /// [`LineFault`]: why it is refused, which is counted.
+    /// [`LineRefusal`]: why it is refused, which is counted.
     pub fn take(
         &mut self,
         line: &[u8],
         from: SocketAddr,
         now: Moment,
-    ) -> Result<StreamLine, LineFault> {
+    ) -> Result<StreamLine, LineRefusal> {
         self.take_parsed(StreamLine::parse(line, self.side), from, now)
     }
 
     /// The same of a line that was read already.
     ///
     /// # Errors
-    /// [`LineFault`]: why it is refused, which is counted.
+    /// [`LineRefusal`]: why it is refused, which is counted.
     pub fn take_parsed(
         &mut self,
-        line: Result<StreamLine, LineFault>,
+        line: Result<StreamLine, LineRefusal>,
         from: SocketAddr,
         now: Moment,
-    ) -> Result<StreamLine, LineFault> {
+    ) -> Result<StreamLine, LineRefusal> {
         let taken = line.and_then(|line| self.in_turn(&line, from, now).map(|()| line));
         match &taken {
-            Ok(_) => {
+            Ok(line) => {
                 self.view.taken += 1;
                 self.rate.hit(now);
+                if let Some(odd) = line.odd {
+                    self.view.odd_stops += 1;
+                    self.view.last_odd = Some((from, odd));
+                }
             }
-            Err(fault) => *self.view.refused.entry(*fault).or_default() += 1,
+            Err(refusal) => {
+                *self.view.refused.entry(refusal.fault).or_default() += 1;
+                self.view.last_refused = Some(*refusal);
+            }
         }
         taken
     }
@@ -80,7 +93,7 @@ impl Intake {
         line: &StreamLine,
         from: SocketAddr,
         now: Moment,
-    ) -> Result<(), LineFault> {
+    ) -> Result<(), LineRefusal> {
         if line.stop {
             return Ok(());
         }
@@ -88,10 +101,10 @@ impl Intake {
             && now.since(last) < ENDS_AFTER
         {
             if sender != from {
-                return Err(LineFault::OtherSender);
+                return Err(LineFault::OtherSender.into());
             }
             if self.seq.is_some() && line.seq.is_some() && line.seq <= self.seq {
-                return Err(LineFault::Late);
+                return Err(LineFault::Late.of(LineField::Seq));
             }
         }
         self.seq = line.seq;
@@ -130,14 +143,14 @@ mod tests {
         assert!(intake.take(LINE, peer(1), at(0)).is_ok());
         assert_eq!(
             intake.take(LINE, peer(2), at(999)),
-            Err(LineFault::OtherSender)
+            Err(LineFault::OtherSender.into())
         );
         let stop = intake.take(br#"{"stop":true}"#, peer(2), at(999));
         assert!(stop.is_ok_and(|line| line.stop), "a stop passes");
         assert!(intake.take(LINE, peer(2), at(1000)).is_ok());
         assert_eq!(
             intake.take(LINE, peer(1), at(1001)),
-            Err(LineFault::OtherSender)
+            Err(LineFault::OtherSender.into())
         );
         assert_eq!(intake.view(at(1001)).refused[&LineFault::OtherSender], 2);
     }
@@ -157,6 +170,19 @@ mod tests {
             assert_eq!(result.is_ok(), taken, "{seq} at {ms}");
         }
         assert_eq!(intake.view(at(1030)).refused[&LineFault::Late], 3);
+    }
+
+    #[test]
+    fn an_odd_stop_is_obeyed_and_told_with_its_sender() {
+        let mut intake = Intake::new(Side::Right);
+        intake.take(LINE, peer(1), at(0)).unwrap();
+        let odd = br#"{"stop":true,"right":[NaN,1,1,1,1,1]}"#;
+        assert!(intake.take(odd, peer(2), at(5)).unwrap().stop);
+        let view = intake.view(at(5));
+        assert_eq!((view.taken, view.odd_stops), (2, 1));
+        let (from, why) = view.last_odd.unwrap();
+        assert_eq!((from, why.fault), (peer(2), LineFault::NotFinite));
+        assert!(view.refused.is_empty());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
 
 pub mod dds;
+pub(crate) mod fields;
 pub mod follow;
 #[cfg(test)]
 mod follow_tests;
@@ -10,6 +11,8 @@ pub mod mirror;
 pub mod offer;
 pub mod pad;
 mod pinch;
+pub(crate) mod scan;
+pub(crate) mod stop;
 pub mod stream;
 
 pub use offer::{Offer, OfferLimits};

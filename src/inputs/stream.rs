@@ -5,8 +5,10 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
-use crate::inputs::line::{LINE_MAX, LineFault, StreamLine, begins_message};
+use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
+use crate::inputs::scan;
+use crate::inputs::stop::{self, TextEnd};
 use crate::link::{Clock, Owner, Wake};
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -26,6 +28,8 @@ const LINE_WITHIN: Duration = Duration::from_secs(10);
 const TELL_EACH: Duration = Duration::from_millis(50);
 /// Lines that may wait to be looked at.
 const LINES_MAX: usize = 64;
+/// Longest datagram that the network carries: one that is too long for a line may still say stop.
+const DATAGRAM_MAX: usize = 65_535;
 
 /// Where lines come in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -140,7 +144,23 @@ impl StreamSource {
 }
 
 /// A line, or why it is none.
-type ReadLine = Result<StreamLine, LineFault>;
+type ReadLine = Result<StreamLine, LineRefusal>;
+
+/// Reads lines. One that asks for a stop stops the hand before anything else of it is looked at.
+#[derive(Clone)]
+struct LineDoor {
+    side: Side,
+    stop: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl LineDoor {
+    fn read(&self, line: &[u8]) -> ReadLine {
+        if stop::is_stop(line, TextEnd::Whole) {
+            (self.stop)();
+        }
+        StreamLine::parse(line, self.side)
+    }
+}
 
 struct Listening {
     intake: Intake,
@@ -152,9 +172,16 @@ struct Listening {
 }
 
 impl Listening {
+    fn door(&self) -> LineDoor {
+        LineDoor {
+            side: self.config.side,
+            stop: Arc::clone(&self.config.stop),
+        }
+    }
+
     async fn datagrams(mut self, socket: UdpSocket) {
-        // One byte more than the longest line tells a longer one.
-        let mut datagram = [0; LINE_MAX + 1];
+        let mut datagram = vec![0; DATAGRAM_MAX];
+        let door = self.door();
         let mut tell = interval(TELL_EACH);
         loop {
             tokio::select! {
@@ -162,7 +189,7 @@ impl Listening {
                     // An error is that of an earlier answer; nothing is answered here.
                     let Ok((len, from)) = received else { continue };
                     let line = datagram.get(..len).unwrap_or_default();
-                    self.take(StreamLine::parse(line, self.config.side), from);
+                    self.take(door.read(line), from);
                 }
                 _ = tell.tick() => self.tell(),
             }
@@ -177,8 +204,14 @@ impl Listening {
             tokio::select! {
                 accepted = listener.accept() => match accepted {
                     Ok((stream, from)) if readers.len() < CONNECTIONS_MAX => {
-                        let taken = LineReader { from, side: self.config.side, lines: lines.clone() };
-                        readers.spawn(taken.run(stream));
+                        let reader = LineReader {
+                            from,
+                            door: self.door(),
+                            lines: lines.clone(),
+                            has_stopped: false,
+                            skips: false,
+                        };
+                        readers.spawn(reader.run(stream));
                     }
                     Ok(_too_many) => {}
                     // The system is out of something: it may have it again soon.
@@ -202,7 +235,6 @@ impl Listening {
             return;
         };
         if line.stop {
-            (self.config.stop)();
             return;
         }
         let offer = Offer {
@@ -233,46 +265,72 @@ impl Listening {
 /// One connection.
 struct LineReader {
     from: SocketAddr,
-    side: Side,
+    door: LineDoor,
     lines: mpsc::Sender<(ReadLine, SocketAddr)>,
+    /// The line that is not whole yet has stopped the hand already.
+    has_stopped: bool,
+    /// The rest of a line that was too long is passed over.
+    skips: bool,
 }
 
 impl LineReader {
     /// Reads lines until the other side closes, is silent, or sends one that is no message. What it sent behind that one is not
     /// looked at: a page in a browser can send a form whose text has messages on further lines, but never one that begins with
     /// a message.
-    async fn run(self, mut stream: TcpStream) {
+    async fn run(mut self, mut stream: TcpStream) {
         let mut rest = Vec::with_capacity(LINE_MAX);
         let mut piece = [0; LINE_MAX];
         loop {
             let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
-                return;
+                break;
             };
             rest.extend_from_slice(piece.get(..len).unwrap_or_default());
             let mut parts = rest.split(|byte| *byte == b'\n');
             let unfinished = parts.next_back().unwrap_or_default().to_vec();
-            let whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
-            for line in whole.iter().filter(|line| !line.trim_ascii().is_empty()) {
-                if !self.takes(StreamLine::parse(line, self.side)).await {
+            let mut whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
+            if self.skips {
+                if whole.is_empty() {
+                    rest.clear();
+                    continue;
+                }
+                whole.remove(0);
+                self.skips = false;
+            }
+            for line in whole.iter().filter(|line| !scan::unmarked(line).is_empty()) {
+                if !self.takes(line).await {
                     return;
                 }
             }
             rest = unfinished;
-            let fault = match &rest {
-                rest if rest.len() > LINE_MAX => Some(LineFault::TooLong),
-                rest if !begins_message(rest) => Some(LineFault::Malformed),
-                _ => None,
-            };
-            if let Some(fault) = fault {
-                self.takes(Err(fault)).await;
-                return;
+            if rest.len() > LINE_MAX || !begins_message(&rest) {
+                if !self.takes(&rest).await {
+                    return;
+                }
+                // It stopped the hand, and its rest says nothing more.
+                self.skips = true;
+                rest.clear();
+            } else if !self.has_stopped && stop::is_stop(&rest, TextEnd::MayGoOn) {
+                self.has_stopped = true;
+                (self.door.stop)();
             }
+        }
+        // A stop counts without the end of its line.
+        if stop::is_stop(&rest, TextEnd::Whole) {
+            self.takes(&rest).await;
         }
     }
 
-    /// Hands a line on; false if none is to follow.
-    async fn takes(&self, line: ReadLine) -> bool {
-        let ends = line.is_err_and(LineFault::is_no_message);
-        self.lines.send((line, self.from)).await.is_ok() && !ends
+    /// Reads a line and hands it on; false if none is to follow.
+    async fn takes(&mut self, line: &[u8]) -> bool {
+        let read = if std::mem::take(&mut self.has_stopped) {
+            StreamLine::parse(line, self.door.side)
+        } else {
+            self.door.read(line)
+        };
+        let is_message = match read {
+            Ok(_) => begins_message(line),
+            Err(refusal) => !refusal.fault.is_no_message(),
+        };
+        self.lines.send((read, self.from)).await.is_ok() && is_message
     }
 }

@@ -11,14 +11,17 @@ use crate::record::file::format::encode::EntryEncoder;
 use crate::record::file::format::topic::Topic;
 use crate::record::{Entry, Record};
 use crate::share::fleet::{FleetCard, FleetTeller};
-use crate::transport::dds::{DdsNode, DdsTopic, DdsWriter};
+use crate::share::motors::{self, MotorPair};
+use crate::transport::dds::{DdsMessage, DdsNode, DdsTopic, DdsWriter};
 use serde::Serialize;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
-use tokio::sync::watch;
+use tokio::sync::{mpsc, watch};
 use tokio_util::task::AbortOnDropHandle;
 
 /// No part of a state is older: the slowest part is read twice a second.
 pub const OLDEST: Duration = Duration::from_secs(1);
+/// States of both hands that wait to be looked at: the newest counts.
+const MOTORS_KEPT: u16 = 8;
 
 /// Unitree's state of a hand, `inspire::inspire_hand_state`: numbers as the hand has them, in the order of its registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,6 +57,16 @@ impl InspireState {
             *list = memory(group)?.try_into().ok()?;
         }
         Some(state)
+    }
+
+    const fn angles(&self) -> &[i16; Dof::ALL.len()] {
+        let [_, angles, _, _] = &self.shorts;
+        angles
+    }
+
+    const fn celsius(&self) -> &[u8; Dof::ALL.len()] {
+        let [_, _, celsius] = &self.bytes;
+        celsius
     }
 
     /// The message in CDR with its head.
@@ -104,11 +117,16 @@ impl DdsPublisher {
     /// Tells from now on, for as long as the link is open; it does not keep it open. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
         let writers = Writers::open(node, side);
+        let others = OtherHands {
+            told: node.reader(&motors::topic(), MOTORS_KEPT),
+            node: node.clone(),
+        };
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
         let (told, view) = watch::channel(DdsTold::default());
         let telling = Publishing {
             writers,
+            motors: MotorPair::new(side),
             encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
             clock: link.clock(),
             told,
@@ -116,7 +134,7 @@ impl DdsPublisher {
         let entries = LinkEntries::new(link.observe(), link.clock());
         Self {
             told: view,
-            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(entries))),
+            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(entries, others))),
         }
     }
 
@@ -156,8 +174,15 @@ impl SharedOnDds {
     }
 }
 
+/// What others tell of both hands of a robot.
+struct OtherHands {
+    told: mpsc::Receiver<DdsMessage>,
+    node: DdsNode,
+}
+
 struct Writers {
     state: DdsWriter,
+    motors: DdsWriter,
     joints: DdsWriter,
     touch: [DdsWriter; Finger::ALL.len()],
     grip: DdsWriter,
@@ -185,6 +210,7 @@ impl Writers {
                 name: format!("rt/inspire_hand/state/{letter}"),
                 type_name: "inspire::inspire_hand_state".into(),
             }),
+            motors: node.writer(&motors::topic()),
             joints: node.writer(&ros_topic(Topic::Joints)),
             touch: [little, ring, middle, index, thumb],
             grip: node.writer(&ros_topic(Topic::Grip)),
@@ -203,14 +229,27 @@ fn ros_topic(topic: Topic) -> DdsTopic {
 
 struct Publishing {
     writers: Writers,
+    motors: MotorPair,
     encoder: EntryEncoder,
     clock: Clock,
     told: watch::Sender<DdsTold>,
 }
 
 impl Publishing {
-    async fn run(mut self, mut entries: LinkEntries) {
-        while let Some(entry) = entries.next().await {
+    async fn run(mut self, mut entries: LinkEntries, mut others: OtherHands) {
+        loop {
+            let entry = tokio::select! {
+                entry = entries.next() => match entry {
+                    Some(entry) => entry,
+                    None => return,
+                },
+                Some(message) = others.told.recv() => {
+                    if !others.node.wrote(&message) {
+                        self.motors.heard(&message.bytes, self.clock.now());
+                    }
+                    continue;
+                }
+            };
             if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
                 self.state(sample, *fresh);
             }
@@ -225,12 +264,17 @@ impl Publishing {
         if !fresh.contains(Group::Angle) {
             return;
         }
-        let state = InspireState::of(sample, self.clock.now());
-        let is_sent = state.map(|state| self.writers.state.send(state.message()));
-        self.told.send_modify(|told| match is_sent {
-            Some(true) => told.states += 1,
-            Some(false) => told.lost += 1,
-            None => told.incomplete += 1,
+        let now = self.clock.now();
+        let Some(state) = InspireState::of(sample, now) else {
+            self.told.send_modify(|told| told.incomplete += 1);
+            return;
+        };
+        let is_sent = self.writers.state.send(state.message());
+        let motors = self.motors.message(state.angles(), state.celsius(), now);
+        let are_sent = motors.is_none_or(|motors| self.writers.motors.send(motors));
+        self.told.send_modify(|told| {
+            told.states += u64::from(is_sent);
+            told.lost += u64::from(!is_sent) + u64::from(!are_sent);
         });
     }
 

@@ -4,3 +4,4 @@ pub mod dds;
 pub mod fleet;
 pub mod foxglove;
 pub mod gateway;
+mod motors;

@@ -79,7 +79,12 @@ impl Body {
 
     /// What the force sensor says, g.
     pub fn force_g(&self, dof: Dof) -> f64 {
-        self.drives[dof].load_g() + self.rest_g[dof] + self.noise_g[dof]
+        self.drives[dof].load_g() + self.offset_g(dof)
+    }
+
+    /// What it says without any load, g.
+    pub fn offset_g(&self, dof: Dof) -> f64 {
+        self.rest_g[dof] + self.noise_g[dof]
     }
 
     /// Force on a fingertip, g, as it is.

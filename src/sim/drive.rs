@@ -58,7 +58,8 @@ pub enum DriveGoal {
 pub struct DriveSettings {
     /// Units of SPEED_SET.
     pub speed: f64,
-    /// Force threshold, g.
+    /// The load that stops it, g: FORCE_SET, less what its sensor reads without any where it counts that. Below zero it does not
+    /// close at all.
     pub threshold_g: f64,
 }
 
@@ -439,7 +440,8 @@ impl Drive {
         let step = self.take_up(self.velocity * STEP_S);
         // A fast drive passes its threshold within one step, so the step is looked at before it is made.
         let met = self.load_at(self.position + step);
-        if way > 0.0 && met > 0.0 && met >= setting.threshold_g {
+        let may_stop = met > 0.0 || setting.threshold_g < 0.0;
+        if way > 0.0 && may_stop && met >= setting.threshold_g {
             self.force_stop(setting.threshold_g);
             return;
         }
@@ -505,8 +507,9 @@ impl Drive {
 
     /// The force met its threshold. The drive runs on by the distance that the table gives.
     fn force_stop(&mut self, threshold_g: f64) {
-        let Some(contact) = self.whole_contact() else {
-            return;
+        let contact = self.whole_contact().filter(|_| threshold_g >= 0.0);
+        let Some(contact) = contact else {
+            return self.stop_moving(Status::ForceReached);
         };
         let stiffness = (contact.stiffness * self.grip).max(0.01);
         let met = MetThreshold {
@@ -517,7 +520,8 @@ impl Drive {
         let longer = self.draw_latency_ms() / LATENCY_MS;
         let over = run_on_g(met, self.body.run_on) * longer;
         let met = position_of(contact.angle) + threshold_g / stiffness;
-        let rest_g = RELAXED_PART * threshold_g + 0.05 * over * stiffness / RIGID_G_PER_COUNT;
+        let kept = self.body.kept_overshoot * over * stiffness / RIGID_G_PER_COUNT;
+        let rest_g = RELAXED_PART * threshold_g + kept;
         self.status = Status::ForceReached;
         self.phase = DrivePhase::Coasting {
             to: (met + over / RIGID_G_PER_COUNT).min(STROKE),

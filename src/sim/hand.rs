@@ -11,7 +11,8 @@ use crate::sim::memory::{AccessError, GAP, Memory};
 use crate::sim::number;
 use crate::sim::object::Object;
 use crate::sim::personality::{
-    Beyond, ChangeAck, Doubles, GapAnswer, Personality, SpeedZero, TactileCheck, Turnaround,
+    Beyond, ChangeAck, Doubles, ForceCompared, GapAnswer, Personality, SpeedZero, TactileCheck,
+    Turnaround,
 };
 use crate::sim::pull::{Pull, PullPhase};
 use crate::sim::scenario::{self, Ailment, Order, Scenario, Slip};
@@ -530,8 +531,17 @@ impl SimHand {
                 SpeedZero::Slowest => speed.max(CREEP),
                 SpeedZero::Freeze | SpeedZero::Ignored => speed,
             },
-            threshold_g: f64::from(self.memory.short(&FORCE_SET, element(dof))),
+            threshold_g: self.stops_at_g(dof, self.memory.short(&FORCE_SET, element(dof))),
         }
+    }
+
+    /// The load at which this FORCE_SET stops a drive, g.
+    fn stops_at_g(&self, dof: Dof, threshold: i16) -> f64 {
+        let offset_g = match self.config.personality.force_compared {
+            ForceCompared::AsRead => self.body.offset_g(dof),
+            ForceCompared::Load => 0.0,
+        };
+        f64::from(threshold) - offset_g
     }
 
     fn script_grasp(&mut self) {

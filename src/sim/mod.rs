@@ -25,8 +25,8 @@ pub use memory::AccessError;
 pub use object::{Contact, Object};
 pub use personality::{
     AnyId, BaudEffect, Beyond, ByteWords, Calibration, ChangeAck, ClearError, DefaultsWrite,
-    Doubles, Effect, FlashWrite, GapAnswer, InnerAddress, LongRead, MinusOne, NoSwitch,
-    OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES,
+    Doubles, Effect, FlashWrite, ForceCompared, GapAnswer, InnerAddress, LongRead, MinusOne,
+    NoSwitch, OutOfRangeWrite, Personality, Power, ReadOnlyWrite, ReplyUnit, RtuReplyGap, SWITCHES,
     SaveAnswer, SingleReply, SpeedZero, Switch, TactileCheck, TcpClients, Turnaround,
 };
 pub use pull::{Pull, PullEnd};

@@ -107,6 +107,11 @@ switches! {
         "The joint creeps." Slowest "slowest",
         "The former speed stays." Ignored "ignored",
     }
+    "What a drive compares FORCE_SET with (manual 2.6.12: FORCE_ACT)."
+    force_compared "force-compared" ForceCompared {
+        "The load alone." Load "load",
+        "FORCE_ACT as read: what it reads without load counts, and a threshold below that keeps the joint from closing." AsRead "as-read",
+    }
     "A write outside an element's range."
     out_of_range "out-of-range" OutOfRangeWrite {
         "Acknowledged, without effect." Drop "drop",

@@ -14,7 +14,7 @@ use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
 
@@ -73,7 +73,7 @@ pub async fn exhibit<H: TaskHand>(
 ) {
     let clock = start.clock;
     let mut records = hand.records();
-    let (told, mut sent) = mpsc::unbounded_channel();
+    let (told, mut sent) = watch::channel(None);
     let mut at = ExhibitTask {
         hand,
         run: ExhibitRun::new(start.plan, clock.now()),
@@ -103,7 +103,14 @@ pub async fn exhibit<H: TaskHand>(
                 Some(wish) => at.run.wish(wish, clock.now()),
                 None => break,
             },
-            Some(setpoints) = sent.recv() => tell(ExhibitStep::Sent(setpoints)),
+            Ok(()) = sent.changed() => {
+                let mut untold = None;
+                at.told.send_if_modified(|waiting| {
+                    untold = waiting.take();
+                    false
+                });
+                untold.into_iter().for_each(|setpoints| tell(ExhibitStep::Sent(setpoints)));
+            }
             () = ended(&mut at.playing) => at.run.ended(clock.now()),
             record = timeout(TICK, records.next()) => match record {
                 Ok(Some(Record::Reading { sample, fresh })) => {
@@ -148,7 +155,8 @@ struct ExhibitTask<'a, H> {
     playing: Option<PlayingPiece>,
     /// What the user granted; it may have ended.
     lease: Option<Lease>,
-    told: mpsc::UnboundedSender<Setpoints>,
+    /// What the hand was told since that was told last, each joint's newest.
+    told: watch::Sender<Option<Setpoints>>,
     clock: Clock,
     drawn: Arc<PageDrawn>,
 }
@@ -222,8 +230,10 @@ impl<H: TaskHand> ExhibitTask<'_, H> {
         let task = tokio::spawn(async move {
             let tell = |step| {
                 if let PlayStep::Sent(setpoints) = step {
-                    // A receiver that is gone means that nobody wants to know.
-                    let _told = told.send(setpoints);
+                    told.send_modify(|untold| match untold {
+                        Some(untold) => untold.merge(&setpoints),
+                        None => *untold = Some(setpoints),
+                    });
                 }
             };
             let _end = play(&hand, start, wanted, tell).await;

@@ -15,7 +15,7 @@ use crate::tasks::hand::TaskHand;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::time::timeout;
+use tokio::time::sleep;
 
 /// How often time is looked at where nothing is offered or read.
 const TICK: Duration = Duration::from_millis(5);
@@ -23,6 +23,8 @@ const TICK: Duration = Duration::from_millis(5);
 const FRESH_FOR: Duration = Duration::from_millis(250);
 /// The delay that is told is that of so many targets.
 const DELAYS: usize = 512;
+/// Offers and records that are looked at before the hand is again: whoever sends without a pause keeps nothing else waiting.
+const AT_ONCE: usize = 64;
 /// How often the view is told while only its figures change.
 const TELL_EACH: Duration = Duration::from_millis(100);
 
@@ -101,6 +103,8 @@ pub async fn follow<H: TaskHand>(
     loop {
         tokio::select! {
             biased;
+            // Feedback comes at the hand's own pace, offers at any.
+            Some(record) = records.next() => at.heard(&record),
             offer = offers.recv() => match offer {
                 Some(offer) => at.take(offer),
                 None => {
@@ -108,15 +112,16 @@ pub async fn follow<H: TaskHand>(
                     return FollowEnd::Gone;
                 }
             },
-            record = timeout(TICK, records.next()) => {
-                if let Ok(Some(record)) = record {
-                    at.heard(&record);
-                }
-            }
+            () = sleep(TICK) => {}
         }
-        // The newest of what waits.
-        while let Ok(offer) = offers.try_recv() {
-            at.take(offer);
+        for _ in 0..AT_ONCE {
+            let (record, offer) = (records.try_next(), offers.try_recv().ok());
+            if record.is_none() && offer.is_none() {
+                break;
+            }
+            record.iter().for_each(|record| at.heard(record));
+            // The newest of what waits.
+            offer.into_iter().for_each(|offer| at.take(offer));
         }
         if let Err(refused) = hand.check(at.start.lease) {
             at.lease_ended(refused);

@@ -35,7 +35,6 @@ mod line;
 mod memory;
 #[path = "../it/trials/other_hand.rs"]
 #[expect(
-    dead_code,
     clippy::indexing_slicing,
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,

@@ -8,9 +8,9 @@ use egui::{
 };
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
-use handscope::app::env::Env;
 use handscope::app::env::choose::NoChoice;
 use handscope::app::env::reveal::no_reveal;
+use handscope::app::env::{Env, LostSteps};
 use handscope::app::program::App;
 use handscope::app::settings::PlotWindow;
 use handscope::app::settings::Settings;
@@ -100,6 +100,7 @@ impl Scene {
             reveal: no_reveal(),
             settings_path: None,
             documents,
+            lost_steps: LostSteps::default(),
         };
         let mut app = App::new(env, Settings::default());
         app.open(Some(hand), clock.now());

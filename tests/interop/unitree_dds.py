@@ -2,12 +2,13 @@
 and xr_teleoperate use it, and ROS 2's types beside. Usage: unitree_dds.py ADDRESS DOMAIN SIDE COMMANDS ROUNDS.
 
 In each round it waits for states, as xr_teleoperate does, sends that many commands, 100 a second, and then waits until nobody tells
-states any more. Prints a line of JSON when the first state of a round came, and one when its commands are sent."""
+states any more. Every other round it sends both hands as twelve motors, as for the DFX service. Prints a line of JSON when the first state of a round came, and one when its commands are sent."""
 
 import json
 import sys
 import time
 from dataclasses import dataclass, fields, is_dataclass
+from math import isnan
 from xml.etree import ElementTree
 
 import cyclonedds.idl as idl
@@ -45,6 +46,50 @@ class inspire_hand_state(idl.IdlStruct, typename="inspire.inspire_hand_state"):
     err: BYTES
     status: BYTES
     temperature: BYTES
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class MotorCmd_(idl.IdlStruct, typename="unitree_go.msg.dds_.MotorCmd_"):
+    mode: types.uint8
+    q: types.float32
+    dq: types.float32
+    tau: types.float32
+    kp: types.float32
+    kd: types.float32
+    reserve: types.array[types.uint32, 3]
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class MotorCmds_(idl.IdlStruct, typename="unitree_go.msg.dds_.MotorCmds_"):
+    cmds: types.sequence[MotorCmd_]
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class MotorState_(idl.IdlStruct, typename="unitree_go.msg.dds_.MotorState_"):
+    mode: types.uint8
+    q: types.float32
+    dq: types.float32
+    ddq: types.float32
+    tau_est: types.float32
+    q_raw: types.float32
+    dq_raw: types.float32
+    ddq_raw: types.float32
+    temperature: types.uint8
+    lost: types.uint32
+    reserve: types.array[types.uint32, 2]
+
+
+@dataclass
+@annotate.final
+@annotate.autoid("sequential")
+class MotorStates_(idl.IdlStruct, typename="unitree_go.msg.dds_.MotorStates_"):
+    states: types.sequence[MotorState_]
 
 
 @dataclass
@@ -104,7 +149,10 @@ states = reader(f"rt/inspire_hand/state/{side}", inspire_hand_state)
 # As ROS 2 does by default: none of these is lost, and there are as many as states.
 joints = reader("rt/joint_states", JointState_, Policy.Reliability.Reliable(duration(seconds=1)))
 touch = reader("rt/handscope/touch/index", Touch_)
+motors = reader("rt/inspire/state", MotorStates_)
 writer = DataWriter(participant, Topic(participant, f"rt/inspire_hand/ctrl/{side}", inspire_hand_ctrl))
+motor_writer = DataWriter(participant, Topic(participant, "rt/inspire/cmd", MotorCmds_))
+OWN, OTHER = (range(6), range(6, 12)) if side == "r" else (range(6, 12), range(6))
 
 
 def heard(of):
@@ -140,15 +188,23 @@ for nth in range(rounds):
     )
     model = ElementTree.fromstring(wait(lambda: heard(models), 5).data)
     assert model.tag == "robot" and set(pose.name) <= {joint.get("name") for joint in model.iter("joint")}, pose.name
-    while heard(states) or heard(joints):
+    while heard(states) or heard(joints) or heard(motors):
         pass
     count, told, sent, start = 0, 0, 0, time.monotonic()
     # As many states as commands, however late either comes on a computer that does other work as well.
     while sent < commands or count < commands:
         if sent < commands and time.monotonic() >= start + sent * 0.01:
             # xr_teleoperate's own message: only angles are meant, the other lists are zero.
-            angles = [-1, -1, -1, 1000 - 2 * (sent % 250), -1, -1]
-            writer.write(inspire_hand_ctrl([0] * 6, angles, [0] * 6, [0] * 6, 0b0001))
+            index = 1000 - 2 * (sent % 250)
+            if nth % 2 == 0:
+                angles = [-1, -1, -1, index, -1, -1]
+                writer.write(inspire_hand_ctrl([0] * 6, angles, [0] * 6, [0] * 6, 0b0001))
+            else:
+                cmds = [MotorCmd_(0, 1.0, 0, 0, 0, 0, [0] * 3) for _ in range(12)]
+                cmds[OWN[3]].q = index / 1000
+                # What the other hand is sent is not looked at.
+                cmds[OTHER[0]].q = float("nan")
+                motor_writer.write(MotorCmds_(cmds))
             sent += 1
         while sample := heard(states):
             state, count = sample, count + 1
@@ -156,6 +212,9 @@ for nth in range(rounds):
             pose, told = sample, told + 1
         time.sleep(0.001)
     took = time.monotonic() - start
+    both = wait(lambda: heard(motors), 5).states
+    assert len(both) == 12 and all(-0.1 < both[at].q < 1.1 and both[at].temperature > 10 for at in OWN), both
+    assert all(isnan(both[at].q) and both[at].lost for at in OTHER), both
     tip = wait(lambda: heard(touch), 5)
     assert len(pose.name) == len(pose.position) == 12 and all(0 <= angle < 3 for angle in pose.position), pose
     assert tip.check_ok and len(tip.raw) == 58 and len(tip.channels) == 8, tip
@@ -163,6 +222,6 @@ for nth in range(rounds):
     if nth + 1 < rounds:
         quiet = time.monotonic()
         while time.monotonic() < quiet + 0.5:
-            while heard(states) or heard(joints):
+            while heard(states) or heard(joints) or heard(motors):
                 quiet = time.monotonic()
             time.sleep(0.01)

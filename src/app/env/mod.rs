@@ -7,6 +7,7 @@ pub(crate) mod running;
 
 use crate::app::env::choose::ChooseFile;
 use crate::app::env::reveal::Reveal;
+pub use crate::app::env::running::LostSteps;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
 use std::path::PathBuf;
@@ -31,4 +32,6 @@ pub struct Env {
     pub settings_path: Option<PathBuf>,
     /// The user's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.
     pub documents: Option<PathBuf>,
+    /// What the window did not look at in time.
+    pub lost_steps: LostSteps,
 }

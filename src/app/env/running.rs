@@ -3,39 +3,60 @@
 use crate::app::env::Env;
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
-use tokio::sync::mpsc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use tokio::sync::broadcast;
+use tokio::sync::broadcast::error::TryRecvError;
 use tokio_util::task::AbortOnDrop;
+
+/// Steps that may wait for the window: five seconds of a hand that follows. A window that does not look for longer gets the newest.
+const STEPS_MAX: usize = 1024;
+
+/// Steps of tasks that the window did not look at in time. Copies are the same count.
+#[derive(Debug, Clone, Default)]
+pub struct LostSteps(Arc<AtomicU64>);
+
+impl LostSteps {
+    fn add(&self, count: u64) {
+        self.0.fetch_add(count, Ordering::Relaxed);
+    }
+
+    /// How many since the last call.
+    pub(crate) fn take(&self) -> u64 {
+        self.0.swap(0, Ordering::Relaxed)
+    }
+}
 
 /// A task under way. Dropping it breaks it off.
 #[derive(Debug)]
 pub(crate) struct Running<S, E> {
-    // As many as a task tells: some ten for each thing it does.
-    steps: mpsc::UnboundedReceiver<(Moment, S)>,
+    steps: broadcast::Receiver<(Moment, S)>,
+    lost: LostSteps,
     end: Option<BackgroundJob<E>>,
     _task: AbortOnDrop,
 }
 
 /// Where a task tells its steps.
 pub(crate) struct Steps<S> {
-    told: mpsc::UnboundedSender<(Moment, S)>,
+    told: broadcast::Sender<(Moment, S)>,
     env: Env,
 }
 
 impl<S> Steps<S> {
     pub(crate) fn tell(&self, step: S) {
         // A receiver that is gone means that nobody wants to know.
-        let _told = self.told.send((self.env.clock.now(), step));
+        let _told = self.told.send((self.env.clock.now(), step)).is_ok();
         (self.env.wake)();
     }
 }
 
-impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
+impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
     /// Begins a task.
     pub(crate) fn start<F>(env: &Env, task: impl FnOnce(Steps<S>) -> F) -> Self
     where
         F: Future<Output = E> + Send + 'static,
     {
-        let (told, steps) = mpsc::unbounded_channel();
+        let (told, steps) = broadcast::channel(STEPS_MAX);
         let env = env.clone();
         let work = task(Steps {
             told,
@@ -47,6 +68,7 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
             BackgroundJob::start_fallible(&env.runtime, &env.wake, async move { task.await.ok() });
         Self {
             steps,
+            lost: env.lost_steps.clone(),
             end: Some(end),
             _task: abort,
         }
@@ -55,7 +77,37 @@ impl<S: Send + 'static, E: Send + 'static> Running<S, E> {
     /// What was told since the last call, and the end once it is there. All steps come before the end.
     pub(crate) fn news(&mut self) -> (Vec<(Moment, S)>, Option<E>) {
         let end = BackgroundJob::take_from(&mut self.end);
-        let steps = std::iter::from_fn(|| self.steps.try_recv().ok()).collect();
-        (steps, end)
+        (waiting(&mut self.steps, &self.lost), end)
+    }
+}
+
+/// All that waits; what had to go before it was looked at is counted.
+fn waiting<T: Clone>(steps: &mut broadcast::Receiver<T>, lost: &LostSteps) -> Vec<T> {
+    let mut all = Vec::new();
+    loop {
+        match steps.try_recv() {
+            Ok(step) => all.push(step),
+            Err(TryRecvError::Lagged(count)) => lost.add(count),
+            Err(TryRecvError::Empty | TryRecvError::Closed) => return all,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_that_does_not_look_gets_the_newest_steps_and_how_many_went() {
+        let (told, mut steps) = broadcast::channel(STEPS_MAX);
+        let lost = LostSteps::default();
+        for step in 0..3000 {
+            told.send(step).unwrap();
+        }
+        drop(told);
+        let all = waiting(&mut steps, &lost);
+        assert_eq!((all.len(), all.last()), (STEPS_MAX, Some(&2999)));
+        assert_eq!(lost.take(), 3000 - STEPS_MAX as u64);
+        assert_eq!(lost.take(), 0, "told once");
     }
 }

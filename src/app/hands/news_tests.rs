@@ -1,9 +1,9 @@
 //! What is heard of a link changes what is shown and told, and nothing else. No link is open here.
 
 use crate::app::ctx::Ctx;
-use crate::app::env::Env;
 use crate::app::env::choose::NoChoice;
 use crate::app::env::reveal::no_reveal;
+use crate::app::env::{Env, LostSteps};
 use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::notices::{Level, NoticeKind, Notices};
@@ -44,6 +44,7 @@ impl Bench {
                 reveal: no_reveal(),
                 settings_path: None,
                 documents: None,
+                lost_steps: LostSteps::default(),
             },
             _runtime: runtime,
         }

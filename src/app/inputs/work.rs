@@ -5,8 +5,7 @@ use crate::app::hand::Connection;
 use crate::app::inputs::{HandInputs, InputKind, JoinedDds, OpenRefusal};
 use crate::app::settings::Settings;
 use crate::hand::kinematics::Side;
-use crate::inputs::dds::ctrl;
-use crate::inputs::dds::source::{DdsSource, DdsSourceConfig};
+use crate::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
 use crate::inputs::pad::PadInput;
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
@@ -148,15 +147,18 @@ impl HandInputs {
             return;
         };
         let _entered = env.runtime.enter();
+        let stops = link.clone();
+        let side = card.side;
         let config = DdsSourceConfig {
+            side,
             allowed,
             clock: env.clock,
+            stop: Arc::new(move || drop(stops.stop())),
             wake: Arc::clone(&env.wake),
         };
-        let side = card.side;
         let joined = DdsNode::open(&place).map(|node| JoinedDds {
             others: OtherFollowers::open(&node, side, env.clock),
-            source: DdsSource::open(config, node.reader(&ctrl::topic(side), ctrl::KEPT)),
+            source: DdsSource::open(config, DdsCommands::of(&node, side)),
             shared: SharedOnDds::open(node, link, card),
         });
         match joined {

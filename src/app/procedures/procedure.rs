@@ -52,7 +52,7 @@ impl<S, E> ProcedureStage<S, E> {
         mut told: impl FnMut(&S, Moment) -> bool,
     ) -> bool
     where
-        S: Send + 'static,
+        S: Clone + Send + 'static,
         E: Send + 'static,
     {
         let Some(running) = run else { return false };
@@ -127,7 +127,7 @@ pub struct CalibrateProcedure {
 #[derive(Debug, Default)]
 pub struct Procedures {
     pub card: Option<Procedure>,
-    pub(crate) requested: Option<mpsc::UnboundedReceiver<GoRequest>>,
+    pub(crate) requested: Option<mpsc::Receiver<GoRequest>>,
 }
 
 impl Procedure {

@@ -16,7 +16,7 @@ pub(crate) struct GoRequest {
 
 /// Asks the program to go there.
 pub(crate) struct Asking {
-    pub(crate) requests: mpsc::UnboundedSender<GoRequest>,
+    pub(crate) requests: mpsc::Sender<GoRequest>,
     pub(crate) wake: Wake,
 }
 
@@ -26,7 +26,7 @@ impl Reach for Asking {
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         let (opened, open) = oneshot::channel();
         let place = place.clone();
-        self.requests.send(GoRequest { place, opened }).ok()?;
+        self.requests.send(GoRequest { place, opened }).await.ok()?;
         (self.wake)();
         let hand = open.await.ok()?;
         answers(&hand, REACHED_WITHIN).await.then_some(hand)

@@ -132,7 +132,8 @@ impl Procedures {
             Some(folder) => Ok(Backups::new(folder, hand)),
             None => Err(TaskError::NoBackup(BackupError::NoFolder)),
         };
-        let (requests, requested) = mpsc::unbounded_channel();
+        // A task asks for one place, and waits until it is there.
+        let (requests, requested) = mpsc::channel(1);
         let mut reach = Asking {
             requests,
             wake: Arc::clone(&env.wake),

@@ -146,6 +146,10 @@ impl App {
             hand_tick::tick(hand, &mut shared, &mut ctx);
             self.quirk_notes.tick(hand, &mut ctx);
         }
+        let lost = self.env.lost_steps.take();
+        if lost > 0 {
+            notices.push(now, NoticeKind::StepsLost(lost));
+        }
         let has = |hand: &Hand, id| hand.series.as_ref().is_some_and(|run| run.session == id);
         let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
         told.into_iter().for_each(|told| notices.push(now, told));

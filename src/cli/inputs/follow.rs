@@ -129,6 +129,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
             json: args.json,
             question: None,
             heat: None,
+            odd_stops: 0,
             told: None,
         },
     };
@@ -334,6 +335,8 @@ struct ProgressPrinter<'a> {
     question: Option<String>,
     /// The warmest drive, if one is warm.
     heat: Option<DriveHeat>,
+    /// Odd stops that were reported.
+    odd_stops: u64,
     told: Option<((Option<FollowPhase>, bool), Moment)>,
 }
 
@@ -354,6 +357,11 @@ impl ProgressPrinter<'_> {
             return Ok(());
         }
         self.told = Some((stands, now));
+        if let Some((count, words)) = source.odd_stops()
+            && count != std::mem::replace(&mut self.odd_stops, count)
+        {
+            say(&words);
+        }
         let phase = phase.map_or("waiting", phase_word);
         let (words, mut object) = source.told(now);
         match object.as_object_mut().filter(|_| self.json) {

@@ -7,8 +7,7 @@ use crate::cli::{listen, parse, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
-use crate::inputs::dds::ctrl;
-use crate::inputs::dds::source::{DdsSource, DdsSourceConfig, DdsView};
+use crate::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig, DdsView};
 use crate::inputs::mirror::{MirrorScale, MirrorSource};
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::report::PadTrouble;
@@ -24,6 +23,7 @@ use crate::transport::dds::DdsNode;
 use anyhow::{Context as _, bail};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -178,15 +178,18 @@ impl FollowSource {
         {
             bail!(followed(&other));
         }
-        let messages = node.reader(&ctrl::topic(card.side), ctrl::KEPT);
+        let commands = DdsCommands::of(&node, card.side);
+        let stops = link.clone();
         let config = DdsSourceConfig {
+            side: card.side,
             allowed: allowed.limits,
             clock,
+            stop: Arc::new(move || drop(stops.stop())),
             wake: Arc::new(|| ()),
         };
         let follows = allowed.moves;
         let out = SharedOnDds::open(node, link, FleetCard { follows, ..card });
-        Ok(Self::Dds(DdsSource::open(config, messages), out, others))
+        Ok(Self::Dds(DdsSource::open(config, commands), out, others))
     }
 
     /// Why a hand may be moved no more whatever is sent, once there is a reason.
@@ -237,6 +240,26 @@ impl FollowSource {
         }
     }
 
+    /// Stops that were obeyed although something else in them was wrong, and the newest of them in words.
+    pub(super) fn odd_stops(&self) -> Option<(u64, String)> {
+        let told = |sender: &dyn Display, why: &dyn Display| {
+            format!("{sender} sent a stop, which was obeyed; odd in it: {why}")
+        };
+        match self {
+            Self::Stream(_, source) => {
+                let intake = source.view().intake;
+                let (sender, why) = intake.last_odd?;
+                Some((intake.odd_stops, told(&sender, &why)))
+            }
+            Self::Dds(source, ..) => {
+                let view = source.view();
+                let (sender, why) = view.last_odd?;
+                Some((view.odd_stops, told(&sender, &why)))
+            }
+            Self::Pad(_) | Self::Mirror(..) => None,
+        }
+    }
+
     /// How it goes, in words and as an object.
     pub(super) fn told(&self, now: Moment) -> (String, Value) {
         match self {
@@ -251,17 +274,22 @@ impl FollowSource {
                     .iter()
                     .map(|(fault, count)| (fault.name(), *count))
                     .collect();
+                let last = intake.last_refused.map(|refusal| refusal.to_string());
                 let words = format!(
-                    "{:6.1} lines/s  {} taken  {} refused",
+                    "{:6.1} lines/s  {} taken  {} refused{}",
                     intake.rate_hz,
                     intake.taken,
-                    refused.values().sum::<u64>()
+                    intake.refused.values().sum::<u64>(),
+                    last.as_ref()
+                        .map_or_else(String::new, |last| format!(" ({last})")),
                 );
                 let object = json!({
                     "sender": intake.sender.map(|(sender, _)| sender.to_string()),
                     "rate_hz": intake.rate_hz,
                     "taken": intake.taken,
                     "refused": refused,
+                    "last_refused": last,
+                    "odd_stops": intake.odd_stops,
                     "not_granted": not_granted,
                 });
                 (words, object)
@@ -319,6 +347,7 @@ fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
         "rate_hz": view.rate_hz,
         "taken": view.taken,
         "refused": refused,
+        "odd_stops": view.odd_stops,
         "not_granted": view.not_granted,
         "states": told.states,
         "incomplete": told.incomplete,

@@ -366,6 +366,12 @@ impl Done {
             if let Some(words) = lost(&recording.damage) {
                 say(&format!("{} is damaged: {words}", file.path().display()));
             }
+            if recording.rows == 0 && files.len() > 1 {
+                say(&format!(
+                    "there is nothing to export of {}",
+                    file.path().display()
+                ));
+            }
             all.rows += recording.rows;
             all.damage.add(&recording.damage);
         }

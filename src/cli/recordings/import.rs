@@ -84,6 +84,9 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     if !imported.unknown.is_empty() {
         lines.push(format!("skipped columns: {}", imported.unknown.join(", ")));
     }
+    if imported.counts_from_1970 {
+        lines.push("its times count from 1970: the recording begins with the first line".into());
+    }
     if imported.has_grip {
         lines.push(
             "left out: the columns of the grip, which is found anew from the readings".into(),
@@ -104,6 +107,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
         "rows": imported.rows,
         "skipped_columns": imported.unknown,
         "grip_left_out": imported.has_grip,
+        "counts_from_1970": imported.counts_from_1970,
         "incomplete_fingertips": imported.incomplete_tips,
     });
     out.result(args.json, &object, lines)

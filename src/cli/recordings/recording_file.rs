@@ -95,12 +95,13 @@ fn opened(file: Result<RecordingFile, OpenError>, path: &Path) -> anyhow::Result
             OpenError::Unreadable { .. } => "check the path",
             OpenError::NotMcap if is_csv => "make a recording file of it with 'handscope import'",
             OpenError::NotAFile | OpenError::NotMcap => {
-                "name a recording file of 'handscope record' or of the window"
+                "name a recording file of 'handscope record' or of the window, or a folder of rosbag2"
             }
             OpenError::Foreign => "only recordings of Handscope can be opened",
             OpenError::SeveralHands { .. } => {
                 "take them apart with the program that put them together"
             }
+            OpenError::TooMuch { .. } => "only recordings of Handscope can be opened",
             OpenError::Empty => "there is nothing to recover",
         };
         anyhow!("cannot open {}: {error}; {what_to_do}", path.display())

@@ -60,6 +60,9 @@ pub enum CtrlFault {
     /// A value that the register does not take.
     #[error("a value is outside the register's range")]
     Range,
+    /// Not the motors of two hands.
+    #[error("two hands have twelve motors")]
+    Motors,
     /// Faster or firmer than the user who let the hand follow allowed.
     #[error("a speed or force is above --speed or --force")]
     AboveLimit,
@@ -77,6 +80,7 @@ impl CtrlFault {
             Self::Position => "position",
             Self::Length => "length",
             Self::Range => "range",
+            Self::Motors => "motors",
             Self::AboveLimit => "above_limit",
             Self::OtherSender => "other_sender",
         }
@@ -97,6 +101,16 @@ struct Raw {
     force_set: Vec<i16>,
     speed_set: Vec<i16>,
     mode: u8,
+}
+
+/// Whether a message asks for a stop: it means speeds, and all of them are 0. Neither its other lists nor their lengths, nor other
+/// bits of its mode, nor what stands behind it change that.
+pub fn is_stop(bytes: &[u8]) -> bool {
+    let raw: Option<Raw> = cdr::decode(bytes);
+    raw.is_some_and(|raw| {
+        let is_still = raw.speed_set.iter().all(|speed| *speed == 0);
+        raw.mode & SPEED != 0 && is_still && !raw.speed_set.is_empty()
+    })
 }
 
 impl CtrlMessage {
@@ -281,6 +295,32 @@ mod tests {
     }
 
     #[test]
+    fn speeds_of_zero_are_a_stop_whatever_else_is_in_the_message() {
+        let (six, zero, none): (&[i16], &[i16], &[i16]) = (&[500; 6], &[0; 6], &[]);
+        for (lists, mode, stops) in [
+            ([none, none, none, zero], 8, true),
+            ([none, six, none, zero], 9, true),
+            ([none, zero, none, zero], 9, true),
+            // Positions, other bits, values out of range, lists of another length.
+            ([six, six, six, zero], 15, true),
+            ([six, six, six, zero], 0x88, true),
+            ([none, &[-7, 2000], &[9999; 6], zero], 13, true),
+            ([&[1; 9], none, none, &[0; 5]], 8, true),
+            ([none, none, none, &[0; 7]], 8, true),
+            // Speeds that are not meant, as xr_teleoperate sends them.
+            ([zero, six, zero, zero], 1, false),
+            ([none, none, none, none], 8, false),
+            ([none, six, none, &[0, 0, 0, 1, 0, 0]], 9, false),
+        ] {
+            let whole = message(lists, mode);
+            assert_eq!(is_stop(&whole), stops, "{lists:?} {mode}");
+            let longer = [whole.clone(), vec![7; 90]].concat();
+            assert_eq!(is_stop(&longer), stops, "of a later version: {lists:?}");
+            assert!(!is_stop(&whole[..whole.len() - 1]), "nobody knows its mode");
+        }
+    }
+
+    #[test]
     fn the_mode_says_what_is_meant() {
         let six: &[i16] = &[500; 6];
         let force = PerDof::splat(Some(Force::nearest(500)));
@@ -302,7 +342,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..120)) {
-            let _either = CtrlMessage::parse(&bytes, &allowed());
+            let _either = (CtrlMessage::parse(&bytes, &allowed()), is_stop(&bytes));
         }
     }
 }

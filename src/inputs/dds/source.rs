@@ -1,13 +1,16 @@
 //! Messages over DDS as a source that a hand can follow: one sender at a time, in order, counted.
 
 use crate::hand::Moment;
-use crate::inputs::dds::ctrl::{CtrlFault, CtrlMessage};
+use crate::hand::kinematics::Side;
+use crate::inputs::dds::ctrl::{self, CtrlFault, CtrlMessage};
+use crate::inputs::dds::motors;
 use crate::inputs::follow::{ENDS_AFTER, is_fresh};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::rate::EventRate;
 use crate::link::{ArmRequest, Clock, Owner, Wake};
-use crate::transport::dds::{DdsMessage, DdsWriterId};
+use crate::transport::dds::{DdsMessage, DdsNode, DdsWriterId};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::interval;
@@ -19,10 +22,14 @@ const TELL_EACH: Duration = Duration::from_millis(50);
 /// What is taken from DDS.
 #[derive(Clone)]
 pub struct DdsSourceConfig {
+    /// Which of a robot's hands it is.
+    pub side: Side,
     /// The highest speeds and forces that a message may ask for.
     pub allowed: ArmRequest,
     /// The program's clock.
     pub clock: Clock,
+    /// Stops the hand. Called for each message that asks for it, whoever sent it.
+    pub stop: Arc<dyn Fn() + Send + Sync>,
     /// Called when there is news. Must return at once.
     pub wake: Wake,
 }
@@ -40,6 +47,10 @@ pub struct DdsView {
     pub refused: BTreeMap<CtrlFault, u64>,
     /// Messages that nobody followed, as no user granted it.
     pub not_granted: u64,
+    /// Messages that stopped the hand although something else in them was wrong.
+    pub odd_stops: u64,
+    /// The newest of them: its sender, and what was wrong.
+    pub last_odd: Option<(DdsWriterId, CtrlFault)>,
 }
 
 impl DdsView {
@@ -47,6 +58,25 @@ impl DdsView {
     pub fn owner(&self, now: Moment) -> Option<Owner> {
         let (_, last) = self.sender?;
         is_fresh(last, now).then_some(Owner::Dds)
+    }
+}
+
+/// Messages that come in.
+#[derive(Debug)]
+pub struct DdsCommands {
+    /// To this hand, as registers.
+    pub ctrl: mpsc::Receiver<DdsMessage>,
+    /// To both hands of a robot, as motors.
+    pub motors: mpsc::Receiver<DdsMessage>,
+}
+
+impl DdsCommands {
+    /// Those that are sent to the hand of this side from now on. Must be called within a tokio runtime.
+    pub fn of(node: &DdsNode, side: Side) -> Self {
+        Self {
+            ctrl: node.reader(&ctrl::topic(side), ctrl::KEPT),
+            motors: node.reader(&motors::topic(), ctrl::KEPT),
+        }
     }
 }
 
@@ -60,7 +90,7 @@ pub struct DdsSource {
 
 impl DdsSource {
     /// Takes these messages from now on. Must be called within a tokio runtime.
-    pub fn open(config: DdsSourceConfig, messages: mpsc::Receiver<DdsMessage>) -> Self {
+    pub fn open(config: DdsSourceConfig, commands: DdsCommands) -> Self {
         let (told, view) = watch::channel(DdsView::default());
         let outlet = OfferOutlet::default();
         let taking = Taking {
@@ -73,7 +103,7 @@ impl DdsSource {
         Self {
             view,
             outlet,
-            _task: AbortOnDropHandle::new(tokio::spawn(taking.run(messages))),
+            _task: AbortOnDropHandle::new(tokio::spawn(taking.run(commands))),
         }
     }
 
@@ -97,23 +127,39 @@ struct Taking {
 }
 
 impl Taking {
-    async fn run(mut self, mut messages: mpsc::Receiver<DdsMessage>) {
+    async fn run(mut self, mut commands: DdsCommands) {
         let mut tell = interval(TELL_EACH);
         loop {
             tokio::select! {
-                message = messages.recv() => match message {
-                    Some(message) => self.take(&message),
+                message = commands.ctrl.recv() => match message {
+                    Some(message) => self.take_ctrl(&message),
                     None => return self.tell(),
                 },
+                Some(message) = commands.motors.recv() => {
+                    let asked = motors::parse(&message.bytes, self.config.side);
+                    self.take(message.from, asked);
+                }
                 _ = tell.tick() => self.tell(),
             }
         }
     }
 
-    fn take(&mut self, message: &DdsMessage) {
+    fn take_ctrl(&mut self, message: &DdsMessage) {
+        let is_stop = ctrl::is_stop(&message.bytes);
+        if is_stop {
+            (self.config.stop)();
+        }
+        let asked = CtrlMessage::parse(&message.bytes, &self.config.allowed);
+        if is_stop {
+            self.stopped(message.from, asked.err());
+        } else {
+            self.take(message.from, asked);
+        }
+    }
+
+    fn take(&mut self, from: DdsWriterId, asked: Result<CtrlMessage, CtrlFault>) {
         let now = self.config.clock.now();
-        let asked = CtrlMessage::parse(&message.bytes, &self.config.allowed)
-            .and_then(|asked| self.in_turn(message.from, now).map(|()| asked));
+        let asked = asked.and_then(|asked| self.in_turn(from, now).map(|()| asked));
         let asked = match asked {
             Ok(asked) => asked,
             Err(fault) => {
@@ -125,7 +171,7 @@ impl Taking {
             .told
             .borrow()
             .sender
-            .is_none_or(|(told, last)| told != message.from || !is_fresh(last, now));
+            .is_none_or(|(told, last)| told != from || !is_fresh(last, now));
         self.view.taken += 1;
         self.rate.hit(now);
         let offer = Offer {
@@ -140,6 +186,16 @@ impl Taking {
         if is_new {
             // Somebody may wait for one to follow.
             self.tell();
+        }
+    }
+
+    /// Counts a stop, and what was odd about it.
+    fn stopped(&mut self, from: DdsWriterId, odd: Option<CtrlFault>) {
+        self.view.taken += 1;
+        self.rate.hit(self.config.clock.now());
+        if let Some(odd) = odd {
+            self.view.odd_stops += 1;
+            self.view.last_odd = Some((from, odd));
         }
     }
 

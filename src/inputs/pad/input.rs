@@ -85,6 +85,8 @@ pub struct PadInput {
     actual: PerDof<Option<Angle>>,
     pad: Option<PadId>,
     state: PadState,
+    /// Gamepads that are not followed: their STOP counts. As many as are read at once.
+    others: BTreeMap<PadId, PadState>,
     heard: Option<Moment>,
     /// The dead-man was seen up since the gamepad was found, since events were lost, since STOP.
     may_hold: bool,
@@ -110,6 +112,7 @@ impl PadInput {
             actual: PerDof::splat(None),
             pad: None,
             state: PadState::default(),
+            others: BTreeMap::new(),
             heard: None,
             may_hold: false,
             pose: None,
@@ -170,8 +173,58 @@ impl PadInput {
         self.fingers
     }
 
-    /// Takes in what happened at a gamepad; others than the one that is followed are passed over.
+    /// Takes in what happened at a gamepad. Of others than the one that is followed STOP alone counts, and it counts wherever it was
+    /// seen down: also where a gamepad is found with it, or events were lost around it.
     pub fn take(&mut self, report: &PadReport) -> Option<PadEvent> {
+        if self.sees_stop(report) {
+            self.apply(report);
+            self.let_go();
+            self.look();
+            return Some(PadEvent::Stop);
+        }
+        self.apply(report)
+    }
+
+    /// Notes where the controls of other gamepads are; true if a report says that STOP is down that was not down before.
+    fn sees_stop(&mut self, report: &PadReport) -> bool {
+        let (pad, mut state, is_certain) = match &report.news {
+            PadNews::Found { pad, facts, .. } => (*pad, PadState::of(facts), true),
+            PadNews::Moved { pad, .. } => (*pad, self.state_of(*pad), true),
+            PadNews::Doubtful { pad, .. } => (*pad, self.state_of(*pad), false),
+            PadNews::Lost { pad, .. } => (*pad, self.state_of(*pad).released(), true),
+            PadNews::Gone(pad) => {
+                self.others.remove(pad);
+                return false;
+            }
+            PadNews::Alive(_) | PadNews::Trouble(_) => return false,
+        };
+        let stop = self.map.doing(&PadAction::Stop).next();
+        let is_down = |state: &PadState| stop.is_some_and(|stop| state.is_held(stop));
+        let was_down = is_down(&state);
+        match &report.news {
+            PadNews::Found { now, .. } | PadNews::Lost { now, .. } => {
+                now.iter().for_each(|event| state.apply(*event));
+            }
+            PadNews::Moved { event, .. } | PadNews::Doubtful { event, .. } => state.apply(*event),
+            _ => {}
+        }
+        let stops = is_down(&state) && !was_down;
+        let is_first = self.pad.is_none() && matches!(report.news, PadNews::Found { .. });
+        if is_certain && self.pad != Some(pad) && !is_first {
+            self.others.insert(pad, state);
+        }
+        stops
+    }
+
+    /// Where the controls of a gamepad are, as far as it is known.
+    fn state_of(&self, pad: PadId) -> PadState {
+        if self.pad == Some(pad) {
+            return self.state.clone();
+        }
+        self.others.get(&pad).cloned().unwrap_or_default()
+    }
+
+    fn apply(&mut self, report: &PadReport) -> Option<PadEvent> {
         let of_ours = |pad: &PadId| self.pad == Some(*pad);
         match &report.news {
             PadNews::Found { pad, facts, now } if self.pad.is_none() => {
@@ -184,17 +237,12 @@ impl PadInput {
             PadNews::Lost { pad, now } if of_ours(pad) => {
                 self.heard = Some(report.at);
                 self.read_anew(now);
-                let stop = self.map.doing(&PadAction::Stop).next();
-                let is_stop = stop.is_some_and(|stop| self.state.is_held(stop));
-                Some(if is_stop {
-                    PadEvent::Stop
-                } else {
-                    PadEvent::Lost
-                })
+                Some(PadEvent::Lost)
             }
             PadNews::Moved { pad, event } if of_ours(pad) => {
                 self.heard = Some(report.at);
-                self.moved(*event)
+                self.moved(*event);
+                None
             }
             PadNews::Alive(pad) if of_ours(pad) => {
                 self.heard = Some(report.at);
@@ -254,24 +302,16 @@ impl PadInput {
         self.look();
     }
 
-    fn moved(&mut self, event: KernelEvent) -> Option<PadEvent> {
+    fn moved(&mut self, event: KernelEvent) {
         let before = self.state.held().clone();
         self.state.apply(event);
         self.look();
         let pressed: BTreeSet<_> = self.state.held().difference(&before).copied().collect();
-        let mut stop = None;
         for control in pressed {
-            match self.map.action(control) {
-                PadAction::Stop => {
-                    self.let_go();
-                    self.look();
-                    stop = Some(PadEvent::Stop);
-                }
-                PadAction::Pose(_) => self.pose = Some(control),
-                _ => {}
+            if let PadAction::Pose(_) = self.map.action(control) {
+                self.pose = Some(control);
             }
         }
-        stop
     }
 
     /// Follows what needs no press: the dead-man that is up, the fingers that are chosen.

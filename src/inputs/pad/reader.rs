@@ -258,10 +258,12 @@ impl OpenedPad {
         let mut news = Vec::new();
         for said in self.device.read()? {
             match said {
-                DeviceSays::Event(event) if !self.is_behind => {
-                    news.push(PadNews::Moved {
-                        pad: self.id,
-                        event,
+                DeviceSays::Event(event) => {
+                    let pad = self.id;
+                    news.push(if self.is_behind {
+                        PadNews::Doubtful { pad, event }
+                    } else {
+                        PadNews::Moved { pad, event }
                     });
                 }
                 DeviceSays::Dropped => {
@@ -273,7 +275,7 @@ impl OpenedPad {
                     self.is_behind = false;
                     news.push(self.lost()?);
                 }
-                DeviceSays::Event(_) | DeviceSays::Whole => {}
+                DeviceSays::Whole => {}
             }
         }
         Ok(news)

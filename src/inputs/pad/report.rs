@@ -73,6 +73,12 @@ pub enum PadNews {
         /// What it did.
         event: KernelEvent,
     },
+    /// A control is said to have moved, while events of its gamepad were dropped: it counts for nothing but a stop.
+    Doubtful {
+        pad: PadId,
+        /// What it may have done.
+        event: KernelEvent,
+    },
     /// The kernel dropped events of one: nothing that was held before counts.
     Lost {
         pad: PadId,

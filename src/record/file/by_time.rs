@@ -1,6 +1,6 @@
 //! Messages in the order of time, however they stand in a file, without holding more than some megabytes of them.
 
-use crate::record::file::walk::{ChunkMessage, ChunkPlace, Place, messages};
+use crate::record::file::walk::{ChunkMessage, ChunkPlace};
 use std::io;
 use std::ops::{ControlFlow, RangeInclusive};
 
@@ -20,14 +20,15 @@ struct Held {
     data: Box<[u8]>,
 }
 
-/// Gives the messages of a stretch of time in its order. Chunks are in the order of their first message.
+/// Gives the messages of a stretch of time in its order, as `scan` gives those of a chunk. Chunks are in the order of their first
+/// message.
 ///
 /// # Errors
 /// What the system says.
 pub(crate) fn each(
     chunks: &[ChunkPlace],
     within: RangeInclusive<u64>,
-    mut read: impl FnMut(Place) -> io::Result<Vec<u8>>,
+    scan: impl Fn(&ChunkPlace, &mut dyn FnMut(ChunkMessage<'_>)) -> io::Result<()>,
     mut take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
 ) -> io::Result<()> {
     let mut after = None;
@@ -43,10 +44,8 @@ pub(crate) fn each(
             if chunk.last_nanos < first {
                 continue;
             }
-            let mut content = read(chunk.place)?;
             let mut nth = 0;
-            // Whether it is whole was seen when the file was opened.
-            let _whole = messages(&mut content, chunk.kind, |message| {
+            scan(chunk, &mut |message| {
                 nth += 1;
                 let key = (message.times.0, message.sequence, number, nth);
                 let is_next = within.contains(&message.times.0)
@@ -64,7 +63,7 @@ pub(crate) fn each(
                         to = leave_out(&mut held, &mut bytes).or(to);
                     }
                 }
-            });
+            })?;
         }
         held.sort_unstable_by_key(|one| one.key);
         for one in &held {

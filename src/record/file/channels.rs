@@ -181,12 +181,25 @@ impl Definitions {
         (topics, skipped)
     }
 
+    /// The namespaces that another program has put before our topics: one for each hand.
+    pub(crate) fn namespaces(&self) -> BTreeSet<&str> {
+        let ours = self.channels.iter().filter_map(|(number, channel)| {
+            // Every robot has joints, of which ours are only a copy.
+            let topic = self
+                .topic(*number)
+                .ok()
+                .filter(|topic| *topic != Topic::Joints)?;
+            namespace(&channel.topic, topic)
+        });
+        ours.collect()
+    }
+
     fn topic(&self, number: u16) -> Result<Topic, SkipReason> {
         let channel = self.channels.get(&number).ok_or(SkipReason::Undefined)?;
         if self.contradicted.contains_key(&number) {
             return Err(SkipReason::Contradicted);
         }
-        let topic = Topic::all().find(|topic| topic.name() == channel.topic);
+        let topic = Topic::all().find(|topic| namespace(&channel.topic, *topic).is_some());
         let topic = topic.ok_or(SkipReason::Unknown)?;
         let schema = self.schemas.get(&channel.schema);
         let schema = schema.ok_or(SkipReason::OtherSchema)?;
@@ -218,6 +231,12 @@ impl Definitions {
             why,
         }
     }
+}
+
+/// What stands before the name of one of our topics: nothing, or names as ROS 2 puts before those of one robot of several.
+fn namespace(name: &str, topic: Topic) -> Option<&str> {
+    let before = name.strip_suffix(topic.name())?;
+    (before.is_empty() || before.starts_with('/')).then_some(before)
 }
 
 fn clipped(text: &str, letters: usize) -> String {

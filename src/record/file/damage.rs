@@ -2,6 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::file::channels::SkippedTopic;
+use crate::record::file::walk::{UNPACKED_MAX, UNPACKED_TIMES};
 use std::time::Duration;
 
 /// What is to be said of a file, beside what is missing in it.
@@ -15,6 +16,12 @@ pub enum Remark {
     StaleIndex,
     /// Messages stand outside of chunks, and the sum over the file is not right.
     SumDiffers,
+    /// The times of its log are so many nanoseconds after those in its messages.
+    LogMoved { nanos: i64 },
+    /// So many messages have no time in its log.
+    Unlogged(u64),
+    /// Chunks that unpack to so many megabytes were left out.
+    TooMuch { megabytes: u64 },
     /// What the file says of itself is missing or damaged.
     OpeningLost,
     /// So many files of the recording do not lie where the others do.
@@ -26,8 +33,12 @@ impl Remark {
     pub const fn is_loss(&self) -> bool {
         match self {
             Self::Skipped(skipped) => skipped.is_ours(),
-            Self::StaleIndex => false,
-            Self::Rewritten | Self::SumDiffers | Self::OpeningLost | Self::FilesMissing(_) => true,
+            Self::StaleIndex | Self::LogMoved { .. } | Self::Unlogged(_) => false,
+            Self::TooMuch { .. }
+            | Self::Rewritten
+            | Self::SumDiffers
+            | Self::OpeningLost
+            | Self::FilesMissing(_) => true,
         }
     }
 }
@@ -36,6 +47,27 @@ impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Skipped(skipped) => return skipped.fmt(f),
+            Self::LogMoved { nanos } => {
+                let apart = Duration::from_nanos(nanos.unsigned_abs()).as_secs_f64();
+                let side = if *nanos < 0 { "before" } else { "after" };
+                return write!(
+                    f,
+                    "the times of its log are {apart:.3} s {side} those in its messages, so another program has moved them: the log is believed"
+                );
+            }
+            Self::Unlogged(messages) => {
+                return write!(
+                    f,
+                    "{messages} messages have no time in the file's log: theirs is that in the message"
+                );
+            }
+            Self::TooMuch { megabytes } => {
+                return write!(
+                    f,
+                    "chunks that unpack to {megabytes} MB were left out: of a file {} MB are unpacked, and {UNPACKED_TIMES} times its length",
+                    UNPACKED_MAX / (1024 * 1024)
+                );
+            }
             Self::FilesMissing(1) => {
                 "one file of this recording, which has one for each hour, is not in this folder or cannot be opened"
             }

@@ -2,12 +2,14 @@
 //!
 //! `format` says what stands in it. Written: `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when
 //! and into which file, of which there is a new one each hour, and `recorder` is the thread that does it. Read: `parts` tells which
-//! files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `reader`
+//! files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `clock` which
+//! of its times is believed, `reader`
 //! reads its entries, `by_time` those of a file that another program wrote. `damage` is what was missing, `contents` what can be
 //! read, `overview` what a file tells without being read whole.
 
 mod by_time;
 mod channels;
+mod clock;
 mod contents;
 mod damage;
 pub mod disk;

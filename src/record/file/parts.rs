@@ -37,6 +37,36 @@ pub fn of(path: &Path) -> Vec<PathBuf> {
         .unwrap_or_else(alone)
 }
 
+/// What a folder of rosbag2 says of itself.
+const BAG: &str = "metadata.yaml";
+/// It names few files.
+const BAG_MAX: u64 = 1024 * 1024;
+
+/// The files that a folder of rosbag2 names, in their order; `None` if it is none.
+pub fn of_bag(folder: &Path) -> Option<Vec<PathBuf>> {
+    let about = folder.join(BAG);
+    if !fs::metadata(&about).ok()?.is_file() {
+        return None;
+    }
+    let mut text = String::new();
+    let file = File::open(about).ok()?;
+    file.take(BAG_MAX).read_to_string(&mut text).ok()?;
+    let items = text
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("- "));
+    let names = items.map(|item| item.trim().trim_matches(['"', '\'']));
+    // The list of files is written twice, and paths with "path: " before them in the second.
+    let mut files: Vec<PathBuf> = Vec::new();
+    for name in names.filter_map(|name| Path::new(name).file_name()) {
+        let path = folder.join(name);
+        let is_mcap = path.extension().is_some_and(|end| end == "mcap");
+        if is_mcap && path.is_file() && !files.contains(&path) {
+            files.push(path);
+        }
+    }
+    (!files.is_empty()).then_some(files)
+}
+
 /// The files of each recording among these, in the order of time. One that was copied within its folder is another recording.
 pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
     // A copy has the longer name.

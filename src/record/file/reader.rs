@@ -4,6 +4,7 @@
 use crate::hand::Moment;
 use crate::record::file::by_time;
 use crate::record::file::channels::Definitions;
+use crate::record::file::clock;
 pub use crate::record::file::damage::{Damage, Gap, Remark};
 use crate::record::file::format::decode::EntryDecoder;
 use crate::record::file::format::opening::{METADATA, Opening, moment_of, nanos_of};
@@ -11,7 +12,8 @@ use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::parts;
 use crate::record::file::walk::{
-    self, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey, messages, records,
+    self, ChunkKind, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey,
+    UNPACKED_MAX, UNPACKED_TIMES, long_records, messages, records,
 };
 use crate::record::file::writer::OVERVIEW;
 use crate::record::{Entry, EventKind};
@@ -19,7 +21,7 @@ use crate::system::SystemError;
 use mcap::records::{Record as McapRecord, op};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{self, Read as _, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
 use std::ops::{ControlFlow, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -36,6 +38,9 @@ const PARAMETERS_WITHIN: Duration = Duration::from_secs(60);
 
 /// Entries of several sources come in almost the order of time: also those at the border of two files.
 const APART: Duration = Duration::from_secs(1);
+
+/// As files are measured.
+pub(crate) const MEGABYTE: u64 = 1024 * 1024;
 
 /// Of the beginning of a file, so much is looked at: the header, what is said of the recording, and the definitions.
 const BEGINNING: u64 = 64 * 1024;
@@ -59,6 +64,11 @@ pub enum OpenError {
     /// Recordings of several hands were put together.
     #[error("it holds recordings of several hands, whose values cannot be told apart: {hands}")]
     SeveralHands { hands: String },
+    /// It unpacks to more than any recording does.
+    #[error(
+        "its chunks unpack to {megabytes} MB more than is read of a file: {} MB, and {UNPACKED_TIMES} times its length", UNPACKED_MAX / MEGABYTE
+    )]
+    TooMuch { megabytes: u64 },
     /// Nothing that could be read.
     #[error("nothing in it can be read: it holds no whole piece of a recording")]
     Empty,
@@ -94,6 +104,10 @@ pub struct RecordingFile {
     /// Which topic the messages of a channel are about.
     topics: BTreeMap<u16, Topic>,
     order: Order,
+    /// By how many nanoseconds the times of its log are after those in its messages.
+    difference: i64,
+    /// Whether some of its messages have no time in the log.
+    has_unlogged: bool,
     /// What is missing as far as opening the file has shown.
     damage: Damage,
     remarks: Vec<Remark>,
@@ -135,10 +149,16 @@ impl Stretch {
 
 impl RecordingFile {
     /// Opens a file, and the others of its recording that lie beside it. One of those that cannot be opened is as if it were missing.
+    /// Opens a folder of rosbag2 by the files that it names.
     ///
     /// # Errors
     /// [`OpenError`], of this file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
+        if let Some(files) = parts::of_bag(path) {
+            let (all, refused) = Self::open_all(&files);
+            let why = refused.into_iter().next().map(|(_, why)| why);
+            return why.map_or(all.ok_or(OpenError::Empty), Err);
+        }
         let (all, refused) = Self::open_all(&parts::of(path));
         match refused.into_iter().find(|(refused, _)| refused == path) {
             Some((_, why)) => Err(why),
@@ -205,6 +225,8 @@ impl RecordingFile {
             file: Mutex::new(file),
             topics: topics.collect(),
             order: Order::Numbered,
+            difference: 0,
+            has_unlogged: false,
             damage: Damage {
                 bytes: found.skipped,
                 ..Damage::default()
@@ -224,10 +246,23 @@ impl RecordingFile {
         let counted = survey.definitions.messages();
         let mut found = survey.found;
         if topics.is_empty() {
+            if survey.left_out > 0 {
+                return Err(OpenError::TooMuch {
+                    megabytes: survey.left_out.div_ceil(MEGABYTE),
+                });
+            }
             return Err(if survey.definitions.is_empty() {
                 OpenError::Empty
             } else {
                 OpenError::Foreign
+            });
+        }
+        let namespaces = survey.definitions.namespaces();
+        if namespaces.len() > 1 {
+            let shown = |name: &&str| if name.is_empty() { "/" } else { name }.to_owned();
+            let hands: Vec<String> = namespaces.iter().map(shown).collect();
+            return Err(OpenError::SeveralHands {
+                hands: hands.join(", "),
             });
         }
         found.chunks.sort_by_key(|chunk| chunk.first_nanos);
@@ -240,19 +275,35 @@ impl RecordingFile {
             .into_iter()
             .filter_map(|(is, one)| is.then_some(one));
         let skipped = skipped.into_iter().map(Remark::Skipped);
+        let difference = survey.clock.difference(&topics);
+        let unlogged = survey.clock.unlogged.iter();
+        let unlogged = unlogged.filter(|(channel, _)| topics.contains_key(channel));
+        let unlogged: u64 = unlogged.map(|(_, messages)| messages).sum();
+        let clock = [
+            is_moved(difference).then_some(Remark::LogMoved { nanos: difference }),
+            (unlogged > 0).then_some(Remark::Unlogged(unlogged)),
+            (survey.left_out > 0).then(|| Remark::TooMuch {
+                megabytes: survey.left_out.div_ceil(MEGABYTE),
+            }),
+        ];
         let told = found.messages.unwrap_or_default();
         Ok(Self {
             path: path.to_owned(),
             file: Mutex::new(file),
             topics,
             order: Order::Any,
+            difference,
+            has_unlogged: unlogged > 0,
             damage: Damage {
                 chunks: survey.damaged,
                 bytes: found.skipped,
                 messages: told.saturating_sub(counted),
                 gaps: Vec::new(),
             },
-            remarks: remarks.chain(skipped).collect(),
+            remarks: remarks
+                .chain(clock.into_iter().flatten())
+                .chain(skipped)
+                .collect(),
             found,
             opening: Opening::unknown(0),
             overview: Overview::default(),
@@ -346,7 +397,7 @@ impl RecordingFile {
             if topic == Topic::Wire && !stretch.wire {
                 return ControlFlow::Continue(());
             }
-            let entry = decoder.decode(topic, message.data);
+            let entry = decoder.decode(topic, message.times, message.data);
             let inside = |entry: &Entry| (stretch.from..=stretch.to).contains(&entry.at());
             match entry.filter(inside) {
                 Some(entry) => take(entry),
@@ -410,11 +461,76 @@ impl RecordingFile {
         match self.order {
             Order::Numbered => self.each_numbered(from, to, take),
             Order::Any => {
-                let read = |place| self.read(place);
-                by_time::each(&self.found.chunks, self.nanos(from, to), read, take)?;
+                let within = self.nanos(from, to);
+                self.each_by_time(within, take)?;
                 Ok(self.damage.clone())
             }
         }
+    }
+
+    /// Gives the messages of a stretch in the order of time, each with the time that is believed.
+    fn each_by_time(
+        &self,
+        within: RangeInclusive<u64>,
+        take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
+    ) -> io::Result<()> {
+        let scan = |chunk: &ChunkPlace, take: &mut dyn FnMut(ChunkMessage<'_>)| {
+            let mut ours = |message: ChunkMessage<'_>| {
+                if self.topics.contains_key(&message.channel) {
+                    take(self.timed(message));
+                }
+            };
+            // Whether it is whole was seen when the file was opened.
+            if chunk.kind == ChunkKind::Long {
+                let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut file = BufReader::new(&mut *file);
+                let mut chunk = walk::reader(&mut file, chunk.place)?;
+                let _whole = long_records(&mut chunk, |record| {
+                    if let ChunkRecord::Message(message) = record {
+                        ours(message);
+                    }
+                })?;
+            } else {
+                let _whole = messages(&mut self.read(chunk.place)?, chunk.kind, ours);
+            }
+            Ok(())
+        };
+        by_time::each(&self.found.chunks, within, scan, take)
+    }
+
+    /// A message with the time that is believed.
+    fn timed<'a>(&self, message: ChunkMessage<'a>) -> ChunkMessage<'a> {
+        let Some(topic) = self.topics.get(&message.channel) else {
+            return message;
+        };
+        let received = clock::received(*topic, message.times.0, message.data, self.difference);
+        let times = match message.times {
+            (0, _) => (received, received),
+            times => times,
+        };
+        ChunkMessage { times, ..message }
+    }
+
+    /// When the first and the last message were received, nanoseconds since 1970.
+    fn span(&self) -> io::Result<Option<(u64, u64)>> {
+        let mut span = None;
+        let mut note = |first: u64, last: u64| {
+            let (from, to) = span.unwrap_or((first, last));
+            span = Some((first.min(from), last.max(to)));
+        };
+        if self.has_unlogged {
+            let all = 0..=u64::MAX;
+            self.each_by_time(all, |message| {
+                if self.topics.contains_key(&message.channel) {
+                    note(message.times.0, message.times.0);
+                }
+                ControlFlow::Continue(())
+            })?;
+        } else {
+            let chunks = self.found.chunks.iter();
+            chunks.for_each(|chunk| note(chunk.first_nanos, chunk.last_nanos));
+        }
+        Ok(span)
     }
 
     /// The same in the order of the file, holding the messages' numbers against each other.
@@ -493,13 +609,7 @@ impl RecordingFile {
 
     /// What the file says of itself. Where that is lost, what can be known without it.
     fn find_opening(&mut self) -> Result<(), OpenError> {
-        let first = self
-            .found
-            .chunks
-            .iter()
-            .map(|chunk| chunk.first_nanos)
-            .min();
-        let last = self.found.chunks.iter().map(|chunk| chunk.last_nanos).max();
+        let span = self.span()?;
         let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
         let told = openings(file, &self.found.metadata)?;
         let hands: BTreeSet<&str> = told.iter().map(|opening| opening.hand.as_str()).collect();
@@ -510,13 +620,18 @@ impl RecordingFile {
         // Of recordings of one hand that were put together, the first.
         let opening = told.into_iter().min_by_key(Opening::began_since_1970);
         match opening {
+            Some(opening) if is_moved(self.difference) => {
+                self.opening = opening.moved(self.difference);
+            }
             Some(opening) => self.opening = opening,
             None => {
-                self.opening = Opening::unknown(first.ok_or(OpenError::Empty)?);
+                let (first, _) = span.ok_or(OpenError::Empty)?;
+                self.opening = Opening::unknown(first);
                 self.remarks.push(Remark::OpeningLost);
             }
         }
-        let last = moment_of(self.opening.base_nanos, last.unwrap_or_default());
+        let last = span.map_or(0, |(_, last)| last);
+        let last = moment_of(self.opening.base_nanos, last);
         self.last = last.max(self.opening.began);
         if self.opening.hand.is_empty() {
             self.find_hand()?;
@@ -574,6 +689,11 @@ impl RecordingFile {
         self.overview = overview;
         Ok(())
     }
+}
+
+/// True if another program has moved the times of the log: entries of several sources differ less.
+fn is_moved(difference: i64) -> bool {
+    Duration::from_nanos(difference.unsigned_abs()) > APART
 }
 
 /// Messages' numbers, chunk after chunk.
@@ -639,7 +759,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
         };
         // One that reaches beyond the end of the file is cut.
         if let Ok(mut chunk) = walk::whole(file, place) {
-            is_whole = records(&mut chunk, walk::ChunkKind::Chunk, |record| match record {
+            is_whole = records(&mut chunk, ChunkKind::Chunk, |record| match record {
                 ChunkRecord::Definition(code, content) => definitions.take(code, content),
                 ChunkRecord::Message(_) => has_messages = true,
             });
@@ -708,7 +828,7 @@ fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overvie
         messages(&mut bytes, chunk.kind, |message| {
             if let Some(topic) = Topic::by_channel(message.channel)
                 && topic != Topic::Wire
-                && let Some(entry) = decoder.decode(topic, message.data)
+                && let Some(entry) = decoder.decode(topic, message.times, message.data)
             {
                 overview.take(&entry);
             }

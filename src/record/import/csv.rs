@@ -25,6 +25,10 @@ use std::sync::Arc;
 const CHANNELS: usize = 8;
 /// Ten years. Nobody recorded longer.
 const SECONDS_MAX: f64 = 10.0 * 366.0 * 86_400.0;
+/// Seconds since 1970 that a table can tell: up to the year 2286.
+const SINCE_1970_MAX_S: f64 = 1e10;
+/// Lines that were received at nearly one time may stand in another order.
+const BACK_MAX_S: f64 = 0.01;
 /// Lines between two looks at whether to go on: some milliseconds.
 const LOOK_EACH: u64 = 256;
 /// Whole numbers up to here are exact as numbers with a point.
@@ -39,7 +43,7 @@ const TEMPERATURE_UNKNOWN: u8 = 255;
 const DIRECTION_UNKNOWN: u16 = 65_534;
 
 /// Why nothing was imported.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportError {
     /// The system could not read it.
     #[error("it cannot be read: {message}")]
@@ -61,14 +65,21 @@ pub enum ImportError {
 }
 
 /// What can be wrong with a line.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CsvFault {
     /// It cannot be taken apart.
     #[error(transparent)]
     Cells(#[from] LineFault),
     /// The first line is not that of such a file.
-    #[error("there is no column time_s, so these are not the values of a recording")]
+    #[error(
+        "there is no column time_s between commas, semicolons or tabs, so these are not the values of a recording"
+    )]
     NoTime,
+    /// A later line is of an earlier moment.
+    #[error(
+        "the time goes back from {before_s:.3} s to {time_s:.3} s; a table holds one recording: make one of each take"
+    )]
+    TimeGoesBack { before_s: f64, time_s: f64 },
     /// No column but the time is known.
     #[error("no column of it but time_s is known")]
     NothingKnown,
@@ -103,6 +114,8 @@ pub struct Imported {
     pub has_grip: bool,
     /// Readings of a fingertip without all of its forces' and channels' columns, which were left out.
     pub incomplete_tips: u64,
+    /// Its times count from 1970, so the recording begins with the first of them.
+    pub counts_from_1970: bool,
 }
 
 /// Reads values, and writes what they say as a recording file, as long as it is to go on.
@@ -152,6 +165,9 @@ pub struct CsvValues<R> {
     columns: CsvColumns,
     sample: HandSample,
     imported: Imported,
+    /// The time of the first line, if that counts from 1970, and of the last one.
+    zero_s: f64,
+    last_s: Option<f64>,
 }
 
 impl<R: BufRead> CsvValues<R> {
@@ -177,6 +193,8 @@ impl<R: BufRead> CsvValues<R> {
             cells,
             columns,
             sample: HandSample::default(),
+            zero_s: 0.0,
+            last_s: None,
         })
     }
 
@@ -188,14 +206,41 @@ impl<R: BufRead> CsvValues<R> {
         if read(&mut self.lines, &mut self.cells)?.is_none() {
             return Ok(None);
         }
-        let row = self.columns.row(&self.cells);
-        let row = row.map_err(|fault| ImportError::Line {
-            line: self.lines.number(),
-            fault,
-        })?;
+        let line = self.lines.number();
+        let row = self
+            .row()
+            .map_err(|fault| ImportError::Line { line, fault })?;
         self.imported.rows += 1;
         self.imported.incomplete_tips += row.incomplete_tips();
         Ok(Some(row.entries(&mut self.sample)))
+    }
+}
+
+impl<R: BufRead> CsvValues<R> {
+    fn row(&mut self) -> Result<CsvRow, CsvFault> {
+        if self.lines.has_free_comma() {
+            self.columns.decimal_points(&mut self.cells);
+        }
+        let mut row = self.columns.row(&self.cells)?;
+        let last_s = *self.last_s.get_or_insert_with(|| {
+            if row.time_s > SECONDS_MAX {
+                self.zero_s = row.time_s;
+                self.imported.counts_from_1970 = true;
+            }
+            row.time_s
+        });
+        if row.time_s + BACK_MAX_S < last_s {
+            return Err(CsvFault::TimeGoesBack {
+                before_s: last_s - self.zero_s,
+                time_s: row.time_s - self.zero_s,
+            });
+        }
+        self.last_s = Some(last_s.max(row.time_s));
+        row.at = moment(row.time_s - self.zero_s).ok_or_else(|| CsvFault::BadValue {
+            column: "time_s".into(),
+            text: row.time_s.to_string(),
+        })?;
+        Ok(row)
     }
 }
 
@@ -282,6 +327,16 @@ impl CsvColumns {
     fn has_grip(&self) -> bool {
         let mut all = self.all.iter();
         all.any(|(_, column)| matches!(column, CsvColumn::Grip(_)))
+    }
+
+    /// Makes points of the commas in numbers.
+    fn decimal_points(&self, cells: &mut [String]) {
+        for ((_, column), cell) in self.all.iter().zip(cells) {
+            let is_text = matches!(column, CsvColumn::Event | CsvColumn::Undocumented);
+            if !is_text && cell.contains(',') {
+                *cell = cell.replace(',', ".");
+            }
+        }
     }
 
     fn row(&self, cells: &[String]) -> Result<CsvRow, CsvFault> {
@@ -380,6 +435,8 @@ impl TipCells {
 #[derive(Debug, Default)]
 struct CsvRow {
     at: Moment,
+    /// As it stands there.
+    time_s: f64,
     joints: [PerDof<Option<i16>>; Quantity::ALL.len()],
     /// Values outside the manual's ranges, as they were sent.
     undocumented: Vec<Undocumented>,
@@ -394,7 +451,11 @@ impl CsvRow {
     fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
             CsvColumn::Unknown | CsvColumn::Grip(_) => {}
-            CsvColumn::Time => self.at = moment(cell)?,
+            CsvColumn::Time => {
+                let time_s: f64 = cell.parse().ok()?;
+                self.time_s =
+                    Some(time_s).filter(|time_s| (0.0..SINCE_1970_MAX_S).contains(time_s))?;
+            }
             CsvColumn::Event => self.event = Some(event(cell)),
             CsvColumn::Undocumented => {
                 let names = cell.split_whitespace().map(Undocumented::parse);
@@ -531,8 +592,8 @@ fn whole(cell: &str) -> Option<i64> {
 }
 
 /// Seconds from the recording's start, to the microsecond.
-fn moment(cell: &str) -> Option<Moment> {
-    let seconds: f64 = cell.parse().ok()?;
+fn moment(seconds: f64) -> Option<Moment> {
+    let seconds = seconds.max(0.0);
     if !(0.0..=SECONDS_MAX).contains(&seconds) {
         return None;
     }

@@ -1,4 +1,5 @@
-//! Comma-separated values line by line, in bounded memory: quoted cells, which may hold line breaks, and a count of lines for errors.
+//! Tables of text line by line, in bounded memory: cells that commas, semicolons or tabs separate, quoted ones, which may hold line
+//! breaks, and a count of lines for errors. The crate `csv` reads the same, but a line as long as it likes.
 
 use std::io::{self, BufRead, Read as _};
 
@@ -36,10 +37,17 @@ impl From<io::Error> for LineError {
     }
 }
 
+/// What can separate the cells of a table, the likeliest first.
+const SEPARATORS: [char; 3] = [',', ';', '\t'];
+/// Spreadsheets name the separator so, in a line before the first.
+const NAMED: &str = "sep=";
+
 /// The lines of a file.
 #[derive(Debug)]
 pub(crate) struct CsvLines<R> {
     from: R,
+    /// What separates its cells, once its first line told.
+    separator: Option<char>,
     /// The number of the line that is read, and of the one after it.
     number: u64,
     next: u64,
@@ -50,6 +58,7 @@ impl<R: BufRead> CsvLines<R> {
     pub(crate) const fn new(from: R) -> Self {
         Self {
             from,
+            separator: None,
             number: 0,
             next: 1,
             bytes: Vec::new(),
@@ -61,6 +70,11 @@ impl<R: BufRead> CsvLines<R> {
         self.number
     }
 
+    /// True where a comma separates no cells: numbers may be written with it.
+    pub(crate) fn has_free_comma(&self) -> bool {
+        self.separator.is_some_and(|separator| separator != ',')
+    }
+
     /// The cells of the next line that is not empty; `None` at the end.
     pub(crate) fn next(&mut self, cells: &mut Vec<String>) -> Result<Option<()>, LineError> {
         loop {
@@ -68,16 +82,29 @@ impl<R: BufRead> CsvLines<R> {
             if !self.read()? {
                 return Ok(None);
             }
-            if !self.bytes.is_empty() {
-                break;
+            if self.bytes.is_empty() {
+                continue;
             }
+            let text = std::str::from_utf8(&self.bytes);
+            let text = text.map_err(|_utf8| LineError::Fault(LineFault::NotText))?;
+            // A spreadsheet marks UTF-8 so.
+            let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+            let separator = match self.separator {
+                Some(separator) => separator,
+                None => {
+                    let named = text
+                        .strip_prefix(NAMED)
+                        .and_then(|rest| rest.chars().next());
+                    self.separator = named.or_else(|| Some(separator(text)));
+                    if named.is_some() {
+                        continue;
+                    }
+                    separator(text)
+                }
+            };
+            split(text, separator, cells).map_err(LineError::Fault)?;
+            return Ok(Some(()));
         }
-        let text = std::str::from_utf8(&self.bytes);
-        let text = text.map_err(|_utf8| LineError::Fault(LineFault::NotText))?;
-        // A spreadsheet marks UTF-8 so.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        split(text, cells).map_err(LineError::Fault)?;
-        Ok(Some(()))
     }
 
     /// Reads up to a line break outside quotation marks; false at the end.
@@ -113,7 +140,15 @@ impl<R: BufRead> CsvLines<R> {
     }
 }
 
-fn split(line: &str, cells: &mut Vec<String>) -> Result<(), LineFault> {
+/// What separates the cells of a first line: what stands in it most often.
+fn separator(line: &str) -> char {
+    let count = |separator: &char| line.matches(*separator).count();
+    // The last of several that are as many is the maximum.
+    let found = SEPARATORS.into_iter().rev().max_by_key(count);
+    found.unwrap_or(',')
+}
+
+fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), LineFault> {
     cells.clear();
     let mut rest = line;
     loop {
@@ -123,7 +158,7 @@ fn split(line: &str, cells: &mut Vec<String>) -> Result<(), LineFault> {
         let (cell, after) = match rest.strip_prefix('"') {
             Some(quoted) => unquoted(quoted)?,
             None => {
-                let end = rest.find(',').unwrap_or(rest.len());
+                let end = rest.find(separator).unwrap_or(rest.len());
                 let (cell, after) = rest.split_at(end);
                 if cell.contains('"') {
                     return Err(LineFault::Unquoted);
@@ -132,7 +167,7 @@ fn split(line: &str, cells: &mut Vec<String>) -> Result<(), LineFault> {
             }
         };
         cells.push(cell);
-        match after.strip_prefix(',') {
+        match after.strip_prefix(separator) {
             Some(next) => rest = next,
             None if after.is_empty() => return Ok(()),
             None => return Err(LineFault::Unquoted),

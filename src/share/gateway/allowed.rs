@@ -47,6 +47,21 @@ pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, Modbus
     }
 }
 
+/// What a request of function 16 has for all six joints of ANGLE_SET, as it stands there: whether it is a stop is asked before
+/// whether its length, what else it writes and its values are right. `None` where it has not all six.
+pub(crate) fn all_angles(pdu: &[u8]) -> Option<PerDof<i16>> {
+    let [16, high, low, _, _, _, words @ ..] = pdu else {
+        return None;
+    };
+    let ahead = ANGLE_SET
+        .address
+        .checked_sub(u16::from_be_bytes([*high, *low]))?;
+    let (words, _odd) = words.get(usize::from(ahead)..)?.as_chunks::<2>();
+    let six: &[[u8; 2]; Dof::ALL.len()] = words.first_chunk()?;
+    let is_whole = ahead.is_multiple_of(2);
+    is_whole.then(|| PerDof::new(six.map(i16::from_be_bytes)))
+}
+
 /// The joints that words at this address set; `None` unless all of them lie in this register, whole.
 fn joints(register: &Register, address: u16, words: &[u16]) -> Option<PerDof<Option<i16>>> {
     let offset = address.checked_sub(register.address)?;
@@ -142,6 +157,33 @@ mod tests {
             if command(row.address, &[1]).is_ok() {
                 assert_eq!(row.persistence, Persistence::Volatile, "{row}");
             }
+        }
+    }
+
+    #[test]
+    fn six_angles_are_found_whatever_stands_around_them() {
+        let six: [i16; 6] = [1003, -2, -1, 32767, 500, 0];
+        let write = |address: u16, count: u16, words: &[i16]| {
+            let len = u8::try_from(2 * count).unwrap_or(u8::MAX);
+            let bytes = words.iter().flat_map(|word| word.to_be_bytes());
+            let head = [address.to_be_bytes(), count.to_be_bytes()].concat();
+            [[16].as_slice(), &head, &[len], &bytes.collect::<Vec<u8>>()].concat()
+        };
+        let longer = [&[7, 8][..], &six, &[9]].concat();
+        for (pdu, found) in [
+            (write(1486, 6, &six), true),
+            (write(1482, 9, &longer), true),
+            // It announces more, or less, than it has.
+            (write(1486, 12, &six), true),
+            (write(1486, 0, &six), true),
+            (write(1486, 5, &six[..5]), false),
+            (write(1488, 6, &six), false),
+            (write(1485, 6, &six), false),
+            (vec![6, 5, 206, 0, 0], false),
+            (vec![16, 5], false),
+        ] {
+            let wanted = found.then_some(PerDof::new(six));
+            assert_eq!(all_angles(&pdu), wanted, "{pdu:?}");
         }
     }
 

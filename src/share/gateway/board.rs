@@ -144,6 +144,12 @@ impl Row {
         self.shown.reads += 1;
     }
 
+    /// A stop was obeyed that would not have been written as it stands.
+    pub(crate) fn obeyed_odd(&mut self, odd: WriteRefusal) {
+        self.shown.writes += 1;
+        self.shown.refusal = Some(odd);
+    }
+
     /// A write ended so.
     pub(crate) fn wrote(&mut self, written: Result<(), WriteRefusal>) {
         match written {

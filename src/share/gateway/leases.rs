@@ -2,9 +2,10 @@
 //! hand is not left to go on to a target of a program that is gone.
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
-use crate::hand::{Force, HandCommand, OutOfRange, PerDof, Speed, Target};
+use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
+use crate::share::gateway::allowed;
 use crate::share::gateway::board::{
     Board, ClientId, ClientLease, Holder, MoverChange, SharedBoard,
 };
@@ -15,6 +16,8 @@ use tokio::time::{Instant, sleep_until, timeout};
 /// A hand acknowledges its limits long before, on any wire.
 const ARMS_WITHIN: Duration = Duration::from_secs(2);
 
+/// The manual's "no action" (2.6.11).
+const NO_ACTION: i16 = -1;
 /// A stop is where the joints were when it was written: they went on meanwhile, at most so many counts.
 const STAYS_WITHIN: u16 = 150;
 /// A client that stopped the hand repeats that until it sees it rest.
@@ -58,11 +61,12 @@ impl ClientLeases {
         }
     }
 
-    /// Writes for a client that may, or may from now on. Done once the hand acknowledged it.
+    /// Writes what a request asks for, of a client that may, or may from now on. Done once the hand acknowledged it.
     pub(crate) async fn write(
         &self,
         client: ClientId,
         command: HandCommand,
+        request: &[u8],
     ) -> Result<(), WriteRefusal> {
         let lease = match self.lease(client) {
             ClientLease::Held(lease) => lease,
@@ -71,10 +75,7 @@ impl ClientLeases {
                 return Ok(self.link.write(command).await?);
             }
             // Whoever may not move the hand may stop it, while another moves it.
-            ClientLease::Never | ClientLease::Ended(_) if self.stops(client, &command).await => {
-                if self.link.status().holder.is_some() {
-                    self.link.stop();
-                }
+            ClientLease::Never | ClientLease::Ended(_) if self.is_stop(client, request).await => {
                 return Ok(());
             }
             ClientLease::Never => self.take(client, Claim::Wrote).await?,
@@ -170,11 +171,18 @@ impl ClientLeases {
         self.writers == Writers::First && self.link.status().holder.is_none()
     }
 
-    /// Whether this is a stop of what another moves, or its repetition: all joints are told to stay about where they are.
-    async fn stops(&self, client: ClientId, command: &HandCommand) -> bool {
-        let HandCommand::Angles(targets) = command else {
-            return false;
-        };
+    /// Whether a request is a stop; then the hand is stopped. One that cannot be written as it stands may be one of the client that
+    /// moves the hand as well, which would go on to where it was sent before.
+    pub(crate) async fn is_stop(&self, client: ClientId, request: &[u8]) -> bool {
+        match allowed::all_angles(request) {
+            Some(angles) => self.stops(client, &angles).await,
+            None => false,
+        }
+    }
+
+    /// Whether this is a stop of what a client moves, or its repetition: joints are told to stay about where they are, and none to
+    /// go elsewhere. Then the hand is stopped.
+    async fn stops(&self, client: ClientId, targets: &PerDof<i16>) -> bool {
         let now = Instant::now();
         let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
         let stopped = self.board.with(stopped);
@@ -182,12 +190,16 @@ impl ClientLeases {
         let may_stop = status.holder.is_some()
             || status.state == LinkState::Holding
             || stopped.is_some_and(|at| now.duration_since(at) < STOP_REPEATS);
-        if self.writers != Writers::First || !may_stop {
+        let is_own = matches!(self.lease(client), ClientLease::Held(_));
+        if !is_own && self.writers != Writers::First || !may_stop {
             return false;
         }
         let angles = self.values(&ANGLE_ACT, Ok::<i16, OutOfRange>).await;
         let stops = angles.is_ok_and(|angles| stays(targets, &angles));
         if stops {
+            if self.link.status().holder.is_some() {
+                self.link.stop();
+            }
             self.board
                 .with(|board| board.row(client).map(|row| row.stopped = Some(now)));
         }
@@ -285,12 +297,13 @@ impl ClientLeases {
     }
 }
 
-/// Whether targets keep every joint about where it is.
-fn stays(targets: &PerDof<Target>, angles: &PerDof<i16>) -> bool {
-    targets.iter().all(|(dof, target)| match target {
-        Target::Go(to) => to.get().abs_diff(angles[dof]) <= STAYS_WITHIN,
-        Target::Leave => false,
-    })
+/// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.
+fn stays(targets: &PerDof<i16>, angles: &PerDof<i16>) -> bool {
+    let is_near = |dof: Dof, to: i16| to.abs_diff(angles[dof]) <= STAYS_WITHIN;
+    let goes = |dof: Dof, to: i16| Angle::new(to).is_ok() && !is_near(dof, to);
+    let mut all = targets.iter();
+    all.any(|(dof, to)| *to != NO_ACTION && is_near(dof, *to))
+        && !targets.iter().any(|(dof, to)| goes(dof, *to))
 }
 
 /// Waits until the hand is armed, or the link says why not.
@@ -307,6 +320,31 @@ async fn armed(mut observer: LinkObserver) -> Result<(), ArmRefusal> {
                 None => return Err(ArmRefusal::Offline),
             },
             changed = observer.status.changed() => changed.map_err(|_gone| ArmRefusal::Offline)?,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_keeps_joints_where_they_are_and_sends_none_elsewhere() {
+        let at = PerDof::new([1003, 998, -3, 700, 400, 0]);
+        for (targets, stops) in [
+            ([1003, 998, -3, 700, 400, 0], true),
+            ([1003, 998, -3, 840, 260, 150], true),
+            ([-1, -1, -1, 700, -1, -1], true),
+            // What is no target at all.
+            ([1003, 998, -3, 700, 400, i16::MAX], true),
+            ([i16::MIN, 998, 2000, 700, 400, 0], true),
+            ([1003, 998, -3, 851, 400, 0], false),
+            ([1000, 1000, 0, 700, 400, 151], false),
+            ([-1; 6], false),
+            ([0; 6], false),
+            ([i16::MAX; 6], false),
+        ] {
+            assert_eq!(stays(&PerDof::new(targets), &at), stops, "{targets:?}");
         }
     }
 }

@@ -29,6 +29,9 @@ pub enum WriteRefusal {
         address: u16,
         words: usize,
     },
+    /// Fewer or more words than were announced, or than a message has.
+    #[error("the request does not have the {count} words that it announces")]
+    Count { count: u16 },
     /// Outside the manual's range.
     #[error("a value for address {address} is outside the manual's range")]
     Value {
@@ -48,7 +51,7 @@ impl WriteRefusal {
                 ModbusException::Busy
             }
             Self::Address { .. } => ModbusException::IllegalAddress,
-            Self::Value { .. } => ModbusException::IllegalValue,
+            Self::Value { .. } | Self::Count { .. } => ModbusException::IllegalValue,
             Self::Request(error) => exception(error),
         }
     }

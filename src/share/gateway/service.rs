@@ -3,7 +3,7 @@
 use crate::codec::mbap::Adu;
 use crate::codec::modbus::READ_WORDS_MAX;
 use crate::codec::pdu::{self, ModbusRole, Pdu};
-use crate::hand::{ModbusException, Span};
+use crate::hand::{HandCommand, ModbusException, Span};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{ClientId, Row};
 use crate::share::gateway::leases::ClientLeases;
@@ -42,7 +42,8 @@ impl Service {
                 Ok(words)
             }
             Pdu::WriteOne { address, value } => {
-                self.write_words(client, address, &[value]).await?;
+                let command = command(address, &[value]);
+                self.write(client, request, command).await?;
                 Ok([address, value].map(u16::to_be_bytes).concat())
             }
             Pdu::Write {
@@ -50,14 +51,13 @@ impl Service {
                 count,
                 words,
             } => {
-                let (pairs, odd) = words.as_chunks::<2>();
-                let is_whole = odd.is_empty() && pairs.len() == usize::from(count);
-                if !is_whole || !(1..=WRITE_WORDS_MAX).contains(&pairs.len()) {
-                    return Err(ModbusException::IllegalValue);
-                }
-                let words: Vec<u16> = pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
-                self.write_words(client, address, &words).await?;
+                let command = words_of(count, words).and_then(|words| command(address, &words));
+                self.write(client, request, command).await?;
                 Ok([address, count].map(u16::to_be_bytes).concat())
+            }
+            // A stop counts although its length is wrong.
+            _ if self.leases.is_stop(client, request).await => {
+                Ok(request.get(1..5).unwrap_or_default().to_vec())
             }
             // A known function of a wrong length.
             _ if matches!(request, [3 | 6 | 16, ..]) => Err(ModbusException::IllegalValue),
@@ -82,19 +82,20 @@ impl Service {
         Ok([len].into_iter().chain(words).collect())
     }
 
-    async fn write_words(
+    /// Writes what a request asks for. A stop that cannot be written as it stands is a stop all the same.
+    async fn write(
         &self,
         client: ClientId,
-        address: u16,
-        words: &[u16],
+        request: &[u8],
+        command: Result<HandCommand, WriteRefusal>,
     ) -> Result<(), ModbusException> {
-        let written = match allowed::command(address, words) {
-            Ok(command) => self.leases.write(client, command).await,
-            Err(ModbusException::IllegalValue) => Err(WriteRefusal::Value { address }),
-            Err(_) => Err(WriteRefusal::Address {
-                address,
-                words: words.len(),
-            }),
+        let written = match command {
+            Ok(command) => self.leases.write(client, command, request).await,
+            Err(odd) if self.leases.is_stop(client, request).await => {
+                self.note(client, |row| row.obeyed_odd(odd));
+                return Ok(());
+            }
+            Err(refusal) => Err(refusal),
         };
         let told = written.as_ref().map_err(WriteRefusal::exception).copied();
         self.note(client, |row| row.wrote(written));
@@ -104,4 +105,25 @@ impl Service {
     fn note(&self, client: ClientId, what: impl FnOnce(&mut Row)) {
         self.leases.board.with(|board| board.row(client).map(what));
     }
+}
+
+/// What words written at this address mean, or why clients may not write them.
+fn command(address: u16, words: &[u16]) -> Result<HandCommand, WriteRefusal> {
+    allowed::command(address, words).map_err(|exception| match exception {
+        ModbusException::IllegalValue => WriteRefusal::Value { address },
+        _ => WriteRefusal::Address {
+            address,
+            words: words.len(),
+        },
+    })
+}
+
+/// The words of function 16, as many as it announces.
+fn words_of(count: u16, bytes: &[u8]) -> Result<Vec<u16>, WriteRefusal> {
+    let (pairs, odd) = bytes.as_chunks::<2>();
+    let is_whole = odd.is_empty() && pairs.len() == usize::from(count);
+    if !is_whole || !(1..=WRITE_WORDS_MAX).contains(&pairs.len()) {
+        return Err(WriteRefusal::Count { count });
+    }
+    Ok(pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect())
 }

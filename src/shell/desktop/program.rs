@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
-use crate::app::env::Env;
 use crate::app::env::day_folder::documents;
+use crate::app::env::{Env, LostSteps};
 use crate::app::layout::{Layout, WINDOW_LEAST};
 use crate::app::notices::NoticeKind;
 use crate::app::program::App;
@@ -147,6 +147,7 @@ impl Program {
             reveal: Arc::new(file_manager::show),
             settings_path: start.settings_path,
             documents: documents(),
+            lost_steps: LostSteps::default(),
         };
         let mut app = App::new(env, start.loaded.settings);
         let at_rest = match start.drawing {

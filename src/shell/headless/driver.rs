@@ -3,9 +3,9 @@
 
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
-use crate::app::env::Env;
 use crate::app::env::choose::NoChoice;
 use crate::app::env::reveal::no_reveal;
+use crate::app::env::{Env, LostSteps};
 use crate::app::params::action::ParamAction;
 use crate::app::program::App;
 use crate::app::recordings::RecordingAction;
@@ -154,6 +154,7 @@ impl Driver {
             reveal: no_reveal(),
             settings_path,
             documents: None,
+            lost_steps: LostSteps::default(),
         };
         let settings = Settings {
             theme: scene.theme,

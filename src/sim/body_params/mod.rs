@@ -76,6 +76,7 @@ numbers! {
         "ms from a command to the motion; the way past a force threshold grows in proportion" latency_ms = LATENCY_MS, 0.0..500.0;
         "ms, standard deviation of the latency" latency_scatter_ms = 0.0, 0.0..100.0;
         "way past a force threshold: 0 as the first published hand, 1 as the second, or between" run_on = 0.0, 0.0..1.0;
+        "share of the force past its threshold that a grip keeps once it relaxed" kept_overshoot = 0.05, 0.0..1.0;
         "g either way, noise of the force sensor" force_noise_g = 3.0, 0.0..200.0;
         "g, added to the zero of the force sensor, which is drawn between -8 and 4" force_zero_g = 0.0, -1000.0..1000.0;
         "mA, friction: current that closing without load takes" friction_ma = 120.0, 0.0..1500.0;

@@ -9,6 +9,8 @@ use crate::sim::body_params::{BodyParams, JointBody};
 /// The body of this seed. Each hand has its own way of running past a threshold; its joints differ a little.
 pub fn random(seed: u64) -> BodyParams {
     let mut rng = fastrand::Rng::with_seed(seed ^ 0xB0D7);
+    // Drawn apart, so that all else is as it was before there was this.
+    let mut kept = fastrand::Rng::with_seed(seed ^ 0x6B65_7074);
     let run_on = rng.f64();
     let mut between = |least: f64, most: f64| least + (most - least) * rng.f64();
     let mut body = BodyParams::default();
@@ -20,6 +22,7 @@ pub fn random(seed: u64) -> BodyParams {
         latency_ms: between(58.0, 72.0),
         latency_scatter_ms: between(1.0, 3.0),
         run_on: (run_on + between(-0.1, 0.1)).clamp(0.0, 1.0),
+        kept_overshoot: kept.f64(),
         force_noise_g: between(2.0, 8.0),
         force_zero_g: between(-50.0, 240.0),
         friction_ma: between(90.0, 200.0),

@@ -37,6 +37,7 @@ pub(crate) enum Asked {
     Stop,
     Disarm,
     Arm(ArmRequest),
+    RunUntil(Moment),
     Move(Setpoints),
     ReadAt(PollRates),
 }
@@ -415,8 +416,10 @@ impl TaskHand for FakeHand {
         Ok(())
     }
 
-    fn run_until(&self, lease: Lease, _until: Moment) -> Result<(), LeaseRefusal> {
-        self.check(lease)
+    fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
+        self.check(lease)?;
+        self.note(Asked::RunUntil(until));
+        Ok(())
     }
 
     fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {

@@ -3,6 +3,7 @@
 mod booth;
 mod exhibit;
 mod fake;
+mod follow;
 mod grip;
 mod move_to;
 mod place;

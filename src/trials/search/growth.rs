@@ -18,6 +18,8 @@ const LIGHT_G: f64 = 100.0;
 /// A peak repeats itself to this share of its overshoot, as far as nothing else is known; that counts as so many closes.
 const REPEATS_TO: f64 = 0.035;
 const REPEATS_TRUST: f64 = 6.0;
+/// Numbers that a fit takes from the closes: scale, shape, comparison.
+const FITTED: f64 = 2.0;
 /// What a shape may differ from this hand's, as a share of the overshoot.
 const SHAPE_ERROR: f64 = 0.10;
 /// How much worse than the best a shape may fit and still be possible (chi-square).
@@ -260,9 +262,10 @@ impl PeakGrowth {
         self.noise_g.hypot(self.repeats_to * over)
     }
 
-    /// From the settings that were closed more than once.
+    /// From the settings that were closed more than once, and from how far single closes are off the best fit.
     fn repeated(&self) -> f64 {
         let (mut squares, mut freedom) = (REPEATS_TRUST * REPEATS_TO.powi(2), REPEATS_TRUST);
+        let mut fitted = FITTED;
         let compared = self.best.map_or(Compared::AboveRest, |fit| fit.compared);
         for (nth, own) in self.seen.iter().enumerate() {
             let is_first = self.seen.iter().take(nth).all(|other| other.at != own.at);
@@ -272,6 +275,14 @@ impl PeakGrowth {
             if is_first && same.len() > 1 && mean > 10.0 * self.noise_g {
                 squares += spread(&same) / mean.powi(2);
                 freedom += count(&same) - 1.0;
+            }
+            let single = self.best.filter(|_| same.len() == 1);
+            let over = single.map(|fit| (compared.over_g(own), fit.over_g(own)));
+            if let Some((over, fit)) = over.filter(|(_, fit)| *fit > 10.0 * self.noise_g) {
+                squares += (over / fit - 1.0).powi(2);
+                // As many closes as a fit has numbers of its own tell nothing.
+                freedom += if fitted > 0.0 { 0.0 } else { 1.0 };
+                fitted -= 1.0;
             }
         }
         (squares / freedom).sqrt()

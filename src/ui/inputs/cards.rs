@@ -123,7 +123,9 @@ impl SourceCards {
                 (inputs::TAKEN_LINES, view.intake.taken),
                 (inputs::NOT_GRANTED, view.not_granted),
             ];
-            counts_ui(ui, pane, counts.into_iter().chain(refused));
+            let odd = Some((inputs::ODD_STOPS, view.intake.odd_stops));
+            let odd = odd.filter(|(_, count)| *count > 0);
+            counts_ui(ui, pane, counts.into_iter().chain(odd).chain(refused));
         }
         grant_ui(ui, pane, InputSource::Stream, silence(pane, owner));
     }
@@ -156,7 +158,9 @@ impl SourceCards {
                 (inputs::REFUSED, view.view.refused.values().sum()),
                 (inputs::NOT_GRANTED, view.view.not_granted),
             ];
-            counts_ui(ui, pane, counts);
+            let odd = Some((inputs::ODD_STOPS, view.view.odd_stops));
+            let odd = odd.filter(|(_, count)| *count > 0);
+            counts_ui(ui, pane, counts.into_iter().chain(odd));
             if let Some(newest) = view.view.refused.keys().next_back() {
                 kit::say_ui(ui, look.say(inputs::ctrl_fault(*newest)), look.palette.warn);
             }

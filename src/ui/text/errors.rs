@@ -218,6 +218,7 @@ chinese! {
         WriteRefusal::NotArmed(_) => "未能使能。";
         WriteRefusal::Limits => "灵巧手现有的速度与力阈值不合理。";
         WriteRefusal::Address { address, words } => "程序不允许写入地址 {address} 起的 {words} 个字。";
+        WriteRefusal::Count { count } => "请求中没有所声明的 {count} 个字。";
         WriteRefusal::Value { address } => "地址 {address} 的值超出手册范围。";
         WriteRefusal::Request(error) => "{}", request_zh(error);
     }
@@ -787,6 +788,7 @@ mod tests {
                 address: 1000,
                 words: 1,
             },
+            WriteRefusal::Count { count: 7 },
             WriteRefusal::Value { address: 1486 },
             WriteRefusal::Request(RequestError::NotArmed),
         ];

@@ -28,6 +28,7 @@ texts! {
     NOBODY_SENDS: "Nobody sends now.", "目前没有数据。";
     HZ_FROM: "{} Hz from {}", "{} Hz，来自 {}";
     TAKEN_LINES: "Lines taken", "已接收";
+    ODD_STOPS: "Stops in an odd spelling", "写法异常的停止";
     NOT_GRANTED: "Not followed", "未跟随";
     MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which goes where the joints of that one are; left and right may lead each other. That one is only read. Once either is stopped or lost, this window moves neither on.", "由本窗口中的另一只手带动此手：此手跟随其关节位置，左右手均可。对那只手只读取。任一只手停下或断开后，本窗口不再移动这两只手。";
     LEADER: "Leading hand", "主导手";
@@ -92,6 +93,8 @@ texts! {
         LineFault::TooLong => "Refused: too long", "拒绝：过长";
         LineFault::NotFinite => "Refused: NaN or infinite", "拒绝：NaN 或无穷大";
         LineFault::Malformed => "Refused: not such a line", "拒绝：格式错误";
+        LineFault::Type => "Refused: a field of another type", "拒绝：字段类型错误";
+        LineFault::Twice => "Refused: a field twice", "拒绝：字段重复";
         LineFault::Version => "Refused: another version", "拒绝：版本不同";
         LineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
         LineFault::Length => "Refused: not six values", "拒绝：不是六个数值";
@@ -109,6 +112,7 @@ texts! {
         CtrlFault::Position => "Refused: it sets positions of drives (mode 2).", "拒绝：设置了驱动位置（模式 2）。";
         CtrlFault::Length => "Refused: not six values.", "拒绝：不是六个数值。";
         CtrlFault::Range => "Refused: a value outside the register's range.", "拒绝：数值超出寄存器范围。";
+        CtrlFault::Motors => "Refused: not the twelve motors of two hands.", "拒绝：不是双手的十二个电机。";
         CtrlFault::AboveLimit => "Refused: faster or firmer than is set here.", "拒绝：速度或力高于此处设置。";
         CtrlFault::OtherSender => "Refused: another sender is followed.", "拒绝：正在跟随其他来源。";
     }

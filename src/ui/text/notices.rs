@@ -211,6 +211,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.fill(panels::DISARMED_BY_OTHER, &[&what])
         }
         NoticeKind::IdleDisarmed => said(inputs::IDLE_DISARMED),
+        NoticeKind::StepsLost(count) => look.fill(panels::STEPS_LOST, &[count]),
         NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
@@ -361,6 +362,7 @@ fn not_opened(look: Look, why: &OpenError) -> String {
         OpenError::NotMcap => recordings::NOT_MCAP,
         OpenError::Foreign => recordings::FOREIGN,
         OpenError::SeveralHands { hands } => return look.told(recordings::SEVERAL_HANDS, hands),
+        OpenError::TooMuch { .. } => recordings::TOO_MUCH,
         OpenError::Empty => recordings::EMPTY,
     };
     look.say(words).to_owned()

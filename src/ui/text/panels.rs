@@ -106,6 +106,7 @@ texts! {
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
     NOTICE_UNGUARDED: "If this program is killed nothing stops the hand but the 24 V switch, as no process could be started for it:", "无法启动备用进程：若本程序被强行终止，只有切断 24 V 电源才能让灵巧手停下：";
     DISARMED_BY_OTHER: "Not armed any more: another controller wrote {}. Arm again if you want both.", "已取消使能：另有控制器写入 {}。再次使能以确认继续。";
+    STEPS_LOST: "This window did not keep up: {} steps of what goes on are not shown.", "此窗口未能跟上：有 {} 个步骤未显示。";
     LEADER_STOPPED: "The hand that led this one was stopped, too.", "带动此手的那只手也已停下。";
     SOURCE_SILENT: "{} fell silent: the hand was stopped.", "{} 已无数据：灵巧手已停下。";
 

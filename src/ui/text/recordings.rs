@@ -112,6 +112,7 @@ texts! {
     FILE_REMOVED: "{} was removed while it was recorded: {} entries are gone with it. The recording goes on in a new file.", "正在录制的文件 {} 被删除：其中 {} 条记录已丢失。录制将在新文件中继续。";
     CLOCK_SET: "The computer's clock was set, or it slept: the recording goes on in {}.", "计算机时钟被调整或曾休眠：录制将在 {} 中继续。";
     SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be told apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
+    TOO_MUCH: "it unpacks to more than any recording does", "解压后的数据量超过任何录制";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
     NOT_NOW: "Not replayed now: a series of trials or a question about the hand must be ended first.", "现在不能回放：请先结束抓取试验或完成关于灵巧手的询问。";

@@ -25,8 +25,11 @@ mod interop;
 mod loss;
 #[cfg(unix)]
 mod no_result;
+#[cfg(unix)]
+mod of_others;
 #[cfg(target_os = "linux")]
 mod outputs;
+#[cfg(unix)]
 mod overshoot;
 mod params;
 mod pictures;

@@ -4,11 +4,12 @@
 use crate::inputs::follow::{Stage, check};
 use crate::setup::link::gentle;
 use crate::setup::time::in_virtual_time;
+use handscope::hand::kinematics::Side;
 use handscope::hand::{Dof, Force, PerDof, Speed};
 use handscope::inputs::dds::ctrl::CtrlFault;
-use handscope::inputs::dds::source::{DdsSource, DdsSourceConfig};
+use handscope::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
 use handscope::inputs::follow::FollowPhase;
-use handscope::link::{ArmRequest, Owner};
+use handscope::link::{ArmRequest, LeaseRefusal, Owner};
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::tasks::follow::FollowEnd;
 use handscope::transport::dds::{DdsMessage, DdsWriterId};
@@ -32,13 +33,22 @@ fn message(from: DdsWriterId, [angle, force, speed]: [i16; 3], mode: u8) -> DdsM
 
 /// A source without a network.
 fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsSource) {
-    let (messages, taken) = mpsc::channel(64);
+    let (messages, ctrl) = mpsc::channel(64);
+    let (_none, motors) = mpsc::channel(1);
     let config = DdsSourceConfig {
+        side: Side::Right,
         allowed,
         clock: stage.clock(),
+        stop: {
+            let link = stage.link().clone();
+            Arc::new(move || drop(link.stop()))
+        },
         wake: Arc::new(|| ()),
     };
-    (messages, DdsSource::open(config, taken))
+    (
+        messages,
+        DdsSource::open(config, DdsCommands { ctrl, motors }),
+    )
 }
 
 /// Sends these angles a hundred times a second.
@@ -173,5 +183,35 @@ fn speeds_and_forces_within_what_a_person_allows_reach_the_hand_once() {
         drop((messages, source));
         stage.pass(100).await;
         assert_eq!(task.await.unwrap().0, FollowEnd::Gone);
+    });
+}
+
+#[test]
+fn speeds_of_zero_stop_the_hand_whoever_sends_them_and_whatever_else_is_in_the_message() {
+    in_virtual_time(async {
+        for (nth, (values, mode, is_odd)) in [
+            ([500, 0, 0], 8, false),
+            ([500, 0, 0], 9, false),
+            ([1001, 9999, 0], 15, true),
+            ([500, 0, 0], 0x88, true),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let mut stage = Stage::begin().await;
+            let (messages, source) = source(&stage, gentle());
+            let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+            send(&mut stage, &messages, FIRST, about(300, 400)).await;
+            messages.try_send(message(SECOND, values, mode)).unwrap();
+            send(&mut stage, &messages, FIRST, about(300, 300)).await;
+            let end = task.await.unwrap().0;
+            let stop = LeaseRefusal::Ended(Disarmed::Stop);
+            assert_eq!(end, FollowEnd::Lease(stop), "{nth}");
+            let view = source.view();
+            assert_eq!(view.odd_stops, u64::from(is_odd), "{nth}: {view:?}");
+            let last = *stage.index().last().unwrap();
+            assert_eq!(last.cause, WriteCause::Hold, "{nth}");
+            assert!(last.to > 400, "{nth}: {last:?}");
+        }
     });
 }

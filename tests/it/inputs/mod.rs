@@ -4,4 +4,5 @@ mod dds;
 mod follow;
 mod mirror;
 mod pad;
+mod stops;
 mod stream;

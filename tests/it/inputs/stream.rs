@@ -14,11 +14,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 
-fn free() -> SocketAddr {
+pub(super) fn free() -> SocketAddr {
     "127.0.0.1:0".parse().unwrap()
 }
 
-fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
+pub(super) fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
     let stops = Arc::clone(stops);
     let config = StreamConfig {
         place,
@@ -33,7 +33,10 @@ fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
 }
 
 /// Waits until what came in is as wanted.
-async fn until(source: &StreamSource, wanted: impl Fn(&StreamView) -> bool) -> StreamView {
+pub(super) async fn until(
+    source: &StreamSource,
+    wanted: impl Fn(&StreamView) -> bool,
+) -> StreamView {
     let patience = Instant::now() + Duration::from_secs(10);
     loop {
         let view = source.view();
@@ -126,7 +129,8 @@ async fn a_connection_ends_with_its_first_line_that_is_no_message_and_a_wrong_va
         (r#"{"right":[1,1,1,7,1,1]}"#, Some(LineFault::Range), 1),
         (r#"{"left":[1,1,1,1,1,1]}"#, Some(LineFault::OtherSide), 1),
         ("hello", Some(LineFault::Malformed), 0),
-        (r#"{"right":"fist"}"#, Some(LineFault::Malformed), 0),
+        (r#"{"right":"fist"}"#, Some(LineFault::Type), 1),
+        (r#"{"right":["fist""#, Some(LineFault::Malformed), 0),
         ("POST /NaN HTTP/1.1", Some(LineFault::Malformed), 0),
         (
             "GET / HTTP/1.1\r\nUpgrade: websocket\r\n",

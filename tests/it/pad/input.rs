@@ -465,3 +465,37 @@ fn an_axis_whose_ends_make_no_sense_never_moves() {
         assert_eq!(place.right, right);
     }
 }
+
+#[test]
+fn stop_counts_wherever_it_is_seen_down_and_at_whichever_pad() {
+    let (down, up) = (event("BTN_EAST", 1), event("BTN_EAST", 0));
+    let second = PadId(9);
+    let found = |now: &[_]| PadNews::Found {
+        pad: second,
+        facts: facts(XBOX),
+        now: now.to_vec(),
+    };
+    let moved = |event| PadNews::Moved { pad: second, event };
+    let stop = Some(PadEvent::Stop);
+    let mut pad = Played::xbox();
+    pad.hold();
+    // Another pad, which is not followed.
+    assert_eq!(pad.news(found(&[])), None);
+    assert_eq!(pad.news(moved(event("BTN_SOUTH", 1))), None);
+    assert_eq!(pad.news(moved(down)), stop);
+    assert_eq!(pad.offer().held, Some(false), "the dead-man is let go");
+    assert_eq!(pad.news(moved(down)), None, "it is held, and said again");
+    assert_eq!(pad.news(moved(up)), None);
+    assert_eq!(pad.news(moved(down)), stop, "again");
+    // Found with it.
+    assert_eq!(pad.news(PadNews::Gone(second)), None);
+    assert_eq!(pad.news(found(&[down])), stop);
+    // While events are dropped, of which nothing else counts.
+    let doubtful = |event| PadNews::Doubtful { pad: PAD, event };
+    assert_eq!(pad.news(doubtful(event("BTN_TL", 0))), None);
+    assert_eq!(pad.news(doubtful(down)), stop);
+    assert_eq!(pad.says("BTN_EAST", 1), stop, "it was in doubt");
+    // A value that no button has.
+    assert_eq!(pad.says("BTN_EAST", 0), None);
+    assert_eq!(pad.says("BTN_EAST", 2), stop);
+}

@@ -271,10 +271,12 @@ async fn dropped_events_are_told_at_once_and_what_comes_until_the_next_whole_is_
     ];
     folder.say("event0", &says, &now);
     let now = now.to_vec();
-    for _ in 0..2 {
-        let now = now.clone();
-        assert_eq!(folder.news().await, PadNews::Lost { pad, now });
-    }
+    let lost = PadNews::Lost { pad, now };
+    assert_eq!(folder.news().await, lost);
+    // Only a stop counts of it.
+    let doubtful = PadNews::Doubtful { pad, event: torn };
+    assert_eq!(folder.news().await, doubtful);
+    assert_eq!(folder.news().await, lost);
     let news = PadNews::Moved { pad, event: after };
     assert_eq!(folder.news().await, news);
 }

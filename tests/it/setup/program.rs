@@ -4,9 +4,9 @@ use crate::setup::time::Time;
 use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
-use handscope::app::env::Env;
 use handscope::app::env::choose::{ChooseFile, NoChoice};
 use handscope::app::env::reveal::no_reveal;
+use handscope::app::env::{Env, LostSteps};
 use handscope::app::exhibit::Exhibition;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
@@ -31,6 +31,7 @@ pub(crate) fn env() -> Env {
         reveal: no_reveal(),
         settings_path: None,
         documents: None,
+        lost_steps: LostSteps::default(),
     }
 }
 

@@ -165,6 +165,55 @@ async fn whoever_may_not_move_the_hand_stops_what_another_moves_and_may_not_move
 }
 
 /// A request on the wire.
+#[tokio::test]
+async fn a_stop_is_obeyed_whatever_is_odd_about_its_request() {
+    // Of who may not move the hand, and of who does.
+    for own in [false, true] {
+        for odd in 0..6 {
+            let place = first_may().await;
+            let mut button = TcpStream::connect(place.address()).await.unwrap();
+            let mut reader = place.client().await;
+            let _mover = if own {
+                button.write_all(&set_index(0)).await.unwrap();
+                button.read_exact(&mut [0; 12]).await.unwrap();
+                None
+            } else {
+                Some(mover(&place).await)
+            };
+            sleep(MOVES_AFTER).await;
+            let mut words = read(&mut reader, 1546, 6).await;
+            let index = words[3];
+            assert!((200..950).contains(&index), "on its way: {index}");
+            let mut count = None;
+            match odd {
+                // As it was read of a joint that rests beyond its end.
+                0 => words[0] = 1003,
+                1 => words[5] = 0xFFFD,
+                // No value at all, as a sender says NaN.
+                2 => words[1] = 0x7FFF,
+                // More than ANGLE_SET.
+                3 => words.extend([500; 3]),
+                // It announces more than there is, and less.
+                4 => count = Some(9),
+                _ => count = Some(2),
+            }
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_be_bytes()).collect();
+            let count = count.unwrap_or(u16::try_from(words.len()).unwrap());
+            let head = [1486u16.to_be_bytes(), count.to_be_bytes()].concat();
+            let len = u8::try_from(bytes.len()).unwrap();
+            let pdu = [&[16], head.as_slice(), &[len], &bytes].concat();
+            button.write_all(&asked(&pdu)).await.unwrap();
+            let mut said = [0; 12];
+            button.read_exact(&mut said).await.unwrap();
+            assert_eq!(said[7], 16, "{own} {odd}: no exception");
+            is_stopped(&place).await;
+            let shown = place.gateway.clients();
+            let refusal = shown.iter().find_map(|client| client.refusal.clone());
+            assert!(refusal.is_some(), "what was odd is told: {odd}");
+        }
+    }
+}
+
 fn asked(pdu: &[u8]) -> Vec<u8> {
     let len = 1 + pdu.len() as u8;
     [&[0, 1, 0, 0, 0, len, 255], pdu].concat()

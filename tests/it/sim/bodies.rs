@@ -6,7 +6,7 @@ use handscope::sim::body_params::STROKE;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::{BodyParams, JointBody};
 use handscope::sim::drive::{Drive, DriveGoal, DriveSettings};
-use handscope::sim::{Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::sim::{Contact, Object, Personality, Scenario, SimConfig, SimHand};
 
 const SLOW: DriveSettings = DriveSettings {
     speed: 100.0,
@@ -192,4 +192,49 @@ fn a_drawn_body_stays_within_what_the_manual_allows() {
             }
         }
     }
+}
+
+/// The highest load of a close on a block, where FORCE_SET is 400 g and the sensor reads about `zero_g` at rest.
+fn load_at_400(zero_g: f64, compared: &str) -> (f64, i16) {
+    let mut personality = Personality::default();
+    personality.set("force-compared", compared).unwrap();
+    let mut body = BodyParams::default();
+    body.joints[Dof::Index].force_zero_g = zero_g;
+    let mut hand = SimHand::new(SimConfig {
+        scenario: Scenario::Free,
+        personality,
+        body,
+        ..SimConfig::default()
+    });
+    hand.set_object(&Object::rigid(500.0));
+    let six = |value: i16| -> Vec<u8> { value.to_le_bytes().repeat(6) };
+    hand.write(1522, &six(25), at(10)).unwrap();
+    hand.write(1498, &six(400), at(10)).unwrap();
+    hand.write(1486, &six(0), at(20)).unwrap();
+    let mut highest: f64 = 0.0;
+    for ms in (30..30_000).step_by(10) {
+        hand.advance_to(at(ms));
+        highest = highest.max(hand.true_loads()[Finger::Index]);
+    }
+    let angle = hand.read(Span::new(1552, 2), at(30_000)).unwrap();
+    (highest, i16::from_le_bytes([angle[0], angle[1]]))
+}
+
+#[test]
+fn a_drive_compares_its_threshold_with_force_act_as_read_or_with_the_load() {
+    let (usual, _) = load_at_400(0.0, "as-read");
+    for zero_g in [-60.0, 150.0, 230.0] {
+        let (counted, _) = load_at_400(zero_g, "as-read");
+        let (load, _) = load_at_400(zero_g, "load");
+        // Less is run past a lower threshold, too.
+        let less = usual - counted;
+        assert!(
+            (less / zero_g - 1.1).abs() < 0.2,
+            "{zero_g}: {usual} {counted}"
+        );
+        assert!((load - usual).abs() < 15.0, "{zero_g}: {usual} {load}");
+    }
+    // What it reads without a load is above the threshold: it does not close at all.
+    assert_eq!(load_at_400(450.0, "as-read"), (0.0, 1000));
+    assert!(load_at_400(450.0, "load").0 > 400.0);
 }

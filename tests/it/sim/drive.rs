@@ -3,7 +3,7 @@
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{Fault, Status};
 use handscope::sim::Contact;
-use handscope::sim::body_params::STROKE;
+use handscope::sim::body_params::{JointBody, STROKE};
 use handscope::sim::drive::{Drive, DriveGoal, DriveSettings};
 
 /// From a command to the motion, ms.
@@ -272,4 +272,33 @@ fn a_target_told_again_at_rest_draws_no_current() {
         run(&mut drive, 11_000, 6000, more);
         assert!(drive.position() < 1e-9);
     }
+}
+
+#[test]
+fn a_grip_keeps_of_what_it_ran_past_its_threshold_as_much_as_its_body_says() {
+    let held = |kept_overshoot: f64| {
+        let body = JointBody {
+            kept_overshoot,
+            ..JointBody::default()
+        };
+        let mut drive = Drive::of(body, 25.0, 0);
+        drive.set_contact(Some(Contact {
+            angle: 500.0,
+            stiffness: RIGID_G_PER_COUNT,
+            breaks_at_g: None,
+        }));
+        drive.command(DriveGoal::Position(STROKE), 0);
+        let setting = DriveSettings {
+            speed: 250.0,
+            threshold_g: 500.0,
+        };
+        let peak = run(&mut drive, 0, 10_000, setting);
+        (peak, drive.load_g())
+    };
+    let ((peak, little), (same, much)) = (held(0.05), held(0.9));
+    assert!((peak - same).abs() < 1e-9);
+    assert!(
+        (much - little - 0.85 * (peak - 500.0)).abs() < 20.0,
+        "{peak} {little} {much}"
+    );
 }

@@ -66,6 +66,34 @@ impl Default for OtherBody {
     }
 }
 
+/// A hand and an object that nothing was tuned on: offsets from -60 to 230 g, counted or not, stiffness 6 to 60 g for each unit, and
+/// half of the objects break between 1.08 and 1.4 times the limit.
+pub(crate) fn drawn(seed: u64, limit: f64) -> OtherBody {
+    let mut rng = fastrand::Rng::with_seed(seed ^ 0x07E2);
+    let mut between = |least: f64, most: f64| least + (most - least) * rng.f64();
+    let stiffness = between(6.0_f64.ln(), 60.0_f64.ln()).exp();
+    OtherBody {
+        latency: (between(0.0, 75.0), 2.0),
+        stop: (between(40.0, 70.0), between(1.0, 4.0)),
+        rate: between(1.4, 1.7),
+        noise: between(2.0, 6.0),
+        offset: between(-60.0, 230.0),
+        counts_offset: !seed.is_multiple_of(4),
+        stops_in_air: seed.is_multiple_of(3),
+        contact: (between(300.0, 700.0), between(1.0, 5.0)),
+        stiffness: match seed % 7 {
+            3 => (stiffness / 4.0, 1.4),
+            _ => (stiffness, 1.0),
+        },
+        breaks_at_g: match seed % 2 {
+            0 => limit * between(1.08, 1.4),
+            _ => f64::INFINITY,
+        },
+        relaxes: between(0.02, 0.15),
+        ..OtherBody::default()
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Doing {
     Opens,

@@ -2,7 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s};
+use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s, drawn};
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
@@ -50,7 +50,7 @@ fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
 #[test]
 fn a_fragile_object_is_never_broken() {
     for seed in 0..3 {
-        let mut hand = VirtualHand::new(random(seed), seed, &object(20.0, Some(700.0)));
+        let mut hand = VirtualHand::counting(random(seed), seed, &object(20.0, Some(700.0)));
         let run = hand.tune(&goal());
         let highest = highest_g(&run);
         assert!(run.finding.unwrap().result.is_ok());
@@ -118,6 +118,19 @@ fn an_offset_that_the_drive_counts_or_not_breaks_nothing_and_is_told() {
         told += usize::from(compared == Some(right));
     }
     assert!(claims >= 34 && told >= 28, "{claims} {told} of 36");
+}
+
+#[test]
+fn hands_that_nothing_was_tuned_on_break_nothing() {
+    for seed in 1000..1008 {
+        let search = on_other_hand(drawn(seed, LIMIT.into()), seed);
+        assert!(
+            !search.broke && search.highest < 1.15,
+            "{seed}: {}",
+            search.highest
+        );
+        assert!(search.finding.is_some(), "{seed}");
+    }
 }
 
 #[test]
@@ -216,7 +229,9 @@ fn highest_g(run: &Run) -> f64 {
 
 #[test]
 fn a_slip_ends_the_search_or_narrows_it_to_what_is_slower() {
-    let mut hand = VirtualHand::new(random(1), 1, &object(13.0, None));
+    let mut body = random(1);
+    body.joints[Dof::Index].force_zero_g = 0.0;
+    let mut hand = VirtualHand::new(body, 1, &object(13.0, None));
     let run = hand.tune(&quick());
     assert!(run.finding.unwrap().result.is_ok());
     let (mut ended, mut narrowed) = (0, 0);

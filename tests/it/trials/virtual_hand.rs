@@ -11,7 +11,9 @@ use handscope::record::{LinkState, SetpointConflict};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
-use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::sim::{
+    BodyParams, Contact, ForceCompared, Object, Personality, Scenario, SimConfig, SimHand,
+};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
 use handscope::trials::series::Series;
@@ -27,6 +29,8 @@ const EACH: Duration = Duration::from_millis(10);
 /// What is read seldom.
 const SELDOM: u64 = 20;
 const JOINT: Dof = Dof::Index;
+/// A force that stops a drive and that no noise reaches, g.
+const STOPS_LEAST_G: i16 = 30;
 /// The object's place, units of ANGLE_ACT.
 const PLACE: f64 = 550.0;
 /// g for each position count: from a soft ball to the published block.
@@ -72,12 +76,29 @@ pub(crate) struct VirtualHand<H = SimHand> {
 }
 
 impl VirtualHand {
-    /// A simulated hand of this body.
+    /// A simulated hand of this body whose drives compare their thresholds with loads.
     pub(crate) fn new(body: BodyParams, seed: u64, object: &Object) -> Self {
+        Self::with(ForceCompared::Load, (body, seed), object)
+    }
+
+    /// One whose drives compare them with FORCE_ACT as read, as the manual says (2.6.12).
+    pub(crate) fn counting(body: BodyParams, seed: u64, object: &Object) -> Self {
+        Self::with(ForceCompared::AsRead, (body, seed), object)
+    }
+
+    fn with(
+        force_compared: ForceCompared,
+        (body, seed): (BodyParams, u64),
+        object: &Object,
+    ) -> Self {
         let mut hand = SimHand::new(SimConfig {
             seed,
             scenario: Scenario::Free,
             body,
+            personality: Personality {
+                force_compared,
+                ..Personality::default()
+            },
             ..SimConfig::default()
         });
         hand.set_object(object);
@@ -308,7 +329,7 @@ pub(crate) struct Case {
 pub(crate) fn case(seed: u64, stiffness: f64, (goal, checks): (&SearchGoal, usize)) -> Case {
     let body = random(seed);
     let object = object(stiffness, None);
-    let mut hand = VirtualHand::new(body, seed, &object);
+    let mut hand = VirtualHand::counting(body, seed, &object);
     let begun = hand.now;
     let run = hand.tune(goal);
     let took_s = hand.now.since(begun).as_secs_f64();
@@ -384,9 +405,9 @@ fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, goal): (f64, &Se
     let least = |speed: f64| {
         let holds = |threshold: &i16| {
             let threshold = f64::from(*threshold);
-            0.92 * threshold + 0.05 * over(speed, threshold) * own / RIGID_G_PER_COUNT >= hold
+            0.92 * threshold + body.kept_overshoot * over(speed, threshold) >= hold
         };
-        (10..2000_i16).find(holds).unwrap()
+        (STOPS_LEAST_G..2000_i16).find(holds).unwrap()
     };
     let k = tolerance_factor(goal.closes, Assurance::USUAL).unwrap();
     let scatter = k * body.latency_scatter_ms / body.latency_ms;
@@ -400,7 +421,8 @@ fn best_s(hand: &mut VirtualHand, body: &JointBody, (stiffness, goal): (f64, &Se
     };
     let setting = TrialSetting {
         speed: Speed::nearest(speed),
-        force: Force::nearest(least(speed.into())),
+        // The drive counts what its sensor reads at rest, 2 g less than the body says on average.
+        force: Force::nearest(i64::from(least(speed.into())) + (body.force_zero_g - 2.0) as i64),
     };
     let contact = PLACE - body.contact_offset / 2.0;
     let margin = 3.3 * body.contact_scatter / 2.0 + 2.0;

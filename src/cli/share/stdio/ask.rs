@@ -4,11 +4,13 @@
 use crate::cli::parse::{moving, rated};
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
-use crate::inputs::line::StreamLine;
+use crate::inputs::fields::{self, FieldFault, Fields};
+use crate::inputs::line::{LINE_VERSION, StreamLine};
+use crate::inputs::scan::{unmarked, value_at};
+use crate::inputs::stop::{EndWord, TextEnd, end_word};
 use crate::link::{ArmRequest, PollRates};
 use crate::poses::way::Targets;
-use serde::Deserialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// One line.
@@ -17,6 +19,8 @@ pub(crate) struct Asked {
     /// What its answer is marked with; `null` unless it has one.
     pub(crate) id: Value,
     pub(crate) what: Result<Ask, String>,
+    /// What was wrong in a line that ends a motion, and is obeyed all the same.
+    pub(crate) odd: Option<String>,
 }
 
 /// What is asked for.
@@ -31,7 +35,7 @@ pub(crate) enum Ask {
     Stop,
     /// The same, unless another moves it now.
     Release,
-    /// The hand is not armed any more, and keeps its targets: a program on the gateway may move it.
+    /// The hand is not armed any more, and a program on the gateway may move it. One that moves is stopped first.
     Disarm,
     /// A fault is cleared; that moves nothing.
     Clear,
@@ -50,117 +54,157 @@ pub(crate) struct MoveAsk {
     pub(crate) settles: bool,
 }
 
-#[derive(Deserialize)]
-#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
-enum Raw {
-    Arm {
-        speed: Option<i64>,
-        force_g: Option<i64>,
-    },
-    Move {
-        angle: Vec<Option<i64>>,
-        speed: Option<i64>,
-        force_g: Option<i64>,
-        #[serde(default)]
-        settle: bool,
-    },
-    Stop {},
-    Release {},
-    Disarm {},
-    Clear {},
-    Rate {
-        state_hz: f64,
-    },
-    Record {
-        path: Option<PathBuf>,
-    },
-}
-
 impl Asked {
-    /// Reads one line for the hand of this side.
-    pub(crate) fn parse(line: &str, side: Side) -> Self {
-        let mut fields: Map<String, Value> = match serde_json::from_str(line) {
-            Ok(fields) => fields,
-            Err(error) => {
+    /// Reads one line for the hand of this side. One that ends a motion is obeyed, whatever else is in it.
+    pub(crate) fn parse(line: &[u8], side: Side) -> Self {
+        let (id, read) = read(line, side);
+        let ask = match end_word(line, TextEnd::Whole) {
+            None => {
                 return Self {
-                    id: Value::Null,
-                    what: Err(format!("not a JSON object: {error}")),
+                    id,
+                    what: read,
+                    odd: None,
                 };
             }
+            Some(EndWord::Stop) => Ask::Stop,
+            Some(EndWord::Release) => Ask::Release,
+            Some(EndWord::Disarm) => Ask::Disarm,
         };
-        let id = fields.remove("id").unwrap_or_default();
-        let what = if fields.contains_key("do") {
-            serde_json::from_value(Value::Object(fields))
-                .map_err(|error| format!("{error}; 'handscope help share' tells what can be asked"))
-                .and_then(ask)
-        } else {
-            let line = StreamLine::parse(line.as_bytes(), side);
-            line.map(Ask::Follow).map_err(|fault| fault.to_string())
+        let odd = match read {
+            Err(why) => Some(why),
+            Ok(Ask::Follow(line)) => line.odd.map(|odd| odd.to_string()),
+            Ok(read) if read == ask => None,
+            Ok(_other) => Some("it asks for something else as well".into()),
         };
-        Self { id, what }
+        Self {
+            id,
+            what: Ok(ask),
+            odd,
+        }
     }
 }
 
-fn ask(raw: Raw) -> Result<Ask, String> {
-    Ok(match raw {
-        Raw::Arm { speed, force_g } => Ask::Arm(ArmRequest {
-            speed: PerDof::splat(moving_speed(speed)?),
-            force: PerDof::splat(rated_force(force_g)?),
-        }),
-        Raw::Move {
-            angle,
-            speed,
-            force_g,
-            settle,
-        } => Ask::Move(MoveAsk {
-            targets: targets(&angle)?,
-            speed: moving_speed(speed)?,
-            force: rated_force(force_g)?,
-            settles: settle,
-        }),
-        Raw::Stop {} => Ask::Stop,
-        Raw::Release {} => Ask::Release,
-        Raw::Disarm {} => Ask::Disarm,
-        Raw::Clear {} => Ask::Clear,
-        Raw::Rate { state_hz } if (1.0..=1000.0).contains(&state_hz) => Ask::Rate(PollRates {
-            state_hz,
-            tactile_hz: PollRates::default().tactile_hz.max(state_hz / 8.0),
-            ..PollRates::default()
-        }),
-        Raw::Rate { state_hz } => {
-            return Err(format!(
-                "{state_hz} is not a rate of 1 to 1000 states a second"
-            ));
+fn read(line: &[u8], side: Side) -> (Value, Result<Ask, String>) {
+    let mut fields = match Fields::parse(unmarked(line)) {
+        Ok(fields) => fields,
+        Err(error) => {
+            let why = format!("not a JSON object: {error}");
+            return (value_at(line, "id"), Err(why));
         }
-        Raw::Record { path } => Ask::Record(path),
+    };
+    let id = fields.take("id").ok().flatten().unwrap_or_default();
+    let ask = if fields.has("do") {
+        ask(&mut fields)
+            .map_err(|why| format!("{why}; 'handscope help share' tells what can be asked"))
+    } else {
+        let line = StreamLine::parse(line, side);
+        line.map(Ask::Follow).map_err(|refusal| refusal.to_string())
+    };
+    (id, ask)
+}
+
+fn ask(fields: &mut Fields) -> Result<Ask, String> {
+    let version = take(fields, "v", fields::whole)?;
+    if version.is_some_and(|version| version != LINE_VERSION) {
+        return Err(format!("v: its version is not {LINE_VERSION}"));
+    }
+    let what = take(fields, "do", text)?.unwrap_or_default();
+    let ask = match what.as_str() {
+        "arm" => Ask::Arm(ArmRequest {
+            speed: PerDof::splat(moving_speed(fields)?),
+            force: PerDof::splat(rated_force(fields)?),
+        }),
+        "move" => Ask::Move(MoveAsk {
+            targets: targets(fields)?,
+            speed: moving_speed(fields)?,
+            force: rated_force(fields)?,
+            settles: take(fields, "settle", flag)?.unwrap_or(false),
+        }),
+        "stop" => Ask::Stop,
+        "release" => Ask::Release,
+        "disarm" => Ask::Disarm,
+        "clear" => Ask::Clear,
+        "rate" => Ask::Rate(rates(fields)?),
+        "record" => Ask::Record(take(fields, "path", text)?.map(PathBuf::from)),
+        other => return Err(format!("do: there is no {other:?}")),
+    };
+    match fields.other() {
+        Some(other) => Err(format!("{other}: not a field of {what}")),
+        None => Ok(ask),
+    }
+}
+
+/// Takes a field; the error names it.
+fn take<T>(
+    fields: &mut Fields,
+    name: &str,
+    read: fn(&Value) -> Result<T, FieldFault>,
+) -> Result<Option<T>, String> {
+    let told = |fault: FieldFault| format!("{name}: {fault}");
+    let value = fields.take(name).map_err(told)?;
+    value.as_ref().map(read).transpose().map_err(told)
+}
+
+fn text(value: &Value) -> Result<String, FieldFault> {
+    value.as_str().map(str::to_owned).ok_or(FieldFault::Type)
+}
+
+fn flag(value: &Value) -> Result<bool, FieldFault> {
+    value.as_bool().ok_or(FieldFault::Type)
+}
+
+fn list(value: &Value) -> Result<Vec<Value>, FieldFault> {
+    value.as_array().cloned().ok_or(FieldFault::Type)
+}
+
+fn rates(fields: &mut Fields) -> Result<PollRates, String> {
+    let state_hz = take(fields, "state_hz", fields::number)?;
+    let state_hz = state_hz.filter(|hz| (1.0..=1000.0).contains(hz));
+    let state_hz = state_hz.ok_or("state_hz: not a rate of 1 to 1000 states a second")?;
+    Ok(PollRates {
+        state_hz,
+        tactile_hz: PollRates::default().tactile_hz.max(state_hz / 8.0),
+        ..PollRates::default()
     })
 }
 
-fn targets(angles: &[Option<i64>]) -> Result<Targets, String> {
+fn targets(fields: &mut Fields) -> Result<Targets, String> {
+    let angles = take(fields, "angle", list)?.unwrap_or_default();
     if angles.len() != Dof::ALL.len() {
-        return Err("a hand has six joints: give each an angle, or null to leave it alone".into());
+        return Err(
+            "angle: a hand has six joints: give each an angle, or null to leave it alone".into(),
+        );
     }
     let mut targets = PerDof::splat(None);
-    for (dof, angle) in Dof::ALL.into_iter().zip(angles) {
-        let told = |error| format!("{}: {error}", dof.name());
-        targets[dof] = angle.map(Angle::new).transpose().map_err(told)?;
+    for (dof, angle) in Dof::ALL.into_iter().zip(&angles) {
+        if angle.is_null() {
+            continue;
+        }
+        let name = dof.name();
+        let angle = fields::whole(angle).map_err(|fault| format!("angle, {name}: {fault}"))?;
+        let angle = Angle::new(angle).map_err(|error| format!("angle, {name}: {error}"))?;
+        targets[dof] = Some(angle);
     }
     if targets == PerDof::splat(None) {
-        return Err("no joint is to be moved".into());
+        return Err("angle: no joint is to be moved".into());
     }
     Ok(targets)
 }
 
 /// Gentle, where none is asked for.
-fn moving_speed(speed: Option<i64>) -> Result<Speed, String> {
+fn moving_speed(fields: &mut Fields) -> Result<Speed, String> {
+    let speed = take(fields, "speed", fields::whole)?;
     let speed = speed.map_or(Ok(Speed::GENTLE), Speed::new);
-    speed.map_err(|error| error.to_string()).and_then(moving)
+    let speed = speed.map_err(|error| error.to_string()).and_then(moving);
+    speed.map_err(|why| format!("speed: {why}"))
 }
 
 /// Gentle, where none is asked for.
-fn rated_force(grams: Option<i64>) -> Result<Force, String> {
-    let force = grams.map_or(Ok(Force::GENTLE), Force::new);
-    force.map_err(|error| error.to_string()).and_then(rated)
+fn rated_force(fields: &mut Fields) -> Result<Force, String> {
+    let force = take(fields, "force_g", fields::whole)?;
+    let force = force.map_or(Ok(Force::GENTLE), Force::new);
+    let force = force.map_err(|error| error.to_string()).and_then(rated);
+    force.map_err(|why| format!("force_g: {why}"))
 }
 
 #[cfg(test)]
@@ -168,13 +212,13 @@ mod tests {
     use super::*;
 
     fn parse(line: &str) -> Result<Ask, String> {
-        Asked::parse(line, Side::Right).what
+        Asked::parse(line.as_bytes(), Side::Right).what
     }
 
     #[test]
     fn what_is_not_said_is_gentle_and_null_leaves_a_joint_alone() {
         let asked = Asked::parse(
-            r#"{"id":7,"do":"move","angle":[0,null,null,400,null,1000]}"#,
+            br#"{"id":7,"do":"move","angle":[0,null,null,400.0,null,1e3]}"#,
             Side::Right,
         );
         assert_eq!(asked.id, 7);
@@ -226,14 +270,97 @@ mod tests {
             (r#"{"id":1,"do":"arm","speed":1001}"#, "1001"),
             (r#"{"id":1,"do":"rate","state_hz":0}"#, "1 to 1000"),
             (r#"{"id":1,"do":"fly"}"#, "help share"),
-            (r#"{"id":1,"do":"stop","now":true}"#, "now"),
+            (
+                r#"{"id":1,"do":"arm","now":true}"#,
+                "now: not a field of arm",
+            ),
+            (r#"{"id":1,"do":"arm","v":2}"#, "v: its version"),
+            (
+                r#"{"id":1,"do":"arm","speed":50.5}"#,
+                "speed: has another type",
+            ),
+            (
+                r#"{"id":1,"do":"arm","speed":5,"speed":6}"#,
+                "speed: is there twice",
+            ),
+            (
+                r#"{"id":1,"do":"move","angle":"fist"}"#,
+                "angle: has another type",
+            ),
+            (
+                r#"{"id":1,"do":"move","angle":[0,0,0,"0",0,0]}"#,
+                "angle, index: has another type",
+            ),
+            (
+                r#"{"id":1,"do":"move","angle":[NaN,0,0,0,0,0]}"#,
+                "not a JSON object",
+            ),
             (r#"{"id":1,"right":[2,1,1,1,1,1]}"#, "0 (bent) to 1 (open)"),
         ] {
-            let asked = Asked::parse(line, Side::Right);
+            let asked = Asked::parse(line.as_bytes(), Side::Right);
             assert_eq!(asked.id, 1, "{line}");
             let told = asked.what.unwrap_err();
             assert!(told.contains(why), "{line}: {told}");
         }
         assert!(parse("[1]").unwrap_err().contains("not a JSON object"));
+    }
+
+    #[test]
+    fn what_ends_a_motion_is_obeyed_whatever_else_is_in_its_line() {
+        for text in crate::inputs::stop::tests::odd_stops() {
+            let asked = Asked::parse(&text, Side::Right);
+            let shown = String::from_utf8_lossy(&text);
+            assert_eq!(asked.what, Ok(Ask::Stop), "{shown}");
+        }
+        for (line, ask, odd) in [
+            (r#"{"id":1,"do":"stop"}"#, Ask::Stop, None),
+            (r#"{"id":1,"stop":true}"#, Ask::Stop, None),
+            (r#"{"id":1,"do":"stop","v":1}"#, Ask::Stop, None),
+            (
+                r#"{"id":1,"do":"stop","why":"operator"}"#,
+                Ask::Stop,
+                Some("why"),
+            ),
+            (r#"{"id":1,"do":"stop","v":2}"#, Ask::Stop, Some("v: ")),
+            (
+                r#"{"id":1,"do":"stop","t":NaN}"#,
+                Ask::Stop,
+                Some("not a JSON"),
+            ),
+            (r#"{"id":1,"do":"STOP"}"#, Ask::Stop, Some("STOP")),
+            (
+                r#"{"id":1,"do":"move","do":"stop"}"#,
+                Ask::Stop,
+                Some("do: is there twice"),
+            ),
+            (
+                r#"{"id":1,"do":"arm","stop":true}"#,
+                Ask::Stop,
+                Some("stop"),
+            ),
+            (
+                r#"{"id":1,"stop":true,"right":[NaN]}"#,
+                Ask::Stop,
+                Some("not a JSON"),
+            ),
+            (
+                r#"{"id":1,"do":"release","t":NaN}"#,
+                Ask::Release,
+                Some("not a JSON"),
+            ),
+            (
+                r#"{"id":1,"do":"disarm","by":"me"}"#,
+                Ask::Disarm,
+                Some("by"),
+            ),
+        ] {
+            let asked = Asked::parse(line.as_bytes(), Side::Right);
+            assert_eq!((&asked.what, &asked.id), (&Ok(ask), &1.into()), "{line}");
+            let is_told = match (&asked.odd, odd) {
+                (Some(told), Some(odd)) => told.contains(odd),
+                (told, odd) => told.is_none() && odd.is_none(),
+            };
+            assert!(is_told, "{line}: {:?}", asked.odd);
+        }
     }
 }

@@ -18,7 +18,7 @@ use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LinkHandle, LinkStatus, Owner, Records};
-use crate::record::{Disarmed, LinkState, Record};
+use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::tasks::series::STOP_LOST;
@@ -86,6 +86,8 @@ enum TaskKind {
     Arms,
     /// It follows what comes here, until it is dropped: that ends nothing else.
     Follows(mpsc::Sender<Offer>),
+    /// It moves the hand, which goes on to its targets.
+    Moves,
     Other,
 }
 
@@ -145,7 +147,7 @@ pub(crate) async fn serve<'a>(
 impl Script<'_> {
     async fn run(
         &mut self,
-        lines: &mut mpsc::Receiver<String>,
+        lines: &mut mpsc::Receiver<Vec<u8>>,
         records: &mut Records,
     ) -> Result<(), NobodyReads> {
         self.told.tell(&json!({"ready": {
@@ -160,7 +162,7 @@ impl Script<'_> {
             let task = OptionFuture::from(self.task.as_mut().map(|task| &mut task.done));
             let ending = OptionFuture::from(self.ending.as_mut().map(|ending| &mut ending.1));
             tokio::select! {
-                biased;
+                // Each in its turn: whoever writes lines without a pause keeps nothing else from being looked at.
                 line = lines.recv() => match line {
                     Some(line) => self.obey(Asked::parse(&line, self.hand.side))?,
                     None => return Ok(()),
@@ -213,6 +215,13 @@ impl Script<'_> {
         let status = self.hand.link.status();
         let goes_on = self.owes_stop && status.state.is_live() && status.holder.is_none();
         goes_on || self.holds().is_some()
+    }
+
+    /// Whether the hand is known to have nothing left to do for the program.
+    fn is_at_rest(&self) -> bool {
+        let is_motion = |task: &Task| matches!(task.kind, TaskKind::Follows(_) | TaskKind::Moves);
+        let goes_on = self.owes_stop || self.task.as_ref().is_some_and(is_motion);
+        !goes_on && self.hand.link.status().rest == Rest::Resting
     }
 
     /// The right to move the hand, if it still holds.
@@ -297,31 +306,35 @@ impl Script<'_> {
         })
     }
 
+    /// Does what is asked. What was wrong in a line that ends a motion is told once that is under way.
     fn obey(&mut self, asked: Asked) -> Result<(), NobodyReads> {
-        let Asked { id, what } = asked;
+        let odd = asked
+            .odd
+            .map(|why| json!({"odd": {"id": &asked.id, "why": why}}));
+        self.begin_asked(asked.id, asked.what)?;
+        odd.map_or(Ok(()), |odd| self.told.tell(&odd))
+    }
+
+    fn begin_asked(&mut self, id: Value, what: Result<Ask, String>) -> Result<(), NobodyReads> {
         let done = match what {
             Err(why) => Err(Refused::new(RefusalKind::Wrong, why)),
             Ok(Ask::Rate(rates)) => {
                 self.hand.link.read_at(rates);
                 Ok(())
             }
-            Ok(Ask::Disarm) => {
+            Ok(Ask::Record(path)) => return self.record(id, path.as_deref()),
+            Ok(Ask::Stop) => return self.stop(id),
+            Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
+            Ok(Ask::Disarm) if self.is_to_stop() && !self.is_at_rest() => return self.stop(id),
+            Ok(Ask::Release | Ask::Disarm) if self.owes_stop && !self.is_live => {
+                Err(Refused::new(LINK_LOST, STOP_LOST))
+            }
+            Ok(Ask::Release | Ask::Disarm) => {
                 self.end_task()?;
                 if self.holds().is_some() {
                     self.hand.link.disarm();
                 }
                 (self.right, self.owes_stop) = (None, false);
-                Ok(())
-            }
-            Ok(Ask::Record(path)) => return self.record(id, path.as_deref()),
-            Ok(Ask::Stop) => return self.stop(id),
-            Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
-            Ok(Ask::Release) if self.owes_stop && !self.is_live => {
-                Err(Refused::new(LINK_LOST, STOP_LOST))
-            }
-            Ok(Ask::Release) => {
-                self.end_task()?;
-                self.right = None;
                 Ok(())
             }
             Ok(Ask::Arm(limits)) => return self.arm(id, limits),
@@ -431,13 +444,20 @@ impl Script<'_> {
             };
             Done::Moved(Ok(move_to(&link, start).await))
         };
-        self.begin(Task::of(id, moving))
+        self.begin(Task {
+            id,
+            done: moving.boxed(),
+            kind: TaskKind::Moves,
+        })
     }
 
     /// Lets the hand follow a target, as a stream of them is followed.
     fn follow(&mut self, id: Value, right: Right, line: StreamLine) -> Result<(), NobodyReads> {
-        if line.stop {
-            return self.stop(id);
+        if line.held == Some(false) && self.followed_by().is_none() {
+            // Nothing is followed; what moves the hand is ended all the same.
+            self.end_task()?;
+            let done = self.hand.link.halt(right.lease);
+            return self.reply(&id, done.map(|()| json!({})).map_err(Refused::from));
         }
         let offer = Offer {
             at: self.hand.link.clock().now(),
@@ -485,7 +505,7 @@ impl Script<'_> {
     fn followed_by(&self) -> Option<&mpsc::Sender<Offer>> {
         match &self.task.as_ref()?.kind {
             TaskKind::Follows(offers) => Some(offers),
-            TaskKind::Arms | TaskKind::Other => None,
+            TaskKind::Arms | TaskKind::Moves | TaskKind::Other => None,
         }
     }
 

@@ -16,7 +16,7 @@ const ASKED_MAX: usize = 64;
 const TAKES_WITHIN: Duration = Duration::from_secs(1);
 
 /// Lines of standard input. The channel ends with it.
-pub(crate) fn lines() -> mpsc::Receiver<String> {
+pub(crate) fn lines() -> mpsc::Receiver<Vec<u8>> {
     let (asked, lines) = mpsc::channel(ASKED_MAX);
     std::thread::spawn(move || {
         let mut input = io::stdin().lock();
@@ -27,7 +27,6 @@ pub(crate) fn lines() -> mpsc::Receiver<String> {
             if read.is_err() || line.pop() != Some(b'\n') {
                 return;
             }
-            let line = String::from_utf8_lossy(&line).into_owned();
             if asked.blocking_send(line).is_err() {
                 return;
             }

@@ -43,22 +43,39 @@ impl EntryDecoder {
         }
     }
 
-    fn moment(&self, time: Time) -> Moment {
-        moment_of(self.base_nanos, time.nanos())
-    }
-
-    /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read.
-    pub fn decode(&mut self, topic: Topic, bytes: &[u8]) -> Option<Entry> {
+    /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read. Its time is that of the
+    /// log: when it was received and when it was asked for, nanoseconds since 1970. What its stamps say counts only against each
+    /// other.
+    pub fn decode(&mut self, topic: Topic, times: (u64, u64), bytes: &[u8]) -> Option<Entry> {
+        let at = moment_of(self.base_nanos, times.0);
         match topic {
             Topic::Joints | Topic::Grip => None,
-            Topic::State => self.state(&cdr::decode(bytes)?),
-            Topic::Touch(finger) => self.touch(finger, &cdr::decode(bytes)?),
-            Topic::Command => self.command(&cdr::decode(bytes)?),
-            Topic::CommandFate => self.fate(cdr::decode(bytes)?),
-            Topic::Link => self.link(cdr::decode(bytes)?),
-            Topic::Event => self.event(cdr::decode(bytes)?),
-            Topic::Wire => self.wire(cdr::decode(bytes)?),
+            Topic::State => {
+                let state: StateMessage = cdr::decode(bytes)?;
+                let asked = self.asked(times, (state.asked, state.received));
+                self.state((asked, at), &state)
+            }
+            Topic::Touch(finger) => {
+                let touch: TouchMessage = cdr::decode(bytes)?;
+                let asked = self.asked(times, (touch.asked, touch.received));
+                self.touch((asked, at), finger, &touch)
+            }
+            Topic::Command => command(at, &cdr::decode(bytes)?),
+            Topic::CommandFate => fate(at, cdr::decode(bytes)?),
+            Topic::Link => self.link(at, cdr::decode(bytes)?),
+            Topic::Event => self.event(at, cdr::decode(bytes)?),
+            Topic::Wire => wire(at, cdr::decode(bytes)?),
         }
+    }
+
+    /// When it was asked for.
+    fn asked(&self, (log, publish): (u64, u64), (asked, received): (Time, Time)) -> Moment {
+        let before = if asked.has_ended() || received.has_ended() {
+            log.saturating_sub(publish)
+        } else {
+            received.nanos().saturating_sub(asked.nanos())
+        };
+        moment_of(self.base_nanos, log.saturating_sub(before))
     }
 
     fn reading(&self, fresh: Groups) -> Option<Entry> {
@@ -70,8 +87,11 @@ impl EntryDecoder {
         })
     }
 
-    fn state(&mut self, state: &StateMessage) -> Option<Entry> {
-        let (asked, received) = (self.moment(state.asked), self.moment(state.received));
+    fn state(
+        &mut self,
+        (asked, received): (Moment, Moment),
+        state: &StateMessage,
+    ) -> Option<Entry> {
         let mut fresh = Groups::NONE;
         let mut take = |span: Span, bytes: &[u8]| {
             if !bytes.is_empty() {
@@ -106,50 +126,22 @@ impl EntryDecoder {
         self.reading(fresh)
     }
 
-    fn touch(&mut self, finger: Finger, touch: &TouchMessage) -> Option<Entry> {
+    fn touch(
+        &mut self,
+        (asked, received): (Moment, Moment),
+        finger: Finger,
+        touch: &TouchMessage,
+    ) -> Option<Entry> {
         let fresh = self.sample.take(&Reply {
             span: Group::Tactile(finger).span(),
             bytes: &touch.raw,
-            asked: self.moment(touch.asked),
-            received: self.moment(touch.received),
+            asked,
+            received,
         });
         self.reading(fresh)
     }
 
-    fn command(&self, command: &CommandMessage) -> Option<Entry> {
-        let bytes = command
-            .bytes
-            .get(..command.bytes.len().min(WRITE_LEN_MAX))?;
-        let cause = WriteCause::ALL.into_iter();
-        Some(Entry::Heard(Record::Sent {
-            at: self.moment(command.sent),
-            number: command.number,
-            cause: cause
-                .clone()
-                .find(|cause| cause.key() == command.cause)
-                .unwrap_or(WriteCause::Request),
-            write: WrittenMemory {
-                address: command.address,
-                bytes: bytes.iter().copied().collect(),
-            },
-        }))
-    }
-
-    fn fate(&self, fate: CommandFate) -> Option<Entry> {
-        Some(Entry::Heard(Record::Answered {
-            at: self.moment(fate.at),
-            number: fate.number,
-            fate: match fate.fate.as_str() {
-                "acknowledged" => WriteFate::Acknowledged,
-                "refused" => WriteFate::Refused {
-                    reason: fate.reason,
-                },
-                _ => WriteFate::Unanswered,
-            },
-        }))
-    }
-
-    fn link(&mut self, link: LinkMessage) -> Option<Entry> {
+    fn link(&mut self, at: Moment, link: LinkMessage) -> Option<Entry> {
         const ALL: [LinkState; 6] = [
             LinkState::Offline,
             LinkState::Identifying,
@@ -158,7 +150,6 @@ impl EntryDecoder {
             LinkState::Holding,
             LinkState::Fault,
         ];
-        let at = self.moment(link.at);
         let mut known = ALL.into_iter();
         let state = known.find(|state| link_state_key(*state) == link.state)?;
         if !link.entered {
@@ -177,8 +168,7 @@ impl EntryDecoder {
         Some(Entry::Heard(Record::State { at, state }))
     }
 
-    fn event(&self, event: EventMessage) -> Option<Entry> {
-        let at = self.moment(event.at);
+    fn event(&self, at: Moment, event: EventMessage) -> Option<Entry> {
         if event.kind == ARM_REFUSED {
             let reason = serde_json::from_str(&event.words).ok()?;
             return Some(Entry::Heard(Record::ArmRefused { at, reason }));
@@ -191,19 +181,52 @@ impl EntryDecoder {
             words: event.words,
         }))
     }
+}
 
-    fn wire(&self, wire: WireMessage) -> Option<Entry> {
-        Some(Entry::Wire(Piece {
-            at: self.moment(wire.at),
-            kind: match wire.kind {
-                0 => PieceKind::Opened,
-                1 => PieceKind::Bytes(Direction::ToHand),
-                2 => PieceKind::Bytes(Direction::FromHand),
-                3 => PieceKind::Broken,
-                4 => PieceKind::Closed,
-                _ => return None,
+fn command(at: Moment, command: &CommandMessage) -> Option<Entry> {
+    let bytes = command
+        .bytes
+        .get(..command.bytes.len().min(WRITE_LEN_MAX))?;
+    let cause = WriteCause::ALL.into_iter();
+    Some(Entry::Heard(Record::Sent {
+        at,
+        number: command.number,
+        cause: cause
+            .clone()
+            .find(|cause| cause.key() == command.cause)
+            .unwrap_or(WriteCause::Request),
+        write: WrittenMemory {
+            address: command.address,
+            bytes: bytes.iter().copied().collect(),
+        },
+    }))
+}
+
+fn fate(at: Moment, fate: CommandFate) -> Option<Entry> {
+    Some(Entry::Heard(Record::Answered {
+        at,
+        number: fate.number,
+        fate: match fate.fate.as_str() {
+            "acknowledged" => WriteFate::Acknowledged,
+            "refused" => WriteFate::Refused {
+                reason: fate.reason,
             },
-            bytes: wire.bytes,
-        }))
-    }
+            _ => WriteFate::Unanswered,
+        },
+    }))
+}
+
+fn wire(at: Moment, wire: WireMessage) -> Option<Entry> {
+    Some(Entry::Wire(Piece {
+        at,
+        kind: match wire.kind {
+            0 => PieceKind::Opened,
+            1 => PieceKind::Bytes(Direction::ToHand),
+            2 => PieceKind::Bytes(Direction::FromHand),
+            3 => PieceKind::Broken,
+            4 => PieceKind::Closed,
+            _ => return None,
+        },
+        bytes: wire.bytes,
+    }))
 }

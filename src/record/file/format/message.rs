@@ -21,6 +21,11 @@ impl Time {
         }
     }
 
+    /// True of all times after January 2038, which have no other number of seconds.
+    pub(crate) const fn has_ended(self) -> bool {
+        self.sec == i32::MAX
+    }
+
     /// Nanoseconds since 1970; 0 before that.
     pub fn nanos(self) -> u64 {
         let seconds = u64::try_from(self.sec).unwrap_or_default();

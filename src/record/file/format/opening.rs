@@ -102,6 +102,18 @@ impl Opening {
         format!("{time}-{}.mcap", words.join("-"))
     }
 
+    /// The same by another clock, which is so many nanoseconds after the one that it tells of. It counts from the beginning, as the
+    /// program itself may have begun before that clock's first moment.
+    pub(crate) fn moved(self, nanos: i64) -> Self {
+        let began = nanos_of(self.base_nanos, self.began);
+        Self {
+            base_nanos: began.saturating_add_signed(nanos),
+            began: Moment::ZERO,
+            part: None,
+            ..self
+        }
+    }
+
     /// What stands in a file.
     pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
         let side = match self.side {

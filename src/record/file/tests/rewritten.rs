@@ -11,12 +11,14 @@ use crate::record::Entry;
 use crate::record::file::channels::SkipReason;
 use crate::record::file::damage::{Damage, Remark};
 use crate::record::file::format::opening::METADATA;
-use crate::record::file::reader::{OpenError, RecordingFile};
+use crate::record::file::reader::{OpenError, RecordingFile, Stretch};
+use crate::record::file::walk::{self, ChunkKind, survey, whole};
 use crate::record::file::writer::RecordingWriter;
 use mcap::records::{MessageHeader, Metadata, op};
 use mcap::{Compression, Message, MessageStream, WriteOptions, Writer};
 use std::collections::BTreeMap;
 use std::io::Cursor;
+use std::ops::ControlFlow;
 use std::os::unix::fs::FileExt as _;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -520,4 +522,208 @@ fn what_is_missing_is_found_by_the_numbers_of_the_messages_and_as_long_as_it_was
         length.abs_diff(time(to) - time(from)) < 5_000_000,
         "{damage:?}"
     );
+}
+
+/// Seconds of all entries from the recording's start.
+fn seconds(file: &RecordingFile) -> Vec<u64> {
+    let mut all = Vec::new();
+    let each = |entry: Entry| {
+        let from_start = entry.at().since(file.first());
+        all.push(u64::try_from(from_start.as_micros()).unwrap());
+        ControlFlow::Continue(())
+    };
+    file.entries(Stretch::WHOLE, each).unwrap();
+    all
+}
+
+#[test]
+fn the_log_of_a_file_is_believed_and_how_it_differs_from_the_messages_is_told() {
+    const HOUR: u64 = 3_600_000_000_000;
+    let recording = Recording::new(3000);
+    let (_, own, _) = recording.read(&recording.bytes);
+    let wanted = seconds(&own);
+    let earlier: fn(&mut Vec<One>) = |all| {
+        all.iter_mut().for_each(|one| one.header.log_time -= HOUR);
+    };
+    let later: fn(&mut Vec<One>) = |all| {
+        all.iter_mut()
+            .for_each(|one| one.header.log_time += 10_000_000_000);
+    };
+    let from_zero: fn(&mut Vec<One>) = |all| {
+        let first = all[0].header.log_time;
+        all.iter_mut().for_each(|one| one.header.log_time -= first);
+    };
+    let unlogged: fn(&mut Vec<One>) = |all| {
+        all.iter_mut()
+            .take(40)
+            .for_each(|one| one.header.log_time = 0);
+    };
+    for (what, order, moved_s, is_unlogged) in [
+        ("an hour", earlier, Some(-3600), false),
+        ("ten seconds", later, Some(10), false),
+        ("from 0", from_zero, None, true),
+        ("40 without", unlogged, Some(0), true),
+    ] {
+        for has_metadata in [true, false] {
+            let mut rewrite = Rewrite::new().with(|options| options.chunk_size(Some(10_000)));
+            rewrite.order = order;
+            if !has_metadata {
+                rewrite.metadata.clear();
+            }
+            let (_, file, damage) = recording.read(&rewrite.of(&recording.bytes));
+            let what = format!("{what}, metadata {has_metadata}");
+            let found = seconds(&file);
+            assert_eq!(found.len(), wanted.len(), "{what}");
+            // Without what the file says of itself it begins with its first message.
+            let begins = if has_metadata { 0 } else { wanted[0] };
+            let differ = |(a, b): (&u64, &u64)| a.abs_diff(b.saturating_sub(begins)) > 2000;
+            let differing = found
+                .iter()
+                .zip(&wanted)
+                .filter(|pair| differ(*pair))
+                .count();
+            assert_eq!(differing, 0, "{what}: {found:?}");
+            assert_eq!(damage, Damage::default(), "{what}");
+            let mut remarks = file.remarks().iter();
+            let told = remarks.clone().find_map(|remark| match remark {
+                Remark::LogMoved { nanos } => Some((nanos + 500_000_000).div_euclid(1_000_000_000)),
+                _ => None,
+            });
+            if let Some(moved_s) = moved_s {
+                assert_eq!(told.unwrap_or_default(), moved_s, "{what}");
+            } else {
+                assert!(told.unwrap() < -1_000_000_000, "{what}");
+            }
+            let is_told = remarks.any(|remark| matches!(remark, Remark::Unlogged(_)));
+            assert_eq!(is_told, is_unlogged, "{what}");
+        }
+    }
+}
+
+#[test]
+fn topics_in_a_namespace_are_those_of_one_hand() {
+    let recording = Recording::new(500);
+    let mut rewrite = Rewrite::new();
+    rewrite.order = |all| {
+        all.iter_mut()
+            .for_each(|one| one.topic.insert_str(0, "/right"))
+    };
+    let (all, ..) = recording.read(&rewrite.of(&recording.bytes));
+    assert!(all == recording.wanted, "{} entries", all.len());
+    // Of two hands, values would be mixed.
+    rewrite.number = |number| number;
+    rewrite.order = |all| {
+        let mut other = all.clone();
+        all.iter_mut()
+            .for_each(|one| one.topic.insert_str(0, "/right"));
+        for one in &mut other {
+            one.topic.insert_str(0, "/lab/left");
+            one.header.channel_id += 100;
+        }
+        all.append(&mut other);
+    };
+    std::fs::write(recording.path(), rewrite.of(&recording.bytes)).unwrap();
+    let refused = RecordingFile::open(&recording.path()).unwrap_err();
+    let hands = "/lab/left, /right".to_owned();
+    assert_eq!(refused, OpenError::SeveralHands { hands });
+}
+
+/// A recording with so many pictures of so many bytes between its messages.
+fn with_pictures(
+    recording: &Recording,
+    rewrite: &Rewrite,
+    count: usize,
+    picture: &[u8],
+) -> Vec<u8> {
+    let mut writer = rewrite.writer();
+    let messages = messages(&recording.bytes);
+    let part = messages.len() / (count + 1);
+    let mut parts = messages.chunks(part.max(1));
+    let schema = writer
+        .add_schema("sensor_msgs/msg/Image", "ros2msg", b"uint8[] data")
+        .unwrap();
+    for nth in 0..count {
+        rewrite.write(parts.next().unwrap_or_default(), &mut writer);
+        let channel = writer
+            .add_channel(schema, "/camera", "cdr", &BTreeMap::new())
+            .unwrap();
+        let header = MessageHeader {
+            channel_id: channel,
+            sequence: u32::try_from(nth).unwrap(),
+            log_time: super::BASE + 2_100_000_000,
+            publish_time: 0,
+        };
+        writer.write_to_known_channel(&header, picture).unwrap();
+    }
+    parts.for_each(|part| rewrite.write(part, &mut writer));
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn pictures_beside_ours_and_all_in_one_chunk_are_no_hindrance() {
+    let recording = Recording::new(300);
+    let mut random = fastrand::Rng::with_seed(1);
+    let picture: Vec<u8> = (0..9_000_000).map(|_| random.u8(..)).collect();
+    let none = Rewrite::new().with(|options| options.compression(None));
+    let one_chunk = none
+        .clone()
+        .with(|options| options.chunk_size(Some(1 << 40)));
+    for (what, rewrite) in [
+        ("pictures", &none),
+        (
+            "compressed",
+            &Rewrite::new().with(|options| options.compression(Some(Compression::Lz4))),
+        ),
+        ("one chunk", &one_chunk),
+    ] {
+        let bytes = with_pictures(&recording, rewrite, 2, &picture);
+        let (all, file, damage) = recording.read(&bytes);
+        assert!(all == recording.wanted, "{what}: {} entries", all.len());
+        assert_eq!(damage, Damage::default(), "{what}");
+        assert!(!file.remarks().contains(&Remark::StaleIndex), "{what}");
+    }
+    // A long chunk that is damaged gives nothing, and is counted.
+    let mut bytes = with_pictures(&recording, &one_chunk, 1, &picture);
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(recording.path(), &bytes).unwrap();
+    let refused = RecordingFile::open(&recording.path()).unwrap_err();
+    assert_eq!(refused, OpenError::Empty);
+}
+
+#[test]
+fn chunks_that_unpack_to_far_more_than_the_file_are_left_out_and_told() {
+    let recording = Recording::new(50);
+    let rewrite = Rewrite::new().with(|options| {
+        options
+            .compression(Some(Compression::Zstd))
+            .chunk_size(Some(10_000))
+    });
+    let bytes = with_pictures(&recording, &rewrite, 20, &vec![0; 7 * 1024 * 1024]);
+    assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
+    let (_, file, damage) = recording.read(&bytes);
+    let left_out = file.remarks().iter().find_map(|remark| match remark {
+        Remark::TooMuch { megabytes } => Some(*megabytes),
+        _ => None,
+    });
+    // 140 MB in all, of which 64 and a hundred times the file's length are unpacked.
+    assert!((60..=82).contains(&left_out.unwrap()), "{left_out:?}");
+    assert!(damage.chunks >= 7, "{damage:?}");
+}
+
+#[test]
+fn a_chunk_of_ours_does_not_unpack_to_hundreds_of_times_its_length() {
+    let recording = Recording::new(50);
+    let rewrite = Rewrite::new().with(|options| options.compression(Some(Compression::Zstd)));
+    for (len, is_ours) in [(1000, true), (7 * 1024 * 1024, false)] {
+        let bytes = with_pictures(&recording, &rewrite, 1, &vec![0; len]);
+        let found = survey(&mut Cursor::new(&bytes)).unwrap().found;
+        let mut is_whole = true;
+        for chunk in found.chunks {
+            let mut bytes = whole(&mut Cursor::new(&bytes), chunk.place).unwrap();
+            is_whole &= walk::messages(&mut bytes, ChunkKind::Chunk, |_| ());
+        }
+        assert_eq!(is_whole, is_ours, "{len}");
+    }
 }

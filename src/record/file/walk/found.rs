@@ -4,6 +4,13 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// No record of ours is longer; what says so is damaged.
 pub const RECORD_MAX: u64 = 8 * 1024 * 1024;
+/// Other programs put pictures into a chunk, or all of a recording. One that is longer than a record of ours is read piece by piece,
+/// and holds no longer message than this.
+pub const LONG_MESSAGE_MAX: u64 = 32 * 1024 * 1024;
+/// All chunks of a file may unpack to so many bytes, and to so many times its length; what claims more is not unpacked. A recording
+/// packs to a tenth, a black picture to a thousandth.
+pub const UNPACKED_MAX: u64 = 64 * 1024 * 1024;
+pub const UNPACKED_TIMES: u64 = 100;
 /// Chunks of one file: more than a day of one hand, in 32 MiB. A file made of tiny ones is read without those after.
 pub const CHUNKS_MAX: usize = 1024 * 1024;
 /// Attachments and metadata of one file; ours have one attachment a minute.
@@ -40,8 +47,12 @@ pub struct ChunkPlace {
 /// How messages stand in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChunkKind {
-    /// In a chunk, whose sum protects them.
+    /// In a chunk of ours, whose sum protects them.
     Chunk,
+    /// The same of another program, which may pack what it likes.
+    Foreign,
+    /// The same, too long to be held.
+    Long,
     /// Outside of chunks.
     Loose,
 }
@@ -123,4 +134,13 @@ pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Ve
     let mut bytes = vec![0; usize::try_from(len).unwrap_or_default()];
     read_at(file, place.offset, &mut bytes)?;
     Ok(bytes)
+}
+
+/// A record to be read piece by piece.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn reader<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<io::Take<&mut F>> {
+    file.seek(SeekFrom::Start(place.offset))?;
+    Ok(file.take(place.len + HEAD))
 }

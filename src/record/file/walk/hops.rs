@@ -92,6 +92,23 @@ fn belongs_to_data(head: &[u8]) -> bool {
 /// The times of a chunk; `None` if this is none. They themselves may be anything, and so may its operation code: what it says of its
 /// lengths agrees in no other record.
 pub(super) fn chunk_times(head: &[u8]) -> Option<(u64, u64)> {
+    let chunk = chunk_head(head).filter(|chunk| chunk.unpacked <= RECORD_MAX)?;
+    Some((chunk.first, chunk.last))
+}
+
+/// What a chunk says of itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ChunkHead {
+    first: u64,
+    last: u64,
+    /// Bytes of its records.
+    pub(super) unpacked: u64,
+    /// Bytes of the chunk's own record.
+    pub(super) size: u64,
+}
+
+/// What a chunk of any length says of itself; `None` if this is none.
+pub(super) fn chunk_head(head: &[u8]) -> Option<ChunkHead> {
     let size = u64_at(head, 1)?;
     let body = head.get(HEAD_LEN..)?;
     let (first, last) = (u64_at(body, 0)?, u64_at(body, 8)?);
@@ -99,7 +116,12 @@ pub(super) fn chunk_times(head: &[u8]) -> Option<(u64, u64)> {
     let name = usize::try_from(u32_at(body, 28)?).ok()?;
     let packed = u64_at(body, 32_usize.checked_add(name.min(NAME_MAX))?)?;
     let whole = packed.checked_add((CHUNK_HEAD + name.min(NAME_MAX)) as u64)?;
-    (unpacked <= RECORD_MAX && name <= NAME_MAX && whole == size).then_some((first, last))
+    (name <= NAME_MAX && whole == size).then_some(ChunkHead {
+        first,
+        last,
+        unpacked,
+        size,
+    })
 }
 
 fn note(head: &[u8], at: u64, found: &mut Found) {

@@ -1,11 +1,18 @@
 //! The messages of one chunk, or of records outside of chunks.
 
-use super::found::{ChunkKind, RECORD_MAX};
+use super::found::{ChunkKind, LONG_MESSAGE_MAX, RECORD_MAX};
+use super::hops::chunk_head;
 use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use std::io::{self, Read};
 
 /// No message of ours is longer. Small parts of a long one could take many times its room.
 const MESSAGE_MAX: usize = 1024 * 1024;
+/// Ours pack to a tenth. What claims to unpack to so many times its length, and more than this, is none of ours.
+const PACKED_TIMES_MAX: u64 = 200;
+const PACKED_FREE: u64 = 64 * 1024;
+/// Bytes of a long chunk that are read at once.
+const READ_AT_ONCE: usize = 64 * 1024;
 
 /// One record of a chunk.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +42,10 @@ pub(crate) fn records(
     kind: ChunkKind,
     mut take: impl FnMut(ChunkRecord<'_>),
 ) -> bool {
-    if let (ChunkKind::Chunk, Some(code)) = (kind, chunk.first_mut()) {
+    if kind == ChunkKind::Chunk && is_inflated(chunk) {
+        return false;
+    }
+    if let (ChunkKind::Chunk | ChunkKind::Foreign, Some(code)) = (kind, chunk.first_mut()) {
         // Its length and its sum say whether it is one. A flipped bit here would hide it.
         *code = op::CHUNK;
     }
@@ -44,29 +54,61 @@ pub(crate) fn records(
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
         .with_record_length_limit(usize::try_from(RECORD_MAX).unwrap_or(usize::MAX));
+    // Memory can always be read.
+    let len = chunk.len().max(1);
+    read(&mut &*chunk, len, options, &mut take).unwrap_or_default()
+}
+
+/// The same of a chunk that is too long to be held. It gives records before it can tell that the chunk is damaged.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn long_records(
+    from: &mut impl Read,
+    mut take: impl FnMut(ChunkRecord<'_>),
+) -> io::Result<bool> {
+    let options = LinearReaderOptions::default()
+        .with_skip_start_magic(true)
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(usize::try_from(LONG_MESSAGE_MAX).unwrap_or(usize::MAX));
+    read(from, READ_AT_ONCE, options, &mut take)
+}
+
+fn read(
+    from: &mut impl Read,
+    at_once: usize,
+    options: LinearReaderOptions,
+    take: &mut impl FnMut(ChunkRecord<'_>),
+) -> io::Result<bool> {
     let mut reader = LinearReader::new_with_options(options);
-    let mut rest = &*chunk;
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let give = rest.len().min(wanted);
-                let (now, later) = rest.split_at(give);
-                reader.insert(give).copy_from_slice(now);
-                reader.notify_read(give);
-                rest = later;
+                let room = reader.insert(wanted.min(at_once));
+                let given = from.read(room)?;
+                reader.notify_read(given);
             }
             Ok(LinearReadEvent::Record { data, opcode }) => match opcode {
                 op::MESSAGE => match message(data) {
                     Some(message) => take(ChunkRecord::Message(message)),
-                    None => return false,
+                    None => return Ok(false),
                 },
                 op::SCHEMA | op::CHANNEL => take(ChunkRecord::Definition(opcode, data)),
                 _ => {}
             },
-            Err(_damaged) => return false,
+            Err(_damaged) => return Ok(false),
         }
     }
-    true
+    Ok(true)
+}
+
+/// True if a chunk claims to unpack to far more than a recording does.
+fn is_inflated(chunk: &[u8]) -> bool {
+    chunk_head(chunk).is_some_and(|head| {
+        let packed = head.size.saturating_mul(PACKED_TIMES_MAX);
+        head.unpacked > packed.saturating_add(PACKED_FREE)
+    })
 }
 
 /// The same without what defines its channels.

@@ -10,10 +10,13 @@ mod messages;
 mod survey;
 mod times;
 
-pub use found::{CHUNKS_MAX, ChunkKind, ChunkPlace, Found, PLACES_MAX, Place, RECORD_MAX};
-pub(crate) use found::{MAGIC, content, whole};
+pub use found::{
+    CHUNKS_MAX, ChunkKind, ChunkPlace, Found, LONG_MESSAGE_MAX, PLACES_MAX, Place, RECORD_MAX,
+    UNPACKED_MAX, UNPACKED_TIMES,
+};
+pub(crate) use found::{MAGIC, content, reader, whole};
 pub(crate) use index::record;
-pub(crate) use messages::{ChunkMessage, ChunkRecord, messages, records};
+pub(crate) use messages::{ChunkMessage, ChunkRecord, long_records, messages, records};
 pub(crate) use survey::{Survey, survey};
 
 use hops::one_by_one;

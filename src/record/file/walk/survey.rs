@@ -2,11 +2,13 @@
 //! under any numbers. The whole file is read once; its own index is only held against what is found.
 
 use super::found::{
-    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, u32_at, u64_at, whole,
+    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, UNPACKED_MAX,
+    UNPACKED_TIMES, reader, u32_at, u64_at, whole,
 };
-use super::hops::{LOOKED_AT, chunk_times, next_place, plausible};
-use super::messages::{ChunkRecord, records};
+use super::hops::{ChunkHead, LOOKED_AT, chunk_head, chunk_times, next_place, plausible};
+use super::messages::{ChunkRecord, long_records, records};
 use crate::record::file::channels::Definitions;
+use crate::record::file::clock::LogClock;
 use mcap::records::op;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
@@ -25,8 +27,12 @@ pub(crate) struct Survey {
     /// Chunks, and messages outside of them; those that are whole.
     pub(crate) found: Found,
     pub(crate) definitions: Definitions,
+    pub(crate) clock: LogClock,
     /// Chunks that cannot be read.
     pub(crate) damaged: u64,
+    /// Bytes that all chunks claim to unpack to, and those of the chunks that were left out as that is too much.
+    pub(crate) unpacked: u64,
+    pub(crate) left_out: u64,
     /// True if the sum over all of the data is not that of the file, where messages stand outside of chunks: no other sum tells.
     pub(crate) sum_differs: bool,
 }
@@ -106,9 +112,9 @@ impl<F: Read + Seek> Surveyor<'_, F> {
                 offset: at,
                 len: next - at - HEAD,
             };
-            if chunk_times(&head).is_some() {
+            if let Some(chunk) = chunk_head(&head) {
                 self.look_at_loose()?;
-                self.look_at(ChunkKind::Chunk, place)?;
+                self.look_at_chunk(chunk, place)?;
             } else if matches!(code, op::MESSAGE | op::SCHEMA | op::CHANNEL) {
                 if self.loose.is_some_and(|(_, to)| to != at) {
                     self.look_at_loose()?;
@@ -134,12 +140,14 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     /// Where the record ends, if one can stand here.
     fn end(&self, head: &[u8], at: u64) -> Option<u64> {
         let size = u64_at(head, 1)?;
+        let as_told = || {
+            let end = at.checked_add(HEAD)?.checked_add(size)?;
+            (end <= self.len).then_some(end)
+        };
         match head.first() {
             // Pictures and films may be as long as they like.
-            Some(&op::ATTACHMENT) if size > RECORD_MAX => {
-                let end = at.checked_add(HEAD)?.checked_add(size)?;
-                (end <= self.len).then_some(end)
-            }
+            Some(&op::ATTACHMENT) if size > RECORD_MAX => as_told(),
+            Some(&op::CHUNK) if chunk_head(head).is_some() => as_told(),
             // One that claims to be longer would hide what defines the channels.
             Some(&(op::HEADER | op::METADATA)) if !is_pair(head) => None,
             Some(&op::MESSAGE) if size < MESSAGE_HEAD => None,
@@ -182,22 +190,60 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         self.look_at(ChunkKind::Loose, place)
     }
 
+    /// Reads a chunk, unless it claims to unpack to more than any recording does.
+    fn look_at_chunk(&mut self, chunk: ChunkHead, place: Place) -> io::Result<()> {
+        let survey = &mut self.survey;
+        survey.unpacked = survey.unpacked.saturating_add(chunk.unpacked);
+        let times = self.len.saturating_mul(UNPACKED_TIMES);
+        if survey.unpacked > UNPACKED_MAX.saturating_add(times) {
+            survey.unpacked -= chunk.unpacked;
+            survey.left_out = survey.left_out.saturating_add(chunk.unpacked);
+            survey.damaged += 1;
+            return Ok(());
+        }
+        let is_long = chunk.unpacked.max(chunk.size) > RECORD_MAX;
+        if !is_long {
+            return self.look_at(ChunkKind::Foreign, place);
+        }
+        // Its sum is right only at its end, and nothing counts of one that is damaged.
+        let is_whole = long_records(&mut reader(&mut self.file, place)?, |_| ())?;
+        if is_whole {
+            self.look_at(ChunkKind::Long, place)
+        } else {
+            self.survey.damaged += 1;
+            Ok(())
+        }
+    }
+
     /// Reads a chunk: what it defines, what it holds, and when that was.
     fn look_at(&mut self, kind: ChunkKind, place: Place) -> io::Result<()> {
-        let mut bytes = whole(&mut self.file, place)?;
         let mut times: Option<(u64, u64)> = None;
-        let definitions = &mut self.survey.definitions;
-        let is_whole = records(&mut bytes, kind, |record| match record {
+        let (definitions, clock) = (&mut self.survey.definitions, &mut self.survey.clock);
+        let mut has_unlogged = false;
+        let take = |record: ChunkRecord<'_>| match record {
             ChunkRecord::Definition(code, content) => definitions.take(code, content),
             ChunkRecord::Message(message) => {
                 definitions.count(message.channel);
+                clock.take(message.channel, message.times.0, message.data);
+                if message.times.0 == 0 {
+                    has_unlogged = true;
+                    return;
+                }
                 let (first, last) = times.unwrap_or((message.times.0, message.times.0));
                 times = Some((first.min(message.times.0), last.max(message.times.0)));
             }
-        });
+        };
+        let is_whole = match kind {
+            ChunkKind::Long => long_records(&mut reader(&mut self.file, place)?, take)?,
+            _ => records(&mut whole(&mut self.file, place)?, kind, take),
+        };
         self.survey.damaged += u64::from(!is_whole);
-        if let Some((first_nanos, last_nanos)) = times {
-            self.newest = last_nanos;
+        if let Some((_, last)) = times {
+            self.newest = last;
+        }
+        // Nothing is known yet of when messages without a time were.
+        let unknown = has_unlogged.then_some((0, u64::MAX));
+        if let Some((first_nanos, last_nanos)) = unknown.or(times) {
             self.survey.found.chunk(ChunkPlace {
                 kind,
                 place,
@@ -238,7 +284,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         }
         let survey = &mut self.survey;
         let chunks = survey.found.chunks.iter();
-        let chunks = chunks.filter(|chunk| chunk.kind == ChunkKind::Chunk);
+        let chunks = chunks.filter(|chunk| chunk.kind != ChunkKind::Loose);
         let has_index = told + strangers > 0;
         // Chunks that hold no message or are damaged are told of, too.
         let misses = has_index && told < chunks.count();

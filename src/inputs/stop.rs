@@ -1,0 +1,233 @@
+//! A stop in a text message, however the rest of the message is written. The scan needs no valid JSON and no known version: a
+//! stop is obeyed first, and what was odd about its message is reported afterwards. Pure.
+//!
+//! A message is a stop if a name `stop`, at any depth, has another value than `false`, `0`, `null` and their like, if a name `do`
+//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, bytes of zero, text
+//! before or after it and a text that ends too early change nothing.
+
+use crate::inputs::scan::{Token, pieces, without_zeros};
+
+/// Values of `stop` that ask for none. Numbers that are zero are of these, too.
+const NO: [&str; 8] = ["false", "null", "none", "nil", "undefined", "no", "off", ""];
+
+/// What ends a motion, the strongest last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum EndWord {
+    /// The sender gives up its right to move the hand.
+    Disarm,
+    /// The same, and the hand stops unless another sender moves it.
+    Release,
+    /// The hand stops, whoever moves it.
+    Stop,
+}
+
+/// Whether more of a text may follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextEnd {
+    /// This is all of it.
+    Whole,
+    /// A value at its end may be only the beginning of one.
+    MayGoOn,
+}
+
+/// Whether a message asks for a stop.
+pub(crate) fn is_stop(text: &[u8], end: TextEnd) -> bool {
+    end_word(text, end) == Some(EndWord::Stop)
+}
+
+/// The strongest word of a message that ends a motion.
+pub(crate) fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
+    let text = without_zeros(text);
+    let all = pieces(&text);
+    if let [Token::Text(only)] = all.as_slice() {
+        return (end == TextEnd::Whole && only.lower() == "stop").then_some(EndWord::Stop);
+    }
+    let mut found = None;
+    for (nth, token) in all.iter().enumerate() {
+        let (Token::Text(name), Some(Token::Mark(b':' | b'='))) = (token, all.get(nth + 1)) else {
+            continue;
+        };
+        let value = all.get(nth + 2);
+        let word = match name.lower().as_str() {
+            "stop" => is_yes(value, end).then_some(EndWord::Stop),
+            "do" => value.and_then(|value| order(value, end)),
+            _ => None,
+        };
+        found = found.max(word);
+    }
+    found
+}
+
+/// Whether a dead-man is let go by a message, whatever else is wrong with it.
+pub(crate) fn lets_go(text: &[u8]) -> bool {
+    let text = without_zeros(text);
+    let all = pieces(&text);
+    all.windows(3).any(|three| match three {
+        [
+            Token::Text(name),
+            Token::Mark(b':' | b'='),
+            Token::Text(value),
+        ] => name.lower() == "held" && value.is_ended && is_no(&value.lower()),
+        _ => false,
+    })
+}
+
+/// Whether the value of `stop` asks for one. A value that is missing does.
+fn is_yes(value: Option<&Token<'_>>, end: TextEnd) -> bool {
+    match (value, end) {
+        (None, end) => end == TextEnd::Whole,
+        (Some(Token::Mark(_)), _) => true,
+        (Some(Token::Text(text)), TextEnd::MayGoOn) if !text.is_ended => text.lower() == "true",
+        (Some(Token::Text(text)), _) => {
+            let word = text.lower();
+            let is_begun = !text.is_ended && !word.is_empty();
+            let begins_no = ["false", "null"].iter().any(|no| no.starts_with(&word));
+            !(is_no(&word) || is_begun && begins_no)
+        }
+    }
+}
+
+fn is_no(word: &str) -> bool {
+    let is_zero = word.parse().is_ok_and(|number: f64| number == 0.0);
+    is_zero || NO.contains(&word)
+}
+
+fn order(value: &Token<'_>, end: TextEnd) -> Option<EndWord> {
+    let Token::Text(text) = value else {
+        return None;
+    };
+    if end == TextEnd::MayGoOn && !text.is_ended {
+        return None;
+    }
+    match text.lower().as_str() {
+        "stop" => Some(EndWord::Stop),
+        "release" => Some(EndWord::Release),
+        "disarm" => Some(EndWord::Disarm),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Everything odd that stood beside a stop, or in it. Each text door has to obey each.
+    pub(crate) fn odd_stops() -> Vec<Vec<u8>> {
+        let rows = include_str!("../../tests/odd_stops.txt").lines();
+        let rows = rows.filter(|row| !row.starts_with('#'));
+        let mut all: Vec<Vec<u8>> = rows.map(bytes).collect();
+        let plain = bytes(r#"{"stop":true}"#);
+        let utf16 = plain.iter().flat_map(|byte| [*byte, 0]);
+        all.push([0xff, 0xfe].into_iter().chain(utf16).collect());
+        let long = format!(r#"{{"stop":true,"x":"{}"}}"#, "y".repeat(3000));
+        all.push(long.into_bytes());
+        assert!(all.len() > 60);
+        all
+    }
+
+    fn bytes(row: &str) -> Vec<u8> {
+        let text = row.replace("<LF>", "\n").replace("<NUL>", "\0");
+        let text = text.replace("<BOM>", "\u{feff}");
+        let parts = text.split("<FF>").map(str::as_bytes);
+        parts.collect::<Vec<_>>().join(&0xff)
+    }
+
+    #[test]
+    fn a_stop_is_recognised_whatever_is_odd_about_it() {
+        for text in odd_stops() {
+            let shown = String::from_utf8_lossy(&text).into_owned();
+            assert!(is_stop(&text, TextEnd::Whole), "{shown}");
+        }
+    }
+
+    #[test]
+    fn what_asks_for_no_stop_is_none() {
+        for text in [
+            "",
+            "{",
+            "stopped",
+            "do not stop",
+            r#"{"stop":false}"#,
+            r#"{"stop":False,"right":[1,1,1,1,1,1]}"#,
+            r#"{"stop":0}"#,
+            r#"{"stop":-0.0}"#,
+            r#"{"stop":null}"#,
+            r#"{"stop":"false"}"#,
+            r#"{"stop":""}"#,
+            r#"{"stop":None}"#,
+            r#"{"stop":fal"#,
+            r#"{"stop":"off"}"#,
+            r#"{"stopped":true}"#,
+            r#"{"nonstop":true}"#,
+            r#"{"why":"stop"}"#,
+            r#"{"why":"say \"stop\":true to end"}"#,
+            r#"{"keys":["stop","go"]}"#,
+            r#"{"do":"move","angle":[0,0,0,0,0,0]}"#,
+            r#"{"do":"stopping"}"#,
+            "POST / HTTP/1.1",
+        ] {
+            assert!(!is_stop(text.as_bytes(), TextEnd::Whole), "{text}");
+        }
+    }
+
+    #[test]
+    fn text_that_may_go_on_is_a_stop_only_once_its_value_is_there() {
+        for (text, is) in [
+            (r#"{"stop":true"#, true),
+            (r#"{"stop":true}"#, true),
+            (r#"{"stop":1,"#, true),
+            (r#"{"stop":"#, false),
+            (r#"{"stop":t"#, false),
+            (r#"{"stop":1"#, false),
+            (r#"{"stop":0"#, false),
+            (r#"{"stop":"tr"#, false),
+            (r#"{"do":"stop"#, false),
+            (r#"{"do":"stop""#, true),
+            (r#"{"do":"stop"}"#, true),
+            ("stop", false),
+        ] {
+            assert_eq!(is_stop(text.as_bytes(), TextEnd::MayGoOn), is, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_strongest_word_counts_and_a_dead_man_is_let_go_by_no_alone() {
+        for (text, word) in [
+            (r#"{"do":"release","t":NaN}"#, Some(EndWord::Release)),
+            (r#"{"do":"Disarm","v":1}"#, Some(EndWord::Disarm)),
+            (r#"{"do":"disarm","do":"release"}"#, Some(EndWord::Release)),
+            (r#"{"do":"release","stop":true}"#, Some(EndWord::Stop)),
+            (r#"{"do":"move","do":"stop"}"#, Some(EndWord::Stop)),
+            (r#"{"do":"arm"}"#, None),
+        ] {
+            assert_eq!(end_word(text.as_bytes(), TextEnd::Whole), word, "{text}");
+        }
+        for (text, lets) in [
+            (r#"{"held":false}"#, true),
+            (r#"{"held":false,"right":[NaN]}"#, true),
+            (r#"{"held":0,"v":2}"#, true),
+            (r#"{"held":true}"#, false),
+            (r#"{"held":"#, false),
+            (r#"{"held":fals"#, false),
+            (r#"{"right":[1]}"#, false),
+        ] {
+            assert_eq!(lets_go(text.as_bytes()), lets, "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_scanned(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            for end in [TextEnd::Whole, TextEnd::MayGoOn] {
+                let _any = (end_word(&bytes, end), lets_go(&bytes));
+            }
+        }
+
+        #[test]
+        fn whatever_stands_around_a_stop_it_is_one(before in "[^\"'\\\\]{0,40}", after in ".{0,80}") {
+            let text = format!("{{{before}\"stop\":true,{after}");
+            prop_assert!(is_stop(text.as_bytes(), TextEnd::Whole), "{}", text);
+        }
+    }
+}

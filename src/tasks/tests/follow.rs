@@ -1,0 +1,59 @@
+//! What a source may not keep a hand from that follows it.
+
+use crate::hand::{Angle, Force, Moment, PerDof, Speed};
+use crate::inputs::{Offer, OfferLimits};
+use crate::link::{ArmRequest, Owner};
+use crate::tasks::TaskHand as _;
+use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
+use tokio::sync::{mpsc, watch};
+
+/// Offers that wait at once: whoever sends without a pause always has some.
+const FLOOD: usize = 1000;
+
+fn offer(at: Moment) -> Offer {
+    Offer {
+        at,
+        aims: PerDof::splat(Some(Angle::MAX)),
+        gap: None,
+        limits: OfferLimits::NONE,
+        held: Some(true),
+        mark: None,
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_flood_of_offers_does_not_keep_what_the_hand_says_from_being_heard() {
+    let hand = FakeHand::new();
+    let start = FollowStart {
+        lease: hand.grant(Owner::Gamepad),
+        terms: watch::Sender::new(FollowTerms::default()).subscribe(),
+        arm: ArmRequest {
+            speed: PerDof::splat(Speed::GENTLE),
+            force: PerDof::splat(Force::GENTLE),
+        },
+        seen: WELL.sample(hand.clock.now()),
+        clock: hand.clock,
+    };
+    let (offers, offered) = mpsc::channel(FLOOD);
+    while offers.try_send(offer(hand.clock.now())).is_ok() {}
+    let hot = Said {
+        celsius: 75,
+        ..WELL
+    };
+    // It says so after the first look.
+    let mut is_told = false;
+    let end = follow(&hand, start, offered, |_| {
+        if !std::mem::replace(&mut is_told, true) {
+            hand.tells(hot.sample(hand.clock.now()));
+        }
+    });
+    let end = end.await;
+    assert!(matches!(end, FollowEnd::Hot(_)), "{end:?}");
+    let taken = hand.asked();
+    let taken = taken
+        .iter()
+        .filter(|asked| matches!(asked, Asked::RunUntil(_)));
+    let taken = taken.count();
+    assert!(taken < FLOOD / 2, "{taken} were looked at before the hand");
+}
