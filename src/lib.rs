@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | 0 | [`hand`] | what the device is: registers, values, samples, commands |
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the user at the hand |
+//! | 0 | [`printable`] | text by others, as it may be shown |
 //! | 0 | [`system`] | what the operating system said, as a value |
 //! | 1 | [`codec`] | bytes on a wire to register operations and back, both sides |
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
@@ -32,7 +33,8 @@
 //!
 //! The window's thread owns the program's state. One tokio thread runs links, servers, the built-in hand and the tasks on a
 //! hand; each recorded session is written by a thread of its own behind a bounded queue, and other files are read and written
-//! on threads that may wait. Values cross between them, locks do not: what happens at a hand comes as
+//! on threads that may wait. What the command line prints is written by one thread for each of standard output and standard error,
+//! behind a bounded queue. Values cross between them, locks do not: what happens at a hand comes as
 //! [`record::Record`]s, setpoints go into one slot that a stop empties, and a task's steps and its end come over a channel.
 //! The limits of a series are judged in its task, where the readings arrive, so no window is in their way; so is all that happens at
 //! an exhibition.
@@ -41,7 +43,7 @@
 //!
 //! * Only [`hand::HandCommand`], [`hand::Setting`] and [`hand::Trigger`] make register writes, and none leaves the manual's addresses and ranges.
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while the user has armed the hand;
-//!   a stop, faults, link loss, old feedback, another controller and sleep disarm it.
+//!   a stop, faults, heat, link loss, old feedback, another controller and sleep disarm it.
 //! * Only what several groups of its memory show to be a hand of this series is written to ([`link::Series`]); what answers and is
 //!   another is not shown. An exception of a gateway is no answer of the hand, and ends the link within a second.
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not. It never
@@ -73,6 +75,7 @@ pub mod manual;
 pub mod model;
 pub mod params;
 pub mod poses;
+pub mod printable;
 pub mod record;
 pub mod share;
 pub mod shell;

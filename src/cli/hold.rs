@@ -19,6 +19,11 @@ const REACHED_WITHIN: Duration = Duration::from_secs(5);
 const RESTS_WITHIN: Duration = Duration::from_secs(5);
 /// How often a port that is busy is tried again.
 const DIAL_EACH: Duration = Duration::from_millis(10);
+/// A hand that closes the connection at once is dialled again after this, so many times; then as seldom as a hand needs that takes
+/// no connection for a while after the last one.
+const RETRY_DELAY: Duration = Duration::from_millis(20);
+const RETRIES_AT_ONCE: u32 = 25;
+const RETRY_DELAY_LATER: Duration = Duration::from_millis(320);
 /// How often it is looked how far the link is.
 const LOOK_EACH: Duration = Duration::from_millis(2);
 
@@ -145,6 +150,14 @@ impl Dial for Insistent {
                     dialled => return dialled,
                 }
             }
+        })
+    }
+
+    fn retry_delay(&self, attempt: u32) -> Option<Duration> {
+        Some(if attempt <= RETRIES_AT_ONCE {
+            RETRY_DELAY
+        } else {
+            RETRY_DELAY_LATER
         })
     }
 }

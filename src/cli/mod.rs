@@ -48,10 +48,17 @@ pub fn run() -> ExitCode {
         None => has_room_for_files().and_then(|()| window::run(window)),
         Some(command) => obey(command),
     }));
-    let Ok(done) = done else {
+    let status = match done {
+        Ok(done) => status(done),
         // Told when it happened.
-        return ExitCode::FAILURE;
+        Err(_panic) => ExitCode::FAILURE,
     };
+    out::finish_messages();
+    status
+}
+
+/// The exit status of a command. Why it failed is said now, unless it was before.
+fn status(done: anyhow::Result<()>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
@@ -85,7 +92,15 @@ fn tell_panics() {
 }
 
 fn obey(command: Command) -> anyhow::Result<()> {
-    let mut out = Out::stdout();
+    if let Command::Hold(args) = command {
+        // Before any thread runs: those of this process are to inherit what it does about signals.
+        return if hold::is_needed() {
+            wait_for(hold::run(&args))
+        } else {
+            Ok(())
+        };
+    }
+    let mut out = Out::stdout()?;
     if matches!(command, Command::Snapshot(_) | Command::Exhibit(_)) {
         has_room_for_files()?;
     }
@@ -120,17 +135,11 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Share(args) => wait_for(share::run(&mut out, &args)),
         Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
         Command::Registers(args) => about::registers::run(&mut out, args.json),
-        Command::Hold(args) => {
-            if hold::is_needed() {
-                wait_for(hold::run(&args))
-            } else {
-                Ok(())
-            }
-        }
+        Command::Hold(_) => Ok(()),
         Command::Help(args) => about::help::run(&mut out, &args, Cli::command()),
     };
     // Output from before a failure is shown as well.
-    let shown = out.flush();
+    let shown = out.finish();
     done.and(shown)
 }
 
@@ -158,7 +167,7 @@ fn has_room_for_files() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Carries out a command on a runtime of one thread: a slow reader of our output slows the polling down, and no sample is lost.
+/// Carries out a command on a runtime of one thread. Nothing on it waits for a disk or a reader of our output.
 fn wait_for(command: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
     has_room_for_files()?;
     let runtime = Builder::new_current_thread().enable_all().build();

@@ -1,13 +1,16 @@
-//! A link for a terminal command: its clock, and the wait for a hand that answers. Prints nothing.
+//! A link for a terminal command: its clock, the wait for a hand that answers, and warnings of heat.
 
 use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
 use crate::checkup::free_file;
+use crate::cli::out::say;
 use crate::hand::grip::GripEstimator;
+use crate::hand::heat::HOT;
 use crate::link::{
-    self, Clock, LinkConfig, LinkHandle, LinkStatus, LinkTrouble, PollRates, Records, Stop,
+    self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
+    Stop,
 };
-use crate::record::LinkState;
+use crate::record::{Disarmed, LinkState};
 use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
@@ -66,7 +69,65 @@ pub(crate) fn open_with_records(
         dial: Arc::new(SimDial::new(clock)),
         wake: Arc::new(|| ()),
     };
-    link::open(config, &tokio::runtime::Handle::current())
+    let runtime = tokio::runtime::Handle::current();
+    let (link, records) = link::open(config, &runtime);
+    runtime.spawn(warn_of_heat(link.observe()));
+    (link, records)
+}
+
+/// Warns of a drive that is warm while the hand may move, and says where heat stopped it: each once for an arming.
+async fn warn_of_heat(observer: LinkObserver) {
+    let mut status = observer.status;
+    let mut reported = HeatLevel::Unarmed;
+    while status.changed().await.is_ok() {
+        let seen = status.borrow_and_update().clone();
+        let level = HeatLevel::of(&seen);
+        if let Some(words) = level.words(&seen).filter(|_| level > reported) {
+            say(&words);
+        }
+        reported = match level {
+            HeatLevel::Unarmed => level,
+            // It was armed again since.
+            level if reported == HeatLevel::Stopped => level,
+            level => level.max(reported),
+        };
+    }
+}
+
+/// What there is to report of the drives' heat, the gravest last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum HeatLevel {
+    Unarmed,
+    Cool,
+    Warm,
+    Stopped,
+}
+
+impl HeatLevel {
+    fn of(status: &LinkStatus) -> Self {
+        let is_ended = matches!(status.disarmed, Some(Disarmed::Hot | Disarmed::HeatUnknown));
+        match status.armed {
+            Some(_) if status.heat.is_some() => Self::Warm,
+            Some(_) => Self::Cool,
+            None if is_ended => Self::Stopped,
+            None => Self::Unarmed,
+        }
+    }
+
+    fn words(self, status: &LinkStatus) -> Option<String> {
+        let heat = status.heat.map(|heat| heat.to_string());
+        match self {
+            Self::Unarmed | Self::Cool => None,
+            Self::Warm => Some(format!(
+                "warning: {}; from {HOT} °C on the hand is stopped",
+                heat?
+            )),
+            Self::Stopped => {
+                let heat = heat.or_else(|| Some(status.disarmed?.to_string()));
+                Some(format!("{}: the hand is stopped", heat?))
+            }
+        }
+    }
 }
 
 /// Waits until the hand answers. The error says why it does not.

@@ -57,7 +57,7 @@ pub(crate) fn help() -> String {
 /// Serves the hand until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     if args.print_body {
-        return out.line(file::print(&BodyParams::default()).trim_end());
+        return out.lines(file::print(&BodyParams::default()).trim_end().lines());
     }
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;
@@ -100,7 +100,7 @@ async fn obey_signals(
                 if frozen { "feedback frozen" } else { "feedback live" }
             }
         };
-        if let Err(error) = out.line(done).and_then(|()| out.flush()) {
+        if let Err(error) = out.stream_line(done) {
             return error;
         }
     }

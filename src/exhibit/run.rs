@@ -490,9 +490,13 @@ impl ExhibitRun {
             Some(Disarmed::LinkLost) => Some(HaltReason::LinkLost),
             Some(Disarmed::Stale | Disarmed::FrozenFeedback) => Some(HaltReason::NoFeedback),
             Some(Disarmed::Stop) => Some(HaltReason::Stopped),
-            Some(Disarmed::Person | Disarmed::Released | Disarmed::Silent | Disarmed::Hot) => {
-                Some(HaltReason::NotArmed)
-            }
+            Some(
+                Disarmed::Person
+                | Disarmed::Released
+                | Disarmed::Silent
+                | Disarmed::Hot
+                | Disarmed::HeatUnknown,
+            ) => Some(HaltReason::NotArmed),
         };
         if let Some(why) = why.filter(|_| self.permitted && !self.grants) {
             self.halt(why);

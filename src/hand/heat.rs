@@ -8,42 +8,55 @@ use std::time::Duration;
 
 /// From here on the user is warned, °C.
 pub const WARM: u8 = 60;
-/// From here on nothing moves the hand that no user watches over, °C.
+/// From here on a hand that moves is held, °C.
 pub const HOT: u8 = 70;
 /// A temperature older than this is unknown.
 pub const FRESH_FOR: Duration = Duration::from_secs(5);
 
-/// A drive that is warm.
+/// A drive that is warm, or whose temperature is implausible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct DriveHeat {
-    /// Joint whose drive is warm.
+    /// Joint whose drive it is.
     pub dof: Dof,
-    /// °C, at least [`WARM`].
+    /// As it was read, °C: at least [`WARM`], and implausible above 100.
     pub celsius: u8,
 }
 
 impl DriveHeat {
-    /// The warmest drive, if one is warm by what was read last.
+    /// The drive with the highest reading, if that is warm or implausible, by what was read last.
     pub fn warmest(sample: &HandSample, now: Moment) -> Option<Self> {
         let read = sample
             .temperature
             .filter(|read| read.age(now) <= FRESH_FOR)?;
-        let known = |dof: Dof| Some((dof, read.value[dof].documented()?));
-        let all = Dof::ALL.into_iter().filter_map(known);
+        let all = read.value.iter();
+        let all = all.map(|(dof, read)| (dof, read.raw()));
         let (dof, celsius) = all.max_by_key(|(_, celsius)| *celsius)?;
         (celsius >= WARM).then_some(Self { dof, celsius })
     }
 
-    /// Whether it is too hot to go on.
+    /// Whether it is too hot to go on, as far as that is known.
     pub const fn is_hot(self) -> bool {
         self.celsius >= HOT
+    }
+
+    /// Whether such a temperature is outside the manual's range (2.6.14).
+    pub const fn is_implausible(self) -> bool {
+        self.celsius > 100
     }
 }
 
 impl fmt::Display for DriveHeat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { dof, celsius } = self;
-        write!(f, "the drive of {} is at {celsius} °C", dof.name())
+        let dof = dof.name();
+        if self.is_implausible() {
+            write!(
+                f,
+                "the temperature of {dof} reads {celsius} °C, which is implausible"
+            )
+        } else {
+            write!(f, "the drive of {dof} is at {celsius} °C")
+        }
     }
 }
 
@@ -64,8 +77,9 @@ mod tests {
                 false,
             ),
             ([28, 70, 30, 61, 30, 30], Some((Dof::Ring, 70)), true),
-            // What the manual does not know says nothing.
-            ([255, 101, 30, 30, 30, 30], None, false),
+            // What the manual does not know is not cool.
+            ([30, 101, 30, 70, 30, 30], Some((Dof::Ring, 101)), true),
+            ([255, 101, 30, 30, 30, 30], Some((Dof::Little, 255)), true),
         ] {
             let mut sample = HandSample::default();
             sample.take(&Reply {

@@ -33,9 +33,16 @@ impl Owner {
         !matches!(self, Self::Person | Self::Task | Self::Exhibition)
     }
 
-    /// True if it may go on after this without the user. An exhibition clears what can be cleared, and counts it.
+    /// True if it may go on after this without the user. An exhibition clears what can be cleared, and counts it; it opens a hot hand
+    /// and lets it rest.
     const fn outlives(self, end: Disarmed) -> bool {
-        matches!((self, end), (Self::Exhibition, Disarmed::Fault))
+        matches!(
+            (self, end),
+            (
+                Self::Exhibition,
+                Disarmed::Fault | Disarmed::Hot | Disarmed::HeatUnknown
+            )
+        )
     }
 }
 

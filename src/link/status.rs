@@ -1,6 +1,6 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
-use crate::hand::{ArmEpoch, Force, ModbusException, Moment, PerDof, Speed};
+use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Speed};
 use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
 use crate::link::series::Series;
@@ -50,6 +50,8 @@ pub struct LinkStatus {
     pub slow_ms: Option<u16>,
     /// The line is left to a hand that saves or calibrates: values grow old meanwhile. A stop still passes.
     pub line_left: bool,
+    /// The drive with the highest temperature, if that is warm or implausible.
+    pub heat: Option<DriveHeat>,
     /// Whether the hand rests, by feedback and what was written.
     pub rest: Rest,
     /// How the last hold went.

@@ -15,10 +15,16 @@ use std::time::Duration;
 /// Backups kept per hand; the oldest goes first. Enough for a save a week for a year.
 pub const BACKUPS_MAX: usize = 50;
 
+/// What was saved last, and the SAVE that was sent last.
+const SAVED: &str = "saved.toml";
+const ATTEMPT: &str = "attempt.toml";
+
 /// The folder of one hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Backups {
     folder: PathBuf,
+    /// Its folder by an earlier version of this program, whose name other hands could share.
+    shared: PathBuf,
     hand: String,
 }
 
@@ -47,13 +53,11 @@ impl Backups {
     /// The folder of the hand at an endpoint, told by place and id as quirk sheets are.
     pub fn new(folder: &Path, hand: &Endpoint) -> Self {
         let (place, id) = hand.place_and_id();
-        let plain = |letter: char| match letter {
-            letter if letter.is_ascii_alphanumeric() || letter == '.' => letter,
-            _ => '_',
-        };
-        let place: String = place.chars().map(plain).collect();
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '.';
+        let place = place.replace(|letter| !is_plain(letter), "_");
         Self {
-            folder: folder.join(format!("{place}-id{id}")),
+            folder: folder.join(hand.file_stem()),
+            shared: folder.join(format!("{place}-id{id}")),
             hand: hand.to_string(),
         }
     }
@@ -84,11 +88,8 @@ impl Backups {
         }
         self.let_go_of_old_backups()?;
         self.forget_saved()?;
-        let of_flash = [
-            (former.saved_path(), self.saved_path()),
-            (former.attempt_path(), self.attempt_path()),
-        ];
-        for (from, to) in of_flash {
+        for name in [SAVED, ATTEMPT] {
+            let (from, to) = (former.newest(name), self.folder.join(name));
             if from.exists() {
                 replace_keeping_last(&to, &std::fs::read_to_string(from)?)?;
             }
@@ -158,20 +159,30 @@ impl Backups {
     }
 
     fn backup_paths(&self) -> io::Result<Vec<PathBuf>> {
-        let entries = match std::fs::read_dir(self.folder.join("backups")) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-            entries => entries?,
-        };
-        let mut paths = Vec::new();
-        for entry in entries {
-            let path = entry?.path();
-            let is_backup = path.extension().is_some_and(|end| end == "toml");
-            if is_backup && path.is_file() {
-                paths.push(path);
-            }
+        let mut paths = backups_in(&self.folder)?;
+        if self.shared != self.folder {
+            let earlier = backups_in(&self.shared)?.into_iter();
+            paths.extend(earlier.filter(|path| self.is_of_this_hand(path)));
         }
-        paths.sort();
+        paths.sort_by(|one, other| one.file_name().cmp(&other.file_name()));
         Ok(paths)
+    }
+
+    /// The file by this name, in the folder of an earlier version if it is only there.
+    fn newest(&self, name: &str) -> PathBuf {
+        let own = self.folder.join(name);
+        let earlier = self.shared.join(name);
+        if !own.exists() && earlier.exists() && self.is_of_this_hand(&earlier) {
+            return earlier;
+        }
+        own
+    }
+
+    fn is_of_this_hand(&self, path: &Path) -> bool {
+        let file = file::load(path).ok();
+        let hand = file.and_then(|file| file.hand.parse::<Endpoint>().ok());
+        let stem = hand.map(|hand| hand.file_stem());
+        stem.is_some_and(|stem| self.folder.file_name() == Some(stem.as_ref()))
     }
 
     /// Records a SAVE before it is sent: if this program ends before the result, the file says that it is not known.
@@ -218,10 +229,13 @@ impl Backups {
     /// # Errors
     /// The system's error.
     pub fn forget_saved(&self) -> io::Result<()> {
-        for path in [self.saved_path(), self.attempt_path()] {
-            match std::fs::remove_file(path) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
+        for name in [SAVED, ATTEMPT] {
+            // The second is that of an earlier version.
+            for path in [self.folder.join(name), self.newest(name)] {
+                match std::fs::remove_file(path) {
+                    Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                    _ => {}
+                }
             }
         }
         Ok(())
@@ -239,9 +253,9 @@ impl Backups {
                 Ok(None)
             }
         };
-        let attempt = optional(self.attempt_path())?;
+        let attempt = optional(self.newest(ATTEMPT))?;
         Ok(Known {
-            saved: optional(self.saved_path())?,
+            saved: optional(self.newest(SAVED))?,
             doubtful: attempt
                 .filter(|file| file.verdict.as_ref().is_some_and(SaveVerdict::is_in_doubt)),
         })
@@ -249,7 +263,7 @@ impl Backups {
 
     /// How long ago the last SAVE was sent, by a clock that both processes share.
     pub fn since_attempt(&self, now: std::time::SystemTime) -> Option<Duration> {
-        let written = std::fs::metadata(self.attempt_path())
+        let written = std::fs::metadata(self.newest(ATTEMPT))
             .ok()?
             .modified()
             .ok()?;
@@ -257,12 +271,28 @@ impl Backups {
     }
 
     fn attempt_path(&self) -> PathBuf {
-        self.folder.join("attempt.toml")
+        self.folder.join(ATTEMPT)
     }
 
     fn saved_path(&self) -> PathBuf {
-        self.folder.join("saved.toml")
+        self.folder.join(SAVED)
     }
+}
+
+fn backups_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let entries = match std::fs::read_dir(folder.join("backups")) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry?.path();
+        let is_backup = path.extension().is_some_and(|end| end == "toml");
+        if is_backup && path.is_file() {
+            paths.push(path);
+        }
+    }
+    Ok(paths)
 }
 
 #[cfg(test)]
@@ -295,6 +325,8 @@ mod tests {
             "rtu:/dev/x?id=1",
             "rs485:/dev/x?id=1",
             "can:can0",
+            "tcp:hand-1",
+            "tcp:hand_1",
         ]
         .map(|hand| Backups::new(folder.path(), &hand.parse().unwrap()).folder);
         for (nth, name) in names.iter().enumerate() {
@@ -306,6 +338,42 @@ mod tests {
             );
         }
         assert_eq!(record(&folder).folder.parent(), Some(folder.path()));
+    }
+
+    #[test]
+    fn what_an_earlier_version_kept_in_a_shared_folder_is_found_by_its_hand() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = |hand: &str| Backups::new(folder.path(), &hand.parse().unwrap());
+        let hands = ["tcp:hand-1", "tcp:hand_1"];
+        let shared = own(hands[0]).shared;
+        assert_eq!(shared, own(hands[1]).shared);
+        for (nth, hand) in (1..).zip(hands) {
+            let old = Backups {
+                folder: shared.clone(),
+                ..own(hand)
+            };
+            old.back_up(&params(nth), "before save", at(nth.unsigned_abs().into()))
+                .unwrap();
+        }
+        // The last to save was the second.
+        let second = Backups {
+            folder: shared,
+            ..own(hands[1])
+        };
+        second.note_attempt(&params(2), at(9)).unwrap();
+        second.note_result(&Saved::Confirmed).unwrap();
+        for (nth, hand) in (1..).zip(hands) {
+            let record = own(hand);
+            let [old] = &record.backups().unwrap()[..] else {
+                panic!("{hand}")
+            };
+            assert_eq!(old.file.as_ref().unwrap().params, params(nth));
+            assert_eq!(record.known().unwrap().saved.is_some(), nth == 2, "{hand}");
+            record.back_up(&params(7), "before save", at(100)).unwrap();
+            assert_eq!(record.backups().unwrap().len(), 2);
+        }
+        own(hands[1]).forget_saved().unwrap();
+        assert_eq!(own(hands[1]).known().unwrap(), Known::default());
     }
 
     #[test]

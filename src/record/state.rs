@@ -98,6 +98,8 @@ pub enum Disarmed {
     Silent,
     /// A drive is too hot.
     Hot,
+    /// The temperature of a drive is implausible, or was not read for too long.
+    HeatUnknown,
 }
 
 impl Disarmed {
@@ -125,6 +127,7 @@ impl fmt::Display for Disarmed {
             Self::Released => "it was let go",
             Self::Silent => "nothing was asked of it for too long",
             Self::Hot => "a drive is too hot",
+            Self::HeatUnknown => "the temperature of a drive is implausible or unknown",
         })
     }
 }

@@ -3,7 +3,16 @@
 
 use futures::stream::{BoxStream, SelectAll, StreamExt as _, poll_fn, select_all};
 use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll};
+
+/// A signal that ends the program was heard.
+static CAME: AtomicBool = AtomicBool::new(false);
+
+/// Whether the end of this program was wished by a signal.
+pub(crate) fn came() -> bool {
+    CAME.load(Ordering::Relaxed)
+}
 
 /// A signal that cannot be listened for.
 #[derive(Debug, thiserror::Error)]
@@ -26,7 +35,13 @@ type Signals = io::Result<Vec<BoxStream<'static, i32>>>;
 impl Interrupt {
     /// Listens for the wish to end the program. Must be called within a tokio runtime.
     pub(crate) fn listen() -> Result<Self, ListenError> {
-        Self::of("Ctrl-C", system::end())
+        let noted = |signal: BoxStream<'static, i32>| {
+            signal
+                .inspect(|_status| CAME.store(true, Ordering::Relaxed))
+                .boxed()
+        };
+        let heard = system::end().map(|signals| signals.into_iter().map(noted).collect());
+        Self::of("Ctrl-C", heard)
     }
 
     /// Listens for a request to cut the simulated hand's power for a moment: SIGUSR1. Must be called within a tokio runtime.

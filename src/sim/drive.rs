@@ -83,6 +83,8 @@ pub struct Drive {
     faults: Faults,
     current_ma: f64,
     temperature: f64,
+    /// What its sensor reads all the same, °C.
+    sensor_reads: Option<u8>,
     ambient: f64,
     pushing_ms: u32,
     over_current_ms: u32,
@@ -129,6 +131,7 @@ impl Drive {
             faults: Faults::default(),
             current_ma: 0.0,
             temperature: ambient,
+            sensor_reads: None,
             ambient,
             pushing_ms: 0,
             over_current_ms: 0,
@@ -199,6 +202,17 @@ impl Drive {
     /// °C.
     pub const fn temperature(&self) -> f64 {
         self.temperature
+    }
+
+    /// What it says its temperature is, °C.
+    pub fn read_temperature(&self) -> u8 {
+        let read = || number::byte(self.temperature);
+        self.sensor_reads.unwrap_or_else(read)
+    }
+
+    /// Its sensor reads this from now on, whatever the temperature is.
+    pub const fn break_sensor(&mut self, celsius: u8) {
+        self.sensor_reads = Some(celsius);
     }
 
     /// What it says it does.

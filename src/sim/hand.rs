@@ -399,6 +399,12 @@ impl SimHand {
         self.published_ms = None;
     }
 
+    /// A temperature sensor reads this from now on, °C, whatever the drive has.
+    pub fn break_temperature_sensor(&mut self, dof: Dof, celsius: u8) {
+        self.body.drive_mut(dof).break_sensor(celsius);
+        self.published_ms = None;
+    }
+
     /// Lets everything that the hand tells of its joints and fingertips stand still from now on, or live again. The joints go on,
     /// setpoints are taken and read back, and every frame is valid. A power cycle ends it.
     pub fn freeze_feedback(&mut self, frozen: bool, now: Moment) {

@@ -26,7 +26,7 @@ pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
         memory.put_short(&CURRENT, at, number::short(drive.current_ma()));
         memory.put_byte(ERROR.address + at, drive.faults().raw());
         memory.put_byte(STATUS.address + at, drive.status().raw());
-        memory.put_byte(TEMP.address + at, number::byte(drive.temperature()));
+        memory.put_byte(TEMP.address + at, drive.read_temperature());
     }
 }
 

@@ -60,6 +60,18 @@ pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
     create_file(path)?.write_all(bytes)
 }
 
+/// Writes a file that only its person can read, where nothing is yet: no file, and no link.
+///
+/// # Errors
+/// What the system says. Then there is no such file, or it is not whole.
+pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    options.mode(0o600);
+    options.open(path)?.write_all(bytes)
+}
+
 /// Adds to the end of a file that only its person can read, all at once: others may add at the same time.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ mod toml_words;
 
 pub use crate::store::file::{
     append_private, create_empty_folder, create_folder, last_of, read_text, replace,
-    replace_keeping_last, set_aside, write_private,
+    replace_keeping_last, set_aside, write_new, write_private,
 };
 pub use crate::store::file_error::{FileCause, FileError, ValueKind};
 pub use crate::store::job::{BackgroundJob, on_thread};

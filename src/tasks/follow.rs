@@ -76,8 +76,6 @@ pub enum FollowEnd {
     Silent,
     /// The source was closed or unplugged.
     Gone,
-    /// A drive is too hot.
-    Hot(DriveHeat),
     /// The lease ended, or another has it.
     Lease(LeaseRefusal),
 }
@@ -200,10 +198,6 @@ impl<H: TaskHand> FollowRun<'_, H> {
 
     /// Does what is to be done now; why it ended, if it did.
     fn go_on(&mut self) -> Option<FollowEnd> {
-        if let Some(hot) = self.heat().filter(|heat| heat.is_hot()) {
-            self.give_back(Disarmed::Hot);
-            return Some(FollowEnd::Hot(hot));
-        }
         let terms = *self.start.terms.borrow();
         self.follow.limit(terms.limits);
         let status = self.hand.status();
@@ -266,10 +260,6 @@ impl<H: TaskHand> FollowRun<'_, H> {
         }
     }
 
-    fn heat(&self) -> Option<DriveHeat> {
-        DriveHeat::warmest(&self.sample, self.start.clock.now())
-    }
-
     fn view(&self) -> FollowView {
         let pose = self.pose();
         let lead = |dof: Dof| {
@@ -281,7 +271,7 @@ impl<H: TaskHand> FollowRun<'_, H> {
             sent: *self.follow.sent(),
             lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
             delay_p99: self.delays.p99(),
-            heat: self.heat(),
+            heat: self.hand.status().heat,
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::transport::endpoint::Endpoint;
 use crate::transport::found::PortFound;
 use crate::transport::permission::Remedy;
 use futures::future::BoxFuture;
+use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite};
 
 /// A stream of bytes both ways. A read of zero bytes means that the other side hung up.
@@ -19,6 +20,11 @@ pub type BoxedWire = Box<dyn Wire>;
 pub trait Dial: Send + Sync + 'static {
     /// Opens the wire of this endpoint. Must be cancellable by dropping.
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>>;
+
+    /// How long to wait before this attempt, the first being 1, after a wire was lost or did not open; `None` for the usual time.
+    fn retry_delay(&self, _attempt: u32) -> Option<Duration> {
+        None
+    }
 
     /// The serial ports that the system lists now, so that an adapter is found again under another name. None where
     /// wires are not the system's. Must be cancellable by dropping.

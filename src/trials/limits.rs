@@ -1,5 +1,6 @@
 //! What ends a trial before its time: faults, heat, force, a lost or disarmed link, old readings. Pure; stops nothing itself.
 
+use crate::hand::heat::HOT;
 use crate::hand::{ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Timed};
 use crate::record::{Disarmed, LinkState, SetpointConflict};
 use crate::trials::plan::Limits;
@@ -199,7 +200,12 @@ pub fn reason(
     if !link.state.is_live() {
         return Some(Abort::LinkLost);
     }
+    // Heat disarms as well; the reading says more than that.
+    let by_heat = matches!(link.disarmed, Some(Disarmed::Hot | Disarmed::HeatUnknown));
+    let by_heat = link.armed.is_none() && by_heat;
+    let heated = by_heat.then(|| blind(seen, link.stall).or_else(|| heat(seen.sample, HOT)));
     fault(seen.sample)
+        .or(heated.flatten())
         .or_else(|| link.arming_ended(epoch))
         .or_else(|| blind(seen, link.stall))
         .or_else(|| ceiling(seen, limits.ceiling_g))

@@ -105,7 +105,6 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
 /// Writes into the folder of the day in the user's documents, under a name that is free; where there are none, asks for
 /// a place. What to tell the user of it.
 pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
-    let is_chosen = env.documents.is_none();
     let chosen = match &env.documents {
         Some(documents) => {
             let folder = day_folder::of_day(documents, &calendar::day(calendar::since_1970()));
@@ -120,14 +119,8 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
         };
         let place = path.clone();
         let work = move || {
-            let bytes = content.bytes()?;
-            // Where the user chose the place, who can read it is as the system has it for new files.
-            let written = if is_chosen {
-                std::fs::write(&place, bytes)
-            } else {
-                write_private(&place, &bytes)
-            };
-            written.map(|()| content.entries())
+            write_private(&place, &content.bytes()?)?;
+            Ok(content.entries())
         };
         match on_thread(work).await {
             Ok(entries) => NoticeKind::Saved { path, entries },

@@ -88,7 +88,6 @@ impl FollowRun {
 const fn stops_leader(end: FollowEnd) -> bool {
     match end {
         FollowEnd::Lease(LeaseRefusal::Ended(why)) => !matches!(why, Disarmed::Person),
-        FollowEnd::Hot(_) => true,
         FollowEnd::Lease(LeaseRefusal::Taken(_)) | FollowEnd::Silent | FollowEnd::Gone => false,
     }
 }

@@ -63,7 +63,10 @@ pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
                 .join(" "),
         )?;
     }
-    out.line("\n* not in the manual's register table: known from other programs for this family of hands")
+    out.line("")?;
+    out.line(
+        "* not in the manual's register table: known from other programs for this family of hands",
+    )
 }
 
 fn cell(row: &Value, key: &str) -> String {

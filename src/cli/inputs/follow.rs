@@ -6,7 +6,6 @@ use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, say};
 use crate::cli::parse::{self, number};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
-use crate::hand::heat::HOT;
 use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LeaseRefusal, LinkHandle, Owner, PollRates, Records};
@@ -146,8 +145,7 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         ended
     };
     drop((source, link));
-    recording.end().await;
-    done
+    SideRecording::and(done, recording.end().await)
 }
 
 /// How a command ends that could move the hand. It has stopped it, if that could be done.
@@ -291,9 +289,8 @@ impl FollowCommand<'_> {
                 self.seen = *sample;
             }
         }
-        let now = self.clock.now();
-        self.teller.warn(DriveHeat::warmest(&self.seen, now));
-        self.teller.tell(self.source, None, now)
+        self.teller.heat = self.link.status().heat;
+        self.teller.tell(self.source, None, self.clock.now())
     }
 }
 
@@ -301,7 +298,6 @@ impl FollowCommand<'_> {
 fn ended(end: FollowEnd, sender: &str) -> String {
     let why = match end {
         FollowEnd::Silent | FollowEnd::Gone => format!("{sender} fell silent"),
-        FollowEnd::Hot(heat) => heat.to_string(),
         FollowEnd::Lease(LeaseRefusal::Taken(_)) => {
             return "another may move the hand now".into();
         }
@@ -324,7 +320,8 @@ fn ended(end: FollowEnd, sender: &str) -> String {
             | Disarmed::Stale
             | Disarmed::Released
             | Disarmed::Silent
-            | Disarmed::Hot => why.to_string(),
+            | Disarmed::Hot
+            | Disarmed::HeatUnknown => why.to_string(),
         },
     };
     format!("{why}: the hand was stopped")
@@ -351,7 +348,7 @@ impl ProgressPrinter<'_> {
         now: Moment,
     ) -> anyhow::Result<()> {
         if let Some(view) = follow {
-            self.warn(view.heat);
+            self.heat = view.heat;
         }
         let phase = follow.map(|view| view.phase);
         let stands = (phase, self.question.is_some());
@@ -381,26 +378,16 @@ impl ProgressPrinter<'_> {
                 let heat =
                     heat.map(|heat| json!({"joint": heat.dof.name(), "celsius": heat.celsius}));
                 fields.insert("heat".into(), heat.into());
-                self.out.object(&object)?;
+                self.out.stream_object(&object)?;
             }
             None => {
                 let heat = self
                     .heat
                     .map_or_else(String::new, |heat| format!("  {heat}"));
-                self.out.line(&format!("{phase:<9} {words}{heat}"))?;
+                self.out.stream_line(&format!("{phase:<9} {words}{heat}"))?;
             }
         }
         self.out.flush()
-    }
-
-    /// Warns, once, of a drive that is warm.
-    fn warn(&mut self, heat: Option<DriveHeat>) {
-        if let Some(heat) = heat.filter(|_| self.heat.is_none()) {
-            say(&format!(
-                "warning: {heat}; from {HOT} °C on the hand is stopped"
-            ));
-        }
-        self.heat = heat;
     }
 }
 

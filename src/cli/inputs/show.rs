@@ -90,8 +90,11 @@ async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
             }
         }
         if let Some(line) = printer.line(&report) {
-            out.line(&line)?;
-            out.flush()?;
+            if args.json {
+                out.stream_json(&line)?;
+            } else {
+                out.stream_line(&line)?;
+            }
         }
     }
 }

@@ -1,55 +1,14 @@
-//! How far a long command is, on a terminal; and whether the user wishes its end.
+//! How far a long command is, on a terminal.
 
-use crate::shell::interrupt::Interrupt;
-use anyhow::Context as _;
+use crate::cli::out::messages::show;
 use std::cell::Cell;
-use std::io::{self, IsTerminal as _, Write as _};
-use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
-use tokio::runtime::Builder;
 
 /// What takes less time needs no words.
 const QUIET_FOR: Duration = Duration::from_secs(2);
 /// Between two lines.
 const TELL_EACH: Duration = Duration::from_millis(250);
-
-/// Set once the user wishes the end of a command that looks at it.
-#[derive(Debug, Clone)]
-pub(crate) struct EndWished(Arc<AtomicBool>);
-
-impl EndWished {
-    /// Listens from now on. The command has to end by itself then.
-    pub(crate) fn listen() -> anyhow::Result<Self> {
-        let runtime = Builder::new_current_thread().enable_all().build();
-        let runtime = runtime.context("cannot listen for Ctrl-C")?;
-        let within = runtime.enter();
-        let mut interrupt = Interrupt::listen()?;
-        drop(within);
-        let wished = Self(Arc::default());
-        let told = wished.clone();
-        std::thread::spawn(move || {
-            runtime.block_on(interrupt.wished());
-            told.0.store(true, Ordering::Relaxed);
-        });
-        Ok(wished)
-    }
-
-    /// One that is never set, because there is nothing to be tidied up.
-    pub(crate) fn never() -> Self {
-        Self(Arc::default())
-    }
-
-    /// Goes on until the end is wished.
-    pub(crate) fn flow(&self) -> ControlFlow<()> {
-        if self.0.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-}
 
 /// Tells how far a command is, in one line of standard error that is gone at its end; nothing if that is no terminal.
 #[derive(Debug)]
@@ -77,8 +36,7 @@ impl Progress {
         }
         if let Some(words) = words(share, now - self.began) {
             self.told.set(Some(now));
-            // Where nobody can read, nobody can be told.
-            let _unread = write!(io::stderr(), "\r\x1b[K{words}");
+            show(&format!("\r\x1b[K{words}"));
         }
     }
 }
@@ -86,7 +44,7 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         if self.told.get().is_some() {
-            let _unread = write!(io::stderr(), "\r\x1b[K");
+            show("\r\x1b[K");
         }
     }
 }

@@ -73,7 +73,7 @@ impl Common {
 pub(crate) struct DumpArgs {
     #[command(flatten)]
     pub(crate) common: Common,
-    /// Write a parameter file
+    /// Write a parameter file, which must not be there yet
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }

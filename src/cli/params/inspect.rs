@@ -10,20 +10,36 @@ use crate::params::file::ParamsFile;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::store::calendar::since_1970;
+use crate::store::write_new;
 use crate::tasks::read;
 use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Prints all parameters, and writes them to a file. Fails if a row could not be read.
 pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     let common = &args.common;
     let files = common.backups()?;
+    let taken = |path: &Path| {
+        let path = path.display();
+        format!("{path} is already there and is not overwritten; name another file with --out")
+    };
+    // Before the hand is asked for long.
+    if let Some(path) = args
+        .out
+        .as_deref()
+        .filter(|path| path.symlink_metadata().is_ok())
+    {
+        bail!("{}", taken(path));
+    }
     let (params, troubles) = read_rows(&common.hand).await?;
     let file = files.file(&params, "dump", since_1970());
     if let Some(path) = &args.out {
-        std::fs::write(path, file.to_toml())
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        write_new(path, file.to_toml().as_bytes()).with_context(|| match path.exists() {
+            true => taken(path),
+            false => format!("cannot write {}", path.display()),
+        })?;
     }
     let rows = ParamId::all().into_iter();
     let rows = rows.map(|id| (id, [params.get(id), id.factory()]));

@@ -70,33 +70,48 @@ impl SideRecording {
     }
 
     /// Ends the file here, though the link goes on.
-    pub(crate) async fn end_here(self) {
+    pub(crate) async fn end_here(self) -> anyhow::Result<()> {
         if let Some(running) = &self.0 {
             running.pump.abort();
         }
-        self.end().await;
+        self.end().await
     }
 
-    /// Ends the file, and tells what is wrong with it, if anything is. The link must be closed, or it goes on being recorded.
-    pub(crate) async fn end(self) {
-        let Some(running) = self.0 else { return };
+    /// Ends the file. Fails if it could not be written. The link must be closed, or it goes on being recorded.
+    pub(crate) async fn end(self) -> anyhow::Result<()> {
+        let Some(running) = self.0 else { return Ok(()) };
         running.beside.abort();
         // It keeps the link open.
         let _aborted = running.beside.await;
         let _ended = timeout(LINK_ENDS_WITHIN, running.pump).await;
         let Some(recorder) = Arc::into_inner(running.recorder) else {
-            return;
+            bail!("the recording was not ended: it is still written to");
         };
         // A slow disk must not hold up the hand. It ends early only with the program.
-        let Ok(status) = spawn_blocking(move || recorder.end()).await else {
-            return;
-        };
+        let status = spawn_blocking(move || recorder.end()).await;
+        let status = status.context("the recording was not ended")?;
         if let Some(trouble) = status.trouble {
-            say(&format!("the recording cannot be written: {trouble}"));
-        } else if !status.ended {
-            say(
-                "the recording was not ended: the disk does not take its last bytes; 'handscope recover' repairs it",
+            bail!("the recording cannot be written: {trouble}");
+        }
+        if !status.ended {
+            bail!(
+                "the recording was not ended: the disk does not take its last bytes; 'handscope recover' repairs it"
             );
+        }
+        Ok(())
+    }
+
+    /// How the command beside it ends: a recording that failed is a failure, whatever else was.
+    pub(crate) fn and(
+        done: anyhow::Result<()>,
+        recorded: anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        match (done, recorded) {
+            (Err(why), Err(recording)) => {
+                say(&format!("{recording:#}"));
+                Err(why)
+            }
+            (done, recorded) => done.and(recorded),
         }
     }
 }

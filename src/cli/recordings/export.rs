@@ -1,6 +1,7 @@
 //! `export`: recordings, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
 
-use crate::cli::out::progress::{EndWished, Progress};
+use crate::cli::out::ending::EndWished;
+use crate::cli::out::progress::Progress;
 use crate::cli::out::{Out, ReaderGone, WrongUsage, say};
 use crate::cli::recordings::picture;
 use crate::cli::recordings::recording_file::{

@@ -1,6 +1,7 @@
 //! `import`: a recording file out of values that `export --csv` wrote.
 
-use crate::cli::out::progress::{EndWished, Progress};
+use crate::cli::out::ending::EndWished;
+use crate::cli::out::progress::Progress;
 use crate::cli::out::{Out, WrongUsage, say};
 use crate::cli::recordings::export::told;
 use crate::cli::recordings::recording_file::{is_standard, stdin_as_file};

@@ -1,7 +1,7 @@
 //! `export --png`: the window as it replays a recording, its plots over a stretch.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::out::progress::EndWished;
+use crate::cli::out::ending::EndWished;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::RecordingFile;

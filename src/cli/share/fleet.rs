@@ -96,17 +96,18 @@ impl Told<'_> {
     fn object(&mut self, clock: Clock) -> anyhow::Result<()> {
         let seconds = clock.now().secs();
         let object = json!({"t": seconds, "hands": self.hands});
-        self.out.object(&object)
+        self.out.stream_object(&object)
     }
 
     fn changes(&mut self, hands: &[FleetHand]) -> anyhow::Result<()> {
         let is_there = |old: &&FleetHand| hands.iter().any(|new| new.card == old.card);
         for gone in self.hands.iter().filter(|old| !is_there(old)) {
             let (host, name) = (&gone.card.host, &gone.card.name);
-            self.out.line(&format!("{host}  {name}  gone"))?;
+            self.out.stream_line(&format!("{host}  {name}  gone"))?;
         }
         let is_new = |new: &&FleetHand| !self.hands.contains(new);
-        self.out.lines(hands.iter().filter(is_new).map(line))
+        let mut new = hands.iter().filter(is_new).map(line);
+        new.try_for_each(|line| self.out.stream_line(&line))
     }
 }
 

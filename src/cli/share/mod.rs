@@ -86,8 +86,7 @@ pub(crate) async fn run(out: &mut Out, args: &ShareArgs) -> anyhow::Result<()> {
     let recording = SideRecording::begin(recording, &link, &args.hand, args.side)?;
     let shared = serve(out, args, &link, &mut interrupt).await;
     drop(link);
-    recording.end().await;
-    shared
+    SideRecording::and(shared, recording.end().await)
 }
 
 /// Shares a hand that answers.
@@ -127,7 +126,7 @@ async fn serve(
     };
     let served = async {
         if args.stdio {
-            return stdio::serve(hand, interrupt.wished()).await;
+            return stdio::serve(out, hand, interrupt.wished()).await;
         }
         interrupt.wished().await;
         Ok(())

@@ -90,6 +90,10 @@ impl<'a> TrialResults<'a> {
 
     /// Takes a step of the series; false if it cannot be shown or written, which ends the series.
     pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
+        if let Err(error) = self.out.flush() {
+            self.error.get_or_insert(error);
+            return false;
+        }
         match step {
             SeriesStep::View(view) => self.total = view.total,
             SeriesStep::Search(_) => {}

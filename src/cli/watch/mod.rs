@@ -22,8 +22,8 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// Lines show after this at the latest; buffering them lets a full-rate stream keep up.
-const FLUSH_EACH: Duration = Duration::from_millis(50);
+/// How often the link and the output are inspected, and frames printed.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// People read no more than ten lines a second.
 const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
 
@@ -74,7 +74,7 @@ impl<'a> Watch<'a> {
     }
 
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(FLUSH_EACH);
+        let mut tick = interval(POLL_INTERVAL);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut end = pin!(self.args.over());
         loop {
@@ -100,7 +100,7 @@ impl<'a> Watch<'a> {
         self.clock.now().since(Moment::ZERO)
     }
 
-    /// Flushes the output, and reports what happened to the link.
+    /// Reports what happened to the output and the link.
     fn tick(&mut self) -> anyhow::Result<()> {
         if let Some(frames) = &mut self.frames {
             frames.print(self.out, self.clock.now())?;
@@ -176,14 +176,14 @@ impl<'a> Watch<'a> {
             return Ok(());
         }
         if self.args.json {
-            return self.out.object(&sample_json(&sample, &grip, at));
+            return self.out.stream_object(&sample_json(&sample, &grip, at));
         }
         let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
         if self.last_text.is_some_and(is_soon) {
             return Ok(());
         }
         self.last_text = Some(at);
-        self.out.line(&sample_text(&sample, at))
+        self.out.stream_line(&sample_text(&sample, at))
     }
 
     fn finish(mut self) -> anyhow::Result<()> {

@@ -50,11 +50,11 @@ impl FramePrinter {
         let open = open.filter(|at| is_open(fresh.get(*at..).unwrap_or_default(), now));
         fresh.truncate(open.unwrap_or(fresh.len()));
         for frame in &fresh {
-            out.line(&if self.json {
-                frame.json_line()
+            if self.json {
+                out.stream_json(&frame.json_line())?;
             } else {
-                frame.text_line()
-            })?;
+                out.stream_line(&frame.text_line())?;
+            }
         }
         self.printed = fresh.last().map_or(self.printed, |frame| frame.number);
         Ok(())

@@ -6,7 +6,8 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use tokio::sync::oneshot;
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
 
 /// The command of the program that becomes the holder, before `--hand` and the endpoint.
 pub const COMMAND: &str = "hold";
@@ -14,6 +15,13 @@ pub const COMMAND: &str = "hold";
 pub const MOVES: u8 = b'm';
 /// Told through the pipe: it rests, and nothing is armed.
 pub const RESTS: u8 = b'r';
+
+/// So often in a row the process may fail to start, or end soon, before that is reported.
+const FAILURES_MAX: u32 = 2;
+/// Time between the end of a process and the start of the next: the hand is unguarded for no longer than that takes.
+const RESTART_DELAY: Duration = Duration::from_millis(20);
+/// A process that ran for this long did not fail to start.
+const LASTING: Duration = Duration::from_secs(1);
 
 /// A new process of Windows has no console then.
 #[cfg(windows)]
@@ -39,29 +47,39 @@ pub fn unguarded(why: &str) -> String {
     )
 }
 
-/// Resolves once the holder runs, or says why it does not.
-pub(crate) type Started = oneshot::Receiver<Result<(), String>>;
+/// How it is about the process that holds the hand if this one dies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum HolderState {
+    /// It is being started.
+    Starting,
+    /// It runs, or is not needed.
+    Ready,
+    /// There is none, and why.
+    Missing(String),
+}
 
 /// The end of the pipe that is here. Dropping it lets the holder go; it holds if it was last told that the hand may move.
 #[derive(Debug)]
 pub(crate) struct HolderTie {
     endpoint: Endpoint,
     pipe: Arc<Mutex<HolderPipe>>,
+    state: watch::Receiver<HolderState>,
 }
 
 #[derive(Debug)]
-enum HolderPipe {
-    /// The process is being started; this is to be told then.
-    Starts(u8),
-    Open(ChildStdin),
-    /// The process ended, or is not needed any more.
-    Closed,
+struct HolderPipe {
+    /// What the holder was told last, or is told once it runs.
+    word: u8,
+    /// `None` while there is no process.
+    to: Option<ChildStdin>,
+    /// None is needed any more, or none can be had.
+    is_closed: bool,
 }
 
 impl HolderTie {
     /// Starts a holder on a thread of its own: the thread of the links waits for no process. None is started for a built-in
     /// hand, which dies with this process.
-    pub(crate) fn start(endpoint: &Endpoint) -> Option<(Self, Started)> {
+    pub(crate) fn start(endpoint: &Endpoint) -> Option<Self> {
         let (program, complain) = PROGRAM.get()?;
         if matches!(endpoint, Endpoint::Sim { .. }) {
             return None;
@@ -76,22 +94,35 @@ impl HolderTie {
         // Without a console it ends neither by Ctrl-C nor with the console.
         #[cfg(windows)]
         std::os::windows::process::CommandExt::creation_flags(&mut command, DETACHED_PROCESS);
-        let pipe = Arc::new(Mutex::new(HolderPipe::Starts(MOVES)));
-        let (tell, started) = oneshot::channel();
-        let shared = Arc::clone(&pipe);
+        Some(Self::guarded(endpoint, command, *complain))
+    }
+
+    fn guarded(endpoint: &Endpoint, command: Command, complain: Complain) -> Self {
+        let pipe = Arc::new(Mutex::new(HolderPipe {
+            word: MOVES,
+            to: None,
+            is_closed: false,
+        }));
+        let (tell, state) = watch::channel(HolderState::Starting);
+        let tell = Arc::new(tell);
+        let watcher = Watcher {
+            command,
+            pipe: Arc::clone(&pipe),
+            tell: Arc::clone(&tell),
+            complain,
+        };
         let thread = std::thread::Builder::new().name("holder".into());
-        let spawned = thread.spawn(move || {
-            look_after(command, &shared, |end| {
-                if let Err(why) = &end {
-                    complain(&unguarded(why));
-                }
-                let _told = tell.send(end);
-            })
-        });
-        // Its end of the channel is gone then, which says that nothing was started.
-        drop(spawned);
-        let endpoint = endpoint.clone();
-        Some((Self { endpoint, pipe }, started))
+        if let Err(error) = thread.spawn(move || watcher.run()) {
+            let why = format!("no thread can be started: {error}");
+            lock(&pipe).is_closed = true;
+            complain(&unguarded(&why));
+            tell.send_replace(HolderState::Missing(why));
+        }
+        Self {
+            endpoint: endpoint.clone(),
+            pipe,
+            state,
+        }
     }
 
     /// Says that the hand at this endpoint may move; false if this holder is for another, or runs no more.
@@ -104,49 +135,180 @@ impl HolderTie {
         self.tell(RESTS);
     }
 
+    /// How it is about the process now, and when that changes.
+    pub(crate) fn state(&self) -> watch::Receiver<HolderState> {
+        self.state.clone()
+    }
+
     fn tell(&self, word: u8) -> bool {
-        match &mut *lock(&self.pipe) {
-            HolderPipe::Starts(first) => *first = word,
-            // A pipe takes thousands of them before it could make anybody wait.
-            HolderPipe::Open(pipe) => return pipe.write_all(&[word]).is_ok(),
-            HolderPipe::Closed => return false,
+        let mut pipe = lock(&self.pipe);
+        pipe.word = word;
+        // A pipe takes thousands of words before it could make anybody wait. If it is broken, its process has ended, and the next one
+        // is told this.
+        if let Some(to) = &mut pipe.to {
+            let _ended = to.write_all(&[word]);
         }
-        true
+        !pipe.is_closed
     }
 }
 
 impl Drop for HolderTie {
     fn drop(&mut self) {
-        *lock(&self.pipe) = HolderPipe::Closed;
+        let mut pipe = lock(&self.pipe);
+        pipe.is_closed = true;
+        pipe.to = None;
     }
 }
 
-/// Starts the process, and waits for its end so that nothing of it stays.
-fn look_after(
-    mut command: Command,
-    pipe: &Mutex<HolderPipe>,
-    tell: impl FnOnce(Result<(), String>),
-) {
-    let mut child = match command.spawn() {
-        Ok(child) => child,
-        Err(error) => {
-            *lock(pipe) = HolderPipe::Closed;
-            tell(Err(error.to_string()));
-            return;
-        }
-    };
-    if let Some(mut stdin) = child.stdin.take() {
-        let mut pipe = lock(pipe);
-        if let HolderPipe::Starts(word) = *pipe {
-            let _written = stdin.write_all(&[word]);
-            *pipe = HolderPipe::Open(stdin);
+/// What the thread has that starts the process, waits for its end, and starts another while the hand may move.
+struct Watcher {
+    command: Command,
+    pipe: Arc<Mutex<HolderPipe>>,
+    tell: Arc<watch::Sender<HolderState>>,
+    complain: Complain,
+}
+
+/// Why there is no holder now.
+enum Gone {
+    NotNeeded,
+    Failed(String),
+}
+
+impl Watcher {
+    fn run(mut self) {
+        let mut failures = 0;
+        loop {
+            let begun = Instant::now();
+            let why = match self.one() {
+                Gone::NotNeeded => return,
+                Gone::Failed(why) => why,
+            };
+            failures = if begun.elapsed() < LASTING {
+                failures + 1
+            } else {
+                1
+            };
+            if failures >= FAILURES_MAX {
+                lock(&self.pipe).is_closed = true;
+                (self.complain)(&unguarded(&why));
+                self.tell.send_replace(HolderState::Missing(why));
+                return;
+            }
+            std::thread::sleep(RESTART_DELAY);
         }
     }
-    tell(Ok(()));
-    let _status = child.wait();
-    *lock(pipe) = HolderPipe::Closed;
+
+    /// Starts one and waits for its end, so that nothing of it stays.
+    fn one(&mut self) -> Gone {
+        let mut child = match self.command.spawn() {
+            Ok(child) => child,
+            Err(error) => return Gone::Failed(error.to_string()),
+        };
+        if let Some(mut stdin) = child.stdin.take() {
+            let mut pipe = lock(&self.pipe);
+            let _ended = stdin.write_all(&[pipe.word]);
+            if !pipe.is_closed {
+                pipe.to = Some(stdin);
+            }
+        }
+        self.tell.send_replace(HolderState::Ready);
+        let ended = child.wait();
+        let mut pipe = lock(&self.pipe);
+        pipe.to = None;
+        if pipe.word == RESTS {
+            // The next arming starts another.
+            pipe.is_closed = true;
+        }
+        if pipe.is_closed {
+            return Gone::NotNeeded;
+        }
+        Gone::Failed(match ended {
+            Ok(status) => format!("it ended twice: {status}"),
+            Err(error) => error.to_string(),
+        })
+    }
 }
 
 fn lock(pipe: &Mutex<HolderPipe>) -> MutexGuard<'_, HolderPipe> {
     pipe.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+    use nix::sys::signal::{Signal, kill};
+    use nix::unistd::Pid;
+    use std::path::Path;
+
+    /// A holder that notes its process and what it is told, as lines of two files.
+    fn noting(folder: &Path) -> Command {
+        let mut command = Command::new("/bin/sh");
+        let note = "echo $$ >> pids; while read -r word; do echo $word >> words; done";
+        // Words have no line ends.
+        command.args(["-c", &format!("head -c 1 >> words; {note}")]);
+        command.current_dir(folder).stdin(Stdio::piped());
+        command
+    }
+
+    fn silent(_words: &str) {}
+
+    fn endpoint() -> Endpoint {
+        "tcp:127.0.0.1:1".parse().unwrap()
+    }
+
+    fn waits_for<T>(mut look: impl FnMut() -> Option<T>) -> T {
+        let begun = Instant::now();
+        loop {
+            if let Some(found) = look() {
+                return found;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(20), "it never came");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn pids(folder: &Path, count: usize) -> Vec<i32> {
+        waits_for(|| {
+            let text = std::fs::read_to_string(folder.join("pids")).ok()?;
+            let pids: Vec<i32> = text.lines().map(|line| line.parse().unwrap()).collect();
+            (pids.len() >= count).then_some(pids)
+        })
+    }
+
+    #[test]
+    fn a_holder_that_dies_while_the_hand_may_move_is_replaced_and_told_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let tie = HolderTie::guarded(&endpoint(), noting(folder.path()), silent);
+        let first = pids(folder.path(), 1)[0];
+        std::thread::sleep(LASTING);
+        kill(Pid::from_raw(first), Signal::SIGKILL).unwrap();
+        let second = pids(folder.path(), 2)[1];
+        waits_for(|| (std::fs::read(folder.path().join("words")).ok()? == b"mm").then_some(()));
+        assert_eq!(*tie.state().borrow(), HolderState::Ready);
+        // One that is not needed is not replaced.
+        tie.rests();
+        kill(Pid::from_raw(second), Signal::SIGKILL).unwrap();
+        waits_for(|| (!tie.moves(&endpoint())).then_some(()));
+        assert_eq!(pids(folder.path(), 2).len(), 2);
+    }
+
+    #[test]
+    fn a_holder_that_cannot_run_is_told_after_two_tries() {
+        static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+        let complain = |words: &str| TOLD.lock().unwrap().push(words.to_owned());
+        for program in ["/nothing/there", "/bin/false"] {
+            let mut command = Command::new(program);
+            command.stdin(Stdio::piped());
+            let tie = HolderTie::guarded(&endpoint(), command, complain);
+            let why = waits_for(|| match tie.state().borrow().clone() {
+                HolderState::Missing(why) => Some(why),
+                HolderState::Starting | HolderState::Ready => None,
+            });
+            let told = TOLD.lock().unwrap().pop().unwrap();
+            assert!(told.contains(&why) && told.contains("24 V"), "{told}");
+            assert!(TOLD.lock().unwrap().is_empty(), "told once");
+            assert!(!tie.moves(&endpoint()));
+        }
+    }
 }

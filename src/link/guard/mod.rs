@@ -3,7 +3,7 @@
 
 pub mod holder;
 
-use crate::link::guard::holder::{HolderTie, Started};
+use crate::link::guard::holder::{HolderState, HolderTie};
 use crate::link::wanted::PendingControl;
 use crate::record::Disarmed;
 use crate::transport::Endpoint;
@@ -43,17 +43,26 @@ impl MotionGuard {
         guard
     }
 
-    /// The hand is about to be armed at this endpoint. Gives the start of the process that holds it if this one dies, if
-    /// one was started just now.
-    pub(crate) fn moves(&self, endpoint: &Endpoint) -> Option<Started> {
+    /// The hand is about to be armed at this endpoint. Starts the process that holds it if this one dies, if none runs.
+    pub(crate) fn moves(&self, endpoint: &Endpoint) {
         self.moves.store(true, Ordering::Relaxed);
         let mut tie = lock(&self.tie);
-        if tie.as_ref().is_some_and(|tie| tie.moves(endpoint)) {
-            return None;
+        if !tie.as_ref().is_some_and(|tie| tie.moves(endpoint)) {
+            *tie = HolderTie::start(endpoint);
         }
-        let (started_tie, started) = HolderTie::start(endpoint)?;
-        *tie = Some(started_tie);
-        Some(started)
+    }
+
+    /// How it is about that process; `None` where none is needed.
+    pub(crate) fn holder(&self) -> Option<watch::Receiver<HolderState>> {
+        lock(&self.tie).as_ref().map(HolderTie::state)
+    }
+
+    /// Why there is no such process, if there should be one.
+    pub(crate) fn unguarded(&self) -> Option<String> {
+        match &*self.holder()?.borrow() {
+            HolderState::Missing(why) => Some(why.clone()),
+            HolderState::Starting | HolderState::Ready => None,
+        }
     }
 
     /// The hand rests by feedback, or is left in good order.

@@ -23,6 +23,7 @@ use crate::link::session::rest::RestWatch;
 use crate::link::session::slowness::Slowness;
 use crate::link::session::stall::{STALL_MIN, StallMeter, watched};
 use crate::link::session::watch::feedback::FeedbackWatch;
+use crate::link::session::watch::heat::HeatWatch;
 use crate::link::session::watch::other_controller::OtherController;
 use crate::link::session::watch::save::SaveWatch;
 use crate::link::status::{Dialling, LinkStatus, LinkTrouble};
@@ -69,6 +70,7 @@ pub(crate) struct Session {
     pub(crate) pending_stop: Option<PendingStop>,
     pub(crate) moving: RestWatch,
     pub(crate) feedback: FeedbackWatch,
+    pub(crate) heat: HeatWatch,
     pub(crate) job: Option<SessionJob>,
     /// The line is left to a hand that saves or calibrates.
     pub(crate) leaves_line: bool,
@@ -121,6 +123,7 @@ impl Session {
             pending_stop: None,
             moving: RestWatch::default(),
             feedback: FeedbackWatch::default(),
+            heat: HeatWatch::default(),
             job: None,
             leaves_line: false,
             broken_off: None,
@@ -252,6 +255,7 @@ impl Session {
         }
         self.moving = RestWatch::default();
         self.feedback = FeedbackWatch::default();
+        self.heat = HeatWatch::default();
         self.status.feedback_in_doubt = false;
         self.ticks = Ticks::default();
         self.motion = Motion::after(self.motion.last_epoch);
@@ -282,6 +286,7 @@ impl Session {
         }
         self.status.line_left = false;
         self.status.rest = Rest::Unknown;
+        self.status.heat = None;
         self.go(LinkState::Offline);
         self.ends.image.send_replace(RegisterImage::default());
         if let Some(answer) = self.broken_off.take() {
@@ -308,9 +313,10 @@ impl Session {
         let usual = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
         loop {
             // A stop waits for nothing but the pause that the hand needs.
+            let asked = self.config.dial.retry_delay(attempt);
             let wait = match self.has_pending_stop() {
-                true => RETRY_FIRST,
-                false => usual,
+                true => asked.unwrap_or(RETRY_FIRST),
+                false => asked.unwrap_or(usual),
             };
             let until = begun.plus(wait);
             self.status.dialling = Dialling::Waiting { attempt, until };

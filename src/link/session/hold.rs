@@ -34,10 +34,10 @@ pub(crate) struct HoldWatch {
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
     moved: bool,
+    /// The pose was read, or tried to, since the last frame.
+    looked: bool,
     /// The first frame for joints in doubt that the hand acknowledged, and the newest.
     doubted_acknowledged: Option<(Moment, Moment)>,
-    /// Where the joints are is read before the first frame: nothing is known of them yet.
-    reads_first: bool,
     /// All that can be done was done: joints in doubt were told where to stay, and the others rest.
     has_ceased: bool,
 }
@@ -64,8 +64,8 @@ impl HoldWatch {
             last_sent: None,
             still_since: None,
             moved,
+            looked: false,
             doubted_acknowledged: None,
-            reads_first: false,
             has_ceased: false,
         }
     }
@@ -74,14 +74,8 @@ impl HoldWatch {
     pub(crate) const fn resumed(at: Moment, now: Moment) -> Self {
         Self {
             follows_from: now,
-            reads_first: true,
             ..Self::new(at, true)
         }
-    }
-
-    /// True once, if the joints are to be read before the next frame.
-    pub(crate) const fn reads_first(&mut self) -> bool {
-        std::mem::replace(&mut self.reads_first, false)
     }
 
     /// The same stop, begun anew: it became known where a joint is.
@@ -117,6 +111,13 @@ impl HoldWatch {
         self.has_ceased
     }
 
+    /// True, once a frame, if nothing is known that it could hold the hand to: the pose is to be read first.
+    pub(crate) fn needs_pose(&mut self, newest: &PerDof<Target>) -> bool {
+        let nothing = PerDof::splat(Target::Leave);
+        let is_blind = self.pose == nothing && *newest == nothing;
+        is_blind && !std::mem::replace(&mut self.looked, true)
+    }
+
     /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
     pub(crate) fn frame(&mut self, newest: &PerDof<Target>, now: Moment) -> PerDof<Target> {
         let follows = now.since(self.follows_from) <= HOLD_FOLLOWS;
@@ -125,6 +126,7 @@ impl HoldWatch {
                 *target = newest[dof];
             }
         }
+        self.looked = false;
         self.sent = self.sent.saturating_add(1);
         self.first_sent.get_or_insert(now);
         self.last_sent = Some(now);
@@ -277,6 +279,20 @@ mod tests {
         assert_eq!(watch.next_frame(ms(270)), Some(ms(280)), "others may move");
         watch.trusted_rest();
         assert_eq!(watch.next_frame(ms(300)), None);
+    }
+
+    #[test]
+    fn the_pose_is_read_once_before_each_frame_that_would_hold_nothing() {
+        let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
+        let unknown = PerDof::splat(Target::Leave);
+        let mut watch = HoldWatch::new(ms(0), true);
+        assert!(watch.needs_pose(&unknown));
+        assert!(!watch.needs_pose(&unknown), "it could not be read");
+        watch.frame(&unknown, ms(60));
+        assert!(watch.needs_pose(&unknown));
+        assert!(!watch.needs_pose(&pose(500)));
+        watch.frame(&pose(500), ms(100));
+        assert!(!watch.needs_pose(&unknown), "it is known by now");
     }
 
     #[test]

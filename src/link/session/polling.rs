@@ -1,8 +1,9 @@
 //! Reading by plan: which question goes out now, and what its answer changes. What else may go out first is decided
 //! elsewhere.
 
-use crate::hand::{Group, Moment, Reply, Span};
+use crate::hand::{DriveHeat, Group, Moment, Reply, Span};
 use crate::link::bus::Bus;
+use crate::link::bus::client::Urgent;
 use crate::link::poll::plan::{NextRead, Tempo};
 use crate::link::session::conversation::{Session, WireEnd};
 use crate::link::session::stall::watched;
@@ -63,11 +64,29 @@ impl Session {
         self.poll(bus, &question).await
     }
 
+    /// The same, for a stop: another stop is no reason to leave it.
+    pub(crate) async fn read_pose(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
+        let now = self.now();
+        let question = self.plan.motion(now, self.tempo(now));
+        self.poll_unless(bus, &question, &|| false).await
+    }
+
     /// One read of a window, and what its answer changes.
     pub(crate) async fn poll(
         &mut self,
         bus: &mut dyn Bus,
         question: &NextRead,
+    ) -> Result<(), WireEnd> {
+        let wanted = Arc::clone(&self.ends.wanted);
+        self.poll_unless(bus, question, &|| wanted.borrow().stop)
+            .await
+    }
+
+    async fn poll_unless(
+        &mut self,
+        bus: &mut dyn Bus,
+        question: &NextRead,
+        urgent: Urgent<'_>,
     ) -> Result<(), WireEnd> {
         self.motion.asked(question.is_motion);
         let Some(span) = bus.choose(&question.shapes) else {
@@ -75,9 +94,7 @@ impl Session {
         };
         let limit = self.reply_limit(bus, span.len);
         let asked = self.now();
-        let wanted = Arc::clone(&self.ends.wanted);
-        let urgent = || wanted.borrow().stop;
-        let (result, late) = watched(bus.read_unless(span, limit, &urgent)).await;
+        let (result, late) = watched(bus.read_unless(span, limit, urgent)).await;
         self.stalled(late);
         let received = self.now();
         let took = received.since(asked);
@@ -119,6 +136,12 @@ impl Session {
         let doubted = self.feedback.doubted();
         self.feedback.take(&self.sample, fresh);
         self.watch_feedback(&doubted);
+        self.heat.take(&self.sample, fresh, now);
+        let heat = DriveHeat::warmest(&self.sample, now);
+        if self.status.heat != heat {
+            self.status.heat = heat;
+            self.publish();
+        }
         self.counters.fresh(fresh, now);
         self.counters.judge(&self.sample, fresh);
         let sample = Arc::new(self.sample);

@@ -6,7 +6,7 @@ use crate::hand::{
 };
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
-use crate::link::guard::holder::Started;
+use crate::link::guard::holder::HolderState;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
 use crate::link::series::Series;
@@ -22,7 +22,7 @@ use std::time::Duration;
 use tokio::time::{sleep_until, timeout};
 
 /// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
-const HOLDER_WITHIN: Duration = Duration::from_millis(250);
+const HOLDER_TIMEOUT: Duration = Duration::from_millis(250);
 /// So much of a stall of this program leaves a hand armed whose angles grow old by it: the hand goes on as it was told, and is read next.
 const STALL_FORGIVEN: Duration = Duration::from_secs(1);
 /// Bytes of an acknowledgement's data.
@@ -96,16 +96,20 @@ impl Session {
             return Ok(true);
         }
         self.watch_age();
+        self.watch_heat();
         let now = self.now();
         let hold = self.motion.hold;
         // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
         // would never see the hand rest.
         let waits = self.motion.waits_for_look && self.slowness.slowest().is_some();
         let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now) && !waits;
-        let reads_first = |hold: &mut HoldWatch| hold.reads_first();
-        if self.motion.hold.as_mut().is_some_and(reads_first) {
-            self.poll_motion(bus).await?;
-        } else if hold.is_some_and(is_due) {
+        if hold.is_some_and(is_due) {
+            // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
+            let newest = self.hold_targets(now);
+            let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
+            if self.motion.hold.as_mut().is_some_and(is_blind) {
+                return self.read_pose(bus).await.map(|()| true);
+            }
             self.send_hold(bus).await?;
             self.motion.waits_for_look = true;
         } else if self.motion.begins_round(now)
@@ -123,6 +127,7 @@ impl Session {
 
     /// Says whether the hand rests, and whether the line is left to it.
     pub(crate) fn tell_rest(&mut self) {
+        self.watch_holder();
         let rest = if self.feedback.is_doubted() || self.feedback.is_frozen() {
             Rest::Unknown
         } else {
@@ -230,7 +235,7 @@ impl Session {
             self.refuse_arm(reason);
             return Ok(());
         }
-        let holder = self.guard.moves(&self.dialled);
+        self.guard.moves(&self.dialled);
         let limits = [
             HandCommand::Speeds(request.speed.map(Some)),
             HandCommand::Forces(request.force.map(Some)),
@@ -249,10 +254,8 @@ impl Session {
                 return Ok(());
             }
         }
-        self.status.unguarded = match holder {
-            Some(started) => no_holder(started).await,
-            None => self.status.unguarded.take(),
-        };
+        self.holder_started().await;
+        self.status.unguarded = self.guard.unguarded();
         // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
         if self.arming_is_over(lease) {
             return Ok(());
@@ -266,8 +269,27 @@ impl Session {
         self.status.hold = Hold::None;
         let now = self.now();
         self.plan.look_at_settings(now);
+        let owner = self.status.holder.map(|holder| holder.owner);
+        self.heat.arm(&self.sample, owner, now);
         self.go(LinkState::Armed);
         Ok(())
+    }
+
+    /// Waits a little for the process that holds the hand if this one dies: nothing moves before. One that is late will be there.
+    async fn holder_started(&self) {
+        if let Some(mut holder) = self.guard.holder() {
+            let started = holder.wait_for(|state| *state != HolderState::Starting);
+            let _late = timeout(HOLDER_TIMEOUT, started).await;
+        }
+    }
+
+    /// The process that holds the hand may end later than it was started.
+    fn watch_holder(&mut self) {
+        let unguarded = self.status.armed.and_then(|_| self.guard.unguarded());
+        if unguarded.is_some() && self.status.unguarded != unguarded {
+            self.status.unguarded = unguarded;
+            self.publish();
+        }
     }
 
     fn refuse_arm(&mut self, reason: ArmRefusal) {
@@ -317,6 +339,14 @@ impl Session {
             hold.alarmed = true;
             self.status.hold = Hold::Alarm { at: hold.at };
             self.publish();
+        }
+    }
+
+    /// A drive that is hot, or may be, ends what moves the hand.
+    fn watch_heat(&mut self) {
+        let reason = self.heat.reason(&self.sample, self.now());
+        if let Some(why) = reason.filter(|_| self.status.armed.is_some()) {
+            self.begin_hold(why);
         }
     }
 
@@ -550,16 +580,6 @@ impl Session {
         let (turned, late) = watched(bus.turn()).await;
         self.stalled(late);
         unless_lost(turned)
-    }
-}
-
-/// Waits a little for the process that holds the hand if this one dies: nothing moves before. Why there is none, if so.
-async fn no_holder(started: Started) -> Option<String> {
-    match timeout(HOLDER_WITHIN, started).await {
-        Ok(Ok(started)) => started.err(),
-        Ok(Err(_gone)) => Some("no thread could be started".into()),
-        // It is late, and will be there.
-        Err(_late) => None,
     }
 }
 

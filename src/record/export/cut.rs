@@ -36,7 +36,7 @@ fn put(
     said: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
-    let copied = copy(source, output.private_file()?, said).map_err(|error| error.of(&output))?;
+    let copied = copy(source, output.file()?, said).map_err(|error| error.of(&output))?;
     output.sync(copied.to)?;
     output.finish()?;
     Ok(copied.exported)

@@ -4,10 +4,10 @@
 use crate::record::file::reader::Damage;
 use crate::system::SystemError;
 use parquet::errors::ParquetError;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 #[cfg(unix)]
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
 /// Why nothing was exported.
@@ -140,23 +140,14 @@ impl Unfinished {
         self.error(&error)
     }
 
-    /// The file, in its temporary place; others may read it as the system has it for new files.
+    /// The file, in its temporary place. As the recording that it is made of, only its user can read it.
     pub(crate) fn file(&self) -> Result<BufWriter<Sink>, ExportError> {
-        self.open(&mut OpenOptions::new())
-    }
-
-    /// The same for a recording, which only its person can read.
-    pub(crate) fn private_file(&self) -> Result<BufWriter<Sink>, ExportError> {
-        let mut options = OpenOptions::new();
-        #[cfg(unix)]
-        options.mode(0o600);
-        self.open(&mut options)
-    }
-
-    fn open(&self, options: &mut OpenOptions) -> Result<BufWriter<Sink>, ExportError> {
         let sink = match self.wanted {
             Destination::Stdout => Sink::Stdout(io::stdout()),
             Destination::Path(_) => {
+                let mut options = OpenOptions::new();
+                #[cfg(unix)]
+                options.mode(0o600);
                 let made = options.write(true).create_new(true).open(&self.beside);
                 Sink::File(made.map_err(|error| self.error(&error))?)
             }
@@ -166,7 +157,10 @@ impl Unfinished {
 
     /// The folder, in its temporary place.
     pub(crate) fn folder(&self) -> Result<&Path, ExportError> {
-        let made = fs::create_dir(&self.beside);
+        let mut folder = DirBuilder::new();
+        #[cfg(unix)]
+        folder.mode(0o700);
+        let made = folder.create(&self.beside);
         made.map_err(|error| self.error(&error))?;
         Ok(&self.beside)
     }

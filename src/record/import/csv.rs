@@ -131,7 +131,7 @@ pub fn import(
     let output = Unfinished::new(to)?;
     let written = |error: Broken| error.of(&output);
     let opening = imported_opening();
-    let mut copy = RecordingCopy::new(&opening, output.private_file()?).map_err(written)?;
+    let mut copy = RecordingCopy::new(&opening, output.file()?).map_err(written)?;
     let monitoring = Entry::Heard(Record::State {
         at: opening.began,
         state: LinkState::Monitoring,

@@ -2,6 +2,7 @@
 
 use crate::hand::kinematics::Side;
 use crate::link::Owner;
+use crate::printable::is_printable;
 use crate::record::LinkState;
 use crate::record::file::format::cdr;
 use crate::transport::Endpoint;
@@ -117,9 +118,6 @@ impl FleetHand {
 
 /// A name as it may stand in a line: nothing that moves the line or turns it round.
 fn plain(name: &str) -> String {
-    let is_sign = |sign: &char| {
-        let turns = matches!(sign, '\u{200e}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        !sign.is_control() && !turns
-    };
+    let is_sign = |sign: &char| is_printable(*sign) && *sign != '\t';
     name.chars().filter(is_sign).take(NAME_CHARS).collect()
 }

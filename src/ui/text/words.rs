@@ -44,6 +44,7 @@ pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
         Disarmed::Released => "未使能：没有按住需要按住的键。",
         Disarmed::Silent => "已取消使能：控制来源已无数据。",
         Disarmed::Hot => "已取消使能：有驱动器达到 70 °C。",
+        Disarmed::HeatUnknown => "已取消使能：驱动器温度不合理或未知。",
     }
 }
 

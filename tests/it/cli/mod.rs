@@ -27,6 +27,9 @@ mod loss;
 mod no_result;
 #[cfg(unix)]
 mod of_others;
+#[cfg(target_os = "linux")]
+mod outputs;
+#[cfg(unix)]
 mod overshoot;
 mod params;
 mod pictures;

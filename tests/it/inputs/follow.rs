@@ -8,7 +8,7 @@ use handscope::hand::gap::{Gap, gap_on_path};
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::inputs::{Offer, OfferLimits};
-use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
+use handscope::link::{self, Clock, HoldToRun, Lease, LeaseRefusal, LinkHandle, Owner, Records};
 use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
 use handscope::sim::{SharedHand, SimConfig};
 use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
@@ -273,9 +273,9 @@ fn a_warm_drive_is_told_and_a_hot_one_stops_the_hand_whoever_is_followed() {
         warm(72.0);
         stage.send(&offers, about, 1000).await;
         let (end, heats) = task.await.unwrap();
-        let FollowEnd::Hot(heat) = end else {
-            panic!("{end:?}");
-        };
+        let by_heat = FollowEnd::Lease(LeaseRefusal::Ended(Disarmed::Hot));
+        assert_eq!(end, by_heat);
+        let heat = stage.link.status().heat.unwrap();
         assert!(heat.dof == Dof::Index && heat.is_hot(), "{heat}");
         let warmest = heats.iter().flatten().map(|heat| heat.celsius).max();
         assert!(
@@ -293,7 +293,7 @@ fn a_warm_drive_is_told_and_a_hot_one_stops_the_hand_whoever_is_followed() {
         let before = stage.index().len();
         let (offers, task) = stage.start(stage.link.grant(Owner::Gamepad));
         stage.send(&offers, about, 500).await;
-        assert!(matches!(task.await.unwrap().0, FollowEnd::Hot(_)));
+        assert_eq!(task.await.unwrap().0, by_heat);
         let since = stage.index().split_off(before);
         assert!(
             since.iter().all(|sent| sent.cause == WriteCause::Hold),

@@ -592,3 +592,46 @@ async fn a_pseudo_terminal_that_comes_back_under_another_name_is_followed() {
     assert_eq!(status.moved_to, Some(moved.path));
     assert!(hand.with(|hand, _| hand.journal().is_empty()));
 }
+
+/// A hand that takes connections and closes them at once, until this moment; dialled as often as asked for.
+struct Shuts {
+    hand: SharedHand,
+    until: Instant,
+    retry_delay: Option<Duration>,
+}
+
+impl Dial for Shuts {
+    fn dial(&self, endpoint: &Endpoint) -> link::Dialled {
+        let (ours, its) = pair();
+        if Instant::now() >= self.until {
+            hand::serve(self.hand.clone(), endpoint, its);
+        }
+        link::opened(ours)
+    }
+
+    fn retry_delay(&self, _attempt: u32) -> Option<Duration> {
+        self.retry_delay
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_closes_connections_at_once_is_reached_as_soon_as_it_is_dialled_again() {
+    for (retry_ms, within_ms) in [(None, 1200), (Some(20), 560)] {
+        let opens = Duration::from_millis(500);
+        let begun = Instant::now();
+        let link = link::connect(
+            "tcp:test",
+            Arc::new(Shuts {
+                hand: hand::begin(hand::free(Default::default())),
+                until: begun + opens,
+                retry_delay: retry_ms.map(Duration::from_millis),
+            }),
+        );
+        while !link.status().state.is_live() {
+            sleep(Duration::from_millis(1)).await;
+        }
+        let took = begun.elapsed();
+        let within = Duration::from_millis(within_ms);
+        assert!((opens..within).contains(&took), "{retry_ms:?}: {took:?}");
+    }
+}

@@ -1,10 +1,13 @@
 //! Getting to know a hand: bounded in time on the slowest line, and no match for a stop.
 
+use crate::setup::hand;
 use crate::setup::link::{self, Client};
 use handscope::codec::rs485::{RequestDecoder, Rs485Request, encode_read_reply, encode_write_ack};
 use handscope::hand::Span;
+use handscope::hand::register::ANGLE_ACT;
 use handscope::link::Quirks;
-use handscope::record::LinkState;
+use handscope::record::{Hold, LinkState};
+use handscope::sim::SimConfig;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
@@ -96,7 +99,7 @@ async fn a_hand_that_answers_nothing_but_its_id_is_live_within_half_a_second_and
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_stop_ends_the_questions_and_is_the_next_thing_on_the_wire() {
+async fn a_stop_ends_the_questions_and_asks_only_where_the_joints_are_before_it() {
     let hand = Shy::default();
     let link = open(&hand);
     while hand.asked().len() < 3 {
@@ -105,16 +108,47 @@ async fn a_stop_ends_the_questions_and_is_the_next_thing_on_the_wire() {
     assert_eq!(link.status().state, LinkState::Identifying);
     let (before, pressed) = (hand.asked().len(), Instant::now());
     link.stop();
-    while hand.asked().len() == before {
+    while hand.asked().len() < before + 2 {
         sleep(Duration::from_millis(1)).await;
     }
-    let (at, next) = hand.asked()[before].clone();
+    let (_, first) = hand.asked()[before].clone();
+    assert!(
+        matches!(&first, Rs485Request::Read { span, .. } if span.covers(ANGLE_ACT.span())),
+        "{first:?}"
+    );
+    // This one does not say where it is, and is told to stop all the same.
+    let (at, next) = hand.asked()[before + 1].clone();
     assert!(
         matches!(next, Rs485Request::Write { address: 1486, .. }),
         "{next:?}"
     );
     let waited = at.duration_since(pressed);
-    assert!(waited < Duration::from_millis(120), "{waited:?}");
+    assert!(waited < Duration::from_millis(250), "{waited:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_first_hold_frame_of_a_hand_that_nobody_knew_holds_every_joint() {
+    for endpoint in ["rs485:test", "rtu:test", "tcp:test"] {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        hand.with(|hand, now| hand.write(1486, &[0; 12], now).unwrap());
+        sleep(Duration::from_millis(300)).await;
+        let link = link::connect(endpoint, link::to_hand(hand.clone()));
+        // As the process does that holds a hand whose program died.
+        while link.status().hold == Hold::None {
+            link.stop();
+            sleep(Duration::from_millis(2)).await;
+        }
+        sleep(Duration::from_millis(200)).await;
+        let journal = hand.with(|hand, _| hand.journal().to_vec());
+        let frame = &journal[1];
+        assert_eq!((frame.address, frame.bytes.len()), (1486, 12), "{endpoint}");
+        let (targets, _) = frame.bytes.as_chunks::<2>();
+        let targets: Vec<i16> = targets.iter().map(|to| i16::from_le_bytes(*to)).collect();
+        assert!(
+            targets.iter().all(|to| *to > 100),
+            "{endpoint}: {targets:?}"
+        );
+    }
 }
 
 #[tokio::test(start_paused = true)]

@@ -76,10 +76,10 @@ impl<'a> Witness<'a> {
         self.pass(3000);
     }
 
-    /// A drive has 74 °C.
-    pub(super) fn grows_hot(&mut self) {
-        self.mover.hand().warm(74.0);
-        self.pass(5000);
+    /// The temperature of a drive reads this, °C.
+    pub(super) fn grows_hot(&mut self, celsius: u8) {
+        self.mover.hand().reads_temperature(celsius);
+        self.pass(4000);
     }
 
     /// Lets it happen to what only writes, and looks on until that is over.
@@ -154,6 +154,25 @@ impl<'a> Witness<'a> {
             Column::ReaderGone => {
                 self.mover.lose_reader();
                 self.pass_to_the_end();
+            }
+            Column::OutputUnread => {
+                self.mover.stop_reading();
+                self.pass(2000);
+                self.mover.signal(Signal::SIGTERM);
+                self.pass(6000);
+            }
+            Column::HolderKilled => {
+                self.mover.signal_holder(Signal::SIGKILL);
+                self.pass(500);
+                self.mover.signal(Signal::SIGKILL);
+                self.pass(4000);
+            }
+            Column::HolderFrozen => {
+                self.mover.signal_holder(Signal::SIGSTOP);
+                self.mover.signal(Signal::SIGKILL);
+                self.pass(1000);
+                self.mover.signal_holder(Signal::SIGCONT);
+                self.pass(4000);
             }
             Column::SecondHandscope => {
                 self.mover.second_handscope();

@@ -340,8 +340,9 @@ impl SeamHand {
         self.with(|hand, _| hand.inject_fault(Dof::Middle, fault));
     }
 
-    pub(super) fn warm(&self, celsius: f64) {
-        self.with(|hand, _| hand.warm(Dof::Middle, celsius));
+    /// The temperature of a drive reads this from now on.
+    pub(super) fn reads_temperature(&self, celsius: u8) {
+        self.with(|hand, _| hand.break_temperature_sensor(Dof::Middle, celsius));
     }
 
     /// What it tells stands still from now on; its joints do not.

@@ -46,6 +46,16 @@ pub(super) trait Mover {
         panic!("it is no process");
     }
 
+    /// Whatever reads its output takes no more of it, and no more fits.
+    fn stop_reading(&mut self) {
+        panic!("it is no process");
+    }
+
+    /// The process that watches over it gets this signal.
+    fn signal_holder(&mut self, _signal: Signal) {
+        panic!("it is no process");
+    }
+
     /// Another Handscope begins to move the same hand, or tries to. What it says is added to what is said here.
     fn second_handscope(&mut self);
 }

@@ -35,6 +35,8 @@ const WITHIN: Duration = Duration::from_secs(30);
 struct Heard {
     text: Arc<Mutex<String>>,
     is_gone: Arc<AtomicBool>,
+    /// Nothing is read for now.
+    is_paused: Arc<AtomicBool>,
 }
 
 impl Heard {
@@ -43,6 +45,9 @@ impl Heard {
         std::thread::spawn(move || {
             for line in BufReader::new(from).lines() {
                 let Ok(line) = line else { return };
+                while heard.is_paused.load(Ordering::Relaxed) {
+                    sleep(Duration::from_millis(10));
+                }
                 let mut text = heard.text.lock().unwrap();
                 text.push_str(&line);
                 text.push('\n');
@@ -63,6 +68,8 @@ pub(super) struct Process {
     child: Child,
     /// Its standard input, where it takes lines.
     input: Option<ChildStdin>,
+    /// The process that watches over it, once it was looked for.
+    holder: Option<Pid>,
     /// Another Handscope at the same hand.
     second: Option<Child>,
     out: Heard,
@@ -123,6 +130,7 @@ impl Place {
         Process {
             input: child.stdin.take(),
             child,
+            holder: None,
             second: None,
             out,
             err,
@@ -428,6 +436,23 @@ impl Mover for Process {
         self.out.is_gone.store(true, Ordering::Relaxed);
     }
 
+    fn stop_reading(&mut self) {
+        for (heard, number) in [(&self.out, 1), (&self.err, 2)] {
+            heard.is_paused.store(true, Ordering::Relaxed);
+            let pipe = format!("/proc/{}/fd/{number}", self.child.id());
+            fill(&pipe);
+            // Whoever was reading takes one more piece.
+            sleep(Duration::from_millis(50));
+            fill(&pipe);
+        }
+    }
+
+    fn signal_holder(&mut self, signal: Signal) {
+        let program = self.child.id();
+        let holder = *self.holder.get_or_insert_with(|| holder_of(program));
+        let _gone = kill(holder, signal);
+    }
+
     fn second_handscope(&mut self) {
         let slow = SLOW.to_string();
         let plan = [
@@ -447,9 +472,43 @@ impl Mover for Process {
     }
 }
 
+/// Fills a pipe with lines, through a description of its own that waits for nothing, until nothing more fits.
+fn fill(pipe: &str) {
+    use std::os::unix::fs::OpenOptionsExt as _;
+    let nonblocking = nix::fcntl::OFlag::O_NONBLOCK.bits();
+    let mut pipe = std::fs::OpenOptions::new()
+        .write(true)
+        .custom_flags(nonblocking)
+        .open(pipe)
+        .unwrap();
+    for size in [4096, 1] {
+        while pipe.write_all(&b"\n".repeat(size)).is_ok() {}
+    }
+}
+
+/// The process that watches over this program.
+fn holder_of(program: u32) -> Pid {
+    let parent = format!("PPid:\t{program}\n");
+    for process in std::fs::read_dir("/proc").unwrap() {
+        let name = process.unwrap().file_name();
+        let Some(id) = name.to_str().and_then(|name| name.parse().ok()) else {
+            continue;
+        };
+        let read = |what| std::fs::read_to_string(format!("/proc/{id}/{what}"));
+        let is_child = read("status").is_ok_and(|status| status.contains(&parent));
+        if is_child && read("cmdline").is_ok_and(|line| line.contains("\0hold\0")) {
+            return Pid::from_raw(id);
+        }
+    }
+    panic!("no process watches over {program}");
+}
+
 impl Drop for Process {
     fn drop(&mut self) {
         self.ends.store(true, Ordering::Relaxed);
+        for heard in [&self.out, &self.err] {
+            heard.is_paused.store(false, Ordering::Relaxed);
+        }
         for child in self.second.iter_mut().chain([&mut self.child]) {
             let _gone = child.kill();
             let _ended = child.wait();

@@ -43,6 +43,9 @@ pub(super) enum Column {
     SecondHandscope,
     FaultOrHeat,
     ReaderGone,
+    OutputUnread,
+    HolderKilled,
+    HolderFrozen,
 }
 
 impl Row {
@@ -80,7 +83,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 16] = [
+    pub(super) const ALL: [Self; 19] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -97,6 +100,9 @@ impl Column {
         Self::SecondHandscope,
         Self::FaultOrHeat,
         Self::ReaderGone,
+        Self::OutputUnread,
+        Self::HolderKilled,
+        Self::HolderFrozen,
     ];
 
     pub(super) const fn name(self) -> &'static str {
@@ -117,6 +123,9 @@ impl Column {
             Self::SecondHandscope => "second Handscope",
             Self::FaultOrHeat => "fault 8, 70 °C",
             Self::ReaderGone => "reader of stdout gone",
+            Self::OutputUnread => "output not read, SIGTERM",
+            Self::HolderKilled => "holder killed, then killed",
+            Self::HolderFrozen => "holder frozen, killed",
         }
     }
 }
@@ -182,6 +191,8 @@ pub(super) const fn cell(row: Row, column: Column) -> Cell {
 }
 
 const NO_STDOUT: Cell = CannotBe("a window prints nothing");
+const HELD_BY_COMMANDS: Cell =
+    CannotBe("these windows are no processes; its link starts the same holder as a command's");
 const NO_WINDOW: Cell = CannotBe("a command has no window");
 const LINK_IS_LOST: &str = "LinkLost";
 const NO_PANIC: Cell =
@@ -204,7 +215,8 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
         Column::FaultOrHeat => Tried(NothingMore(500), "Fault"),
-        Column::ReaderGone => NO_STDOUT,
+        Column::ReaderGone | Column::OutputUnread => NO_STDOUT,
+        Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
     }
 }
 
@@ -225,7 +237,10 @@ const fn series(column: Column) -> Cell {
         | Column::SecondMaster
         | Column::SecondHandscope
         | Column::FaultOrHeat
-        | Column::ReaderGone => told_by_the_window(column),
+        | Column::ReaderGone
+        | Column::OutputUnread
+        | Column::HolderKilled
+        | Column::HolderFrozen => told_by_the_window(column),
     }
 }
 
@@ -238,6 +253,8 @@ const fn leading(column: Column) -> Cell {
         Column::DisplayLost => WINDOW_ENDS,
         Column::Frozen => Tried(GoesOn, ""),
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
+        Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         // What leads is never far ahead: the hand comes to rest there by itself.
         Column::Disobeys => Tried(Insists, ""),
         Column::SecondHandscope
@@ -269,7 +286,10 @@ const fn exhibition(column: Column) -> Cell {
         | Column::Disobeys
         | Column::SecondMaster
         | Column::SecondHandscope
-        | Column::ReaderGone => told_by_the_window(column),
+        | Column::ReaderGone
+        | Column::OutputUnread
+        | Column::HolderKilled
+        | Column::HolderFrozen => told_by_the_window(column),
     }
 }
 
@@ -281,7 +301,9 @@ const fn calibration(column: Column) -> Cell {
         }
         Column::SecondMaster => Tried(NothingMore(0), ""),
         Column::SecondHandscope => Tried(NothingMore(5000), ""),
-        Column::ReaderGone => NO_STDOUT,
+        Column::ReaderGone | Column::OutputUnread | Column::HolderKilled | Column::HolderFrozen => {
+            told_by_the_window(column)
+        }
         Column::Frozen
         | Column::Asleep
         | Column::LinkLost
@@ -312,6 +334,8 @@ const fn trial(column: Column) -> Cell {
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
         Column::FaultOrHeat => Tried(HeldAtTheEnd(1000), "fault"),
         Column::ReaderGone => Tried(Ends, ""),
+        Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
+        Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
     }
 }
 
@@ -331,6 +355,8 @@ const fn follow(column: Column) -> Cell {
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
         Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
+        Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
     }
 }
 
@@ -346,6 +372,9 @@ const fn share(column: Column) -> Cell {
         | Column::OddReplies
         | Column::SecondHandscope
         | Column::Asleep
+        | Column::OutputUnread
+        | Column::HolderKilled
+        | Column::HolderFrozen
         | Column::Disobeys => follow(column),
         Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "lost"),
         Column::PowerCycled => Tried(Rests, "lost"),
@@ -373,6 +402,9 @@ const fn stdio(column: Column) -> Cell {
         | Column::Replugged
         | Column::PowerCycled
         | Column::SecondMaster
+        | Column::OutputUnread
+        | Column::HolderKilled
+        | Column::HolderFrozen
         | Column::FaultOrHeat => share(column),
     }
 }
@@ -383,8 +415,12 @@ const fn params(column: Column) -> Cell {
         Column::Frozen | Column::DisplayLost => NO_WINDOW,
         Column::SecondMaster => CannotBe("another controller moves joints, and nothing here does"),
         Column::Panic => NO_PANIC,
+        Column::HolderKilled | Column::HolderFrozen => {
+            CannotBe("nothing moves, so that no process watches over it")
+        }
         Column::Signal
         | Column::Killed
+        | Column::OutputUnread
         | Column::Asleep
         | Column::LinkLost
         | Column::Replugged

@@ -5,7 +5,7 @@ mod ask;
 mod pipe;
 mod refused;
 
-use crate::cli::out::say;
+use crate::cli::out::{Out, say};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::cli::share::stdio::ask::{Ask, Asked, MoveAsk};
@@ -100,7 +100,7 @@ struct Right {
 
 struct Script<'a> {
     hand: StdioHand<'a>,
-    told: Told,
+    told: Told<'a>,
     seen: HandSample,
     grip: GripEstimator,
     /// Records that were missed, as far as that was told.
@@ -111,19 +111,20 @@ struct Script<'a> {
     task: Option<Task>,
     recording: Option<SideRecording>,
     /// The recording that is being ended, and whom that is told to.
-    ending: Option<(Value, BoxFuture<'static, ()>)>,
+    ending: Option<(Value, BoxFuture<'static, anyhow::Result<()>>)>,
     is_live: bool,
 }
 
 /// Serves until standard input ends, nobody reads standard output, or the user ends it. A hand that may be moved is stopped.
-pub(crate) async fn serve(
-    hand: StdioHand<'_>,
+pub(crate) async fn serve<'a>(
+    out: &'a mut Out,
+    hand: StdioHand<'a>,
     interrupted: impl Future<Output = ()>,
 ) -> anyhow::Result<()> {
     let mut lines = pipe::lines();
     let mut records = hand.link.records();
     let mut script = Script {
-        told: Told::stdout()?,
+        told: Told::to(out),
         seen: HandSample::default(),
         grip: session::grip_estimator(hand.endpoint),
         missed: 0,
@@ -167,7 +168,7 @@ impl Script<'_> {
                     None => return Ok(()),
                 },
                 Some(done) = task => self.finish(done)?,
-                Some(()) = ending => self.ended()?,
+                Some(whole) = ending => self.ended(whole)?,
                 record = records.next() => match record {
                     Some(record) => self.take(record, records)?,
                     None => return Ok(()),
@@ -199,13 +200,14 @@ impl Script<'_> {
         } else {
             Ok(())
         };
+        let mut recorded = Ok(());
         if let Some(recording) = self.recording.take() {
-            recording.end_here().await;
+            recorded = recording.end_here().await;
         }
         if let Some((_id, ending)) = self.ending.take() {
-            ending.await;
+            recorded = recorded.and(ending.await);
         }
-        done
+        SideRecording::and(done, recorded)
     }
 
     /// Whether the hand may go on to where the program sent it, also after a link that was lost and is back; unless another moves it.
@@ -543,10 +545,11 @@ impl Script<'_> {
         )
     }
 
-    /// A recording is whole.
-    fn ended(&mut self) -> Result<(), NobodyReads> {
+    /// A recording is over, and whole if that is so.
+    fn ended(&mut self, whole: anyhow::Result<()>) -> Result<(), NobodyReads> {
+        let whole = whole.map_err(|why| Refused::new(RefusalKind::Refused, format!("{why:#}")));
         match self.ending.take() {
-            Some((id, _)) => self.reply(&id, Ok(json!({}))),
+            Some((id, _)) => self.reply(&id, whole.map(|()| json!({}))),
             None => Ok(()),
         }
     }
@@ -620,10 +623,6 @@ impl Script<'_> {
                 }
                 return Ok(());
             }
-            Ok(FollowEnd::Hot(heat)) => Refused::new(
-                RefusalKind::Ended(Disarmed::Hot),
-                format!("{heat}: the hand was stopped"),
-            ),
             Ok(FollowEnd::Lease(end)) => end.into(),
         };
         self.lose(&lost)

@@ -1,21 +1,13 @@
-//! Standard input and output as lines, each on a thread of its own: a program that does not read holds up neither the hand nor
-//! its stop. What it does not read in time is left out and counted.
+//! Standard input and output as lines: a program that does not read holds up neither the hand nor its stop. What it does not read
+//! in time is left out and counted.
 
-use anyhow::Context as _;
-use serde_json::{Value, json};
-use std::fs::File;
-use std::io::{self, BufRead as _, BufWriter, Read as _, Write as _};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use crate::cli::out::Out;
+use serde_json::Value;
+use std::io::{self, BufRead as _, Read as _};
 use std::time::Duration;
 use tokio::sync::mpsc;
-use tokio::sync::mpsc::error::TrySendError;
 use tokio::time::Instant;
 
-/// Lines that may wait to be read: a second of states at full rate …
-const WAITING_MAX: usize = 1024;
-/// … and so many of them are for answers alone.
-const FOR_ANSWERS: usize = 256;
 /// Longest line that is taken, bytes.
 const LINE_MAX: u64 = 64 * 1024;
 /// Lines that may wait to be obeyed.
@@ -48,35 +40,25 @@ pub(crate) fn lines() -> mpsc::Receiver<Vec<u8>> {
 pub(crate) struct NobodyReads;
 
 /// Standard output.
-pub(crate) struct Told {
-    lines: mpsc::Sender<String>,
-    written: Arc<AtomicU64>,
-    /// How much was written when it was looked last, and since when no more.
+pub(crate) struct Told<'a> {
+    out: &'a mut Out,
+    /// How much was read when it was looked last, and since when no more.
     stood: (u64, Instant),
-    /// States that were left out since that was told.
-    lost: u64,
 }
 
-impl Told {
-    /// Must be called within a tokio runtime.
-    pub(crate) fn stdout() -> anyhow::Result<Self> {
-        let out = own_stdout().context("cannot write to standard output")?;
-        let (lines, waiting) = mpsc::channel(WAITING_MAX);
-        let written = Arc::new(AtomicU64::new(0));
-        let counted = Arc::clone(&written);
-        std::thread::spawn(move || write(out, waiting, &counted));
-        Ok(Self {
-            lines,
-            written,
+impl<'a> Told<'a> {
+    pub(crate) fn to(out: &'a mut Out) -> Self {
+        // At the end the program may be gone; the hand was stopped then.
+        out.end_without_reader();
+        Self {
+            out,
             stood: (0, Instant::now()),
-            lost: 0,
-        })
+        }
     }
 
     /// Tells something that must not get lost.
     pub(crate) fn tell(&mut self, what: &Value) -> Result<(), NobodyReads> {
-        let sent = self.lines.try_send(what.to_string());
-        sent.map_err(|_full_or_closed| NobodyReads)
+        self.out.object(what).map_err(|_full_or_closed| NobodyReads)
     }
 
     /// Tells a state, or counts it where there is no room.
@@ -85,69 +67,17 @@ impl Told {
         state: impl FnOnce() -> Value,
         missed: u64,
     ) -> Result<(), NobodyReads> {
-        self.lost += missed;
-        if self.lines.capacity() <= FOR_ANSWERS {
-            self.lost += 1;
-            return Ok(());
-        }
-        if self.lost > 0 {
-            self.tell(&json!({"lost": self.lost}))?;
-            self.lost = 0;
-        }
-        match self.lines.try_send(state().to_string()) {
-            Ok(()) => Ok(()),
-            Err(TrySendError::Full(_)) => {
-                self.lost += 1;
-                Ok(())
-            }
-            Err(TrySendError::Closed(_)) => Err(NobodyReads),
-        }
+        self.out.missed(missed);
+        let told = self.out.stream_object(&state());
+        told.map_err(|_closed| NobodyReads)
     }
 
     /// Whether lines wait that were not taken for too long.
     pub(crate) fn is_stuck(&mut self) -> bool {
-        let written = self.written.load(Ordering::Relaxed);
-        let waits = self.lines.capacity() < self.lines.max_capacity();
-        if !waits || written != self.stood.0 {
-            self.stood = (written, Instant::now());
+        let (waiting, read) = self.out.progress();
+        if waiting == 0 || read != self.stood.0 {
+            self.stood = (read, Instant::now());
         }
         self.stood.1.elapsed() > TAKES_WITHIN
     }
-}
-
-/// Writes what comes; the reader gets it as soon as nothing more waits.
-fn write(out: File, mut waiting: mpsc::Receiver<String>, counted: &AtomicU64) {
-    let mut out = BufWriter::new(out);
-    let mut next = waiting.blocking_recv();
-    while let Some(line) = next {
-        if writeln!(out, "{line}").is_err() {
-            return;
-        }
-        counted.fetch_add(1, Ordering::Relaxed);
-        next = match waiting.try_recv() {
-            Ok(line) => Some(line),
-            Err(_none_waits) => {
-                if out.flush().is_err() {
-                    return;
-                }
-                waiting.blocking_recv()
-            }
-        };
-    }
-}
-
-/// The standard library's own is locked by the command.
-#[cfg(unix)]
-fn own_stdout() -> io::Result<File> {
-    use std::os::fd::AsFd as _;
-    io::stdout().as_fd().try_clone_to_owned().map(File::from)
-}
-
-#[cfg(windows)]
-fn own_stdout() -> io::Result<File> {
-    use std::os::windows::io::AsHandle as _;
-    io::stdout()
-        .as_handle()
-        .try_clone_to_owned()
-        .map(File::from)
 }

@@ -1,0 +1,295 @@
+//! Writes standard output and standard error, each on a thread of its own with a bounded queue: a reader that reads slowly, or not
+//! at all, delays neither the hand nor its stop.
+
+use std::io::{self, Write};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Bytes of a stream that may wait: seconds of samples at full rate. A line that finds them used is left out and counted.
+pub(crate) const STREAM_MAX: usize = 1024 * 1024;
+/// Bytes that may wait, results included: the longest report is a small part of it.
+pub(crate) const QUEUE_MAX: usize = 8 * STREAM_MAX;
+/// Bytes of one write: a pipe takes them at once or not at all, so that every read of a slow reader counts as progress.
+const CHUNK: usize = 4096;
+/// Delay before another try where the output takes nothing now.
+const RETRY_DELAY: Duration = Duration::from_millis(5);
+/// Longest wait before [`LineWriter::drained`] asks again whether to wait on.
+const ASK_INTERVAL: Duration = Duration::from_millis(50);
+
+/// How important it is that a line is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum LineClass {
+    /// One of many of the same kind: it may be left out.
+    Stream,
+    /// An answer, a message or a report.
+    Result,
+}
+
+/// Why nothing is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum WriteEnd {
+    /// The output cannot be written, or its reader closed it.
+    #[error("{0}")]
+    Io(io::ErrorKind),
+    /// So much waits to be read that nothing more is taken.
+    #[error("{QUEUE_MAX} bytes wait to be read")]
+    Full,
+}
+
+/// A thread that writes, and its queue.
+pub(crate) struct LineWriter(Arc<Shared>);
+
+#[derive(Default)]
+struct Shared {
+    queue: Mutex<Queue>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Queue {
+    bytes: Vec<u8>,
+    /// Bytes that wait, or are being written.
+    waiting: usize,
+    written: u64,
+    end: Option<io::ErrorKind>,
+    /// Nothing more comes: the thread ends once all is written.
+    closed: bool,
+}
+
+impl LineWriter {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// The system starts no thread.
+    pub(crate) fn start(name: &str, to: impl Write + Send + 'static) -> io::Result<Self> {
+        let writer = Self(Arc::default());
+        let shared = Arc::clone(&writer.0);
+        let thread = std::thread::Builder::new().name(name.to_owned());
+        thread.spawn(move || shared.write(to))?;
+        Ok(writer)
+    }
+
+    /// Queues whole lines. False if there is no room for them: a stream leaves them out, a result tries again or fails.
+    pub(crate) fn push(&self, lines: &[u8], class: LineClass) -> Result<bool, WriteEnd> {
+        let mut queue = self.0.lock();
+        if let Some(end) = queue.end {
+            return Err(WriteEnd::Io(end));
+        }
+        let limit = match class {
+            LineClass::Stream => STREAM_MAX,
+            LineClass::Result => QUEUE_MAX,
+        };
+        // A line that is longer than the limit passes where nothing waits.
+        if queue.waiting > 0 && queue.waiting + lines.len() > limit {
+            return Ok(false);
+        }
+        queue.bytes.extend_from_slice(lines);
+        queue.waiting += lines.len();
+        drop(queue);
+        self.0.changed.notify_all();
+        Ok(true)
+    }
+
+    /// Waits for room, or the end of the output. Not for a thread that runs links.
+    pub(crate) fn wait_for_room(&self) {
+        let half = |queue: &mut Queue| queue.end.is_none() && queue.waiting > QUEUE_MAX / 2;
+        let waited = self.0.changed.wait_while(self.0.lock(), half);
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Bytes that wait, and bytes that were written so far.
+    pub(crate) fn progress(&self) -> (usize, u64) {
+        let queue = self.0.lock();
+        (queue.waiting, queue.written)
+    }
+
+    /// How the output ended, if it did.
+    pub(crate) fn check(&self) -> Result<(), WriteEnd> {
+        self.0
+            .lock()
+            .end
+            .map_or(Ok(()), |end| Err(WriteEnd::Io(end)))
+    }
+
+    /// Waits until all is written, or `waits_on` says no, given how long nothing was taken. Gives the bytes that are left.
+    pub(crate) fn drained(
+        &self,
+        mut waits_on: impl FnMut(Duration) -> bool,
+    ) -> Result<usize, WriteEnd> {
+        let mut queue = self.0.lock();
+        let mut progress = (queue.written, Instant::now());
+        while queue.waiting > 0 && queue.end.is_none() {
+            if queue.written != progress.0 {
+                progress = (queue.written, Instant::now());
+            }
+            let left = queue.waiting;
+            drop(queue);
+            if !waits_on(progress.1.elapsed()) {
+                return Ok(left);
+            }
+            let waited = self.0.changed.wait_timeout(self.0.lock(), ASK_INTERVAL);
+            queue = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+        queue.end.map_or(Ok(0), |end| Err(WriteEnd::Io(end)))
+    }
+}
+
+impl Drop for LineWriter {
+    fn drop(&mut self) {
+        self.0.lock().closed = true;
+        self.0.changed.notify_all();
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The thread: writes what waits until no one can add to it, or writing fails.
+    fn write(&self, mut to: impl Write) {
+        loop {
+            let empty = |queue: &mut Queue| queue.bytes.is_empty() && !queue.closed;
+            let waited = self.changed.wait_while(self.lock(), empty);
+            let mut queue = waited.unwrap_or_else(PoisonError::into_inner);
+            let bytes = std::mem::take(&mut queue.bytes);
+            drop(queue);
+            if bytes.is_empty() {
+                return;
+            }
+            if let Err(error) = self.write_all(&mut to, &bytes) {
+                let mut queue = self.lock();
+                queue.end = Some(error.kind());
+                queue.bytes = Vec::new();
+                drop(queue);
+                self.changed.notify_all();
+                return;
+            }
+        }
+    }
+
+    fn write_all(&self, to: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
+        for chunk in bytes.chunks(CHUNK) {
+            let mut rest = chunk;
+            while !rest.is_empty() {
+                match insist(|| to.write(rest))? {
+                    0 => return Err(io::ErrorKind::WriteZero.into()),
+                    len => rest = rest.get(len..).unwrap_or_default(),
+                }
+            }
+            insist(|| to.flush())?;
+            let mut queue = self.lock();
+            queue.waiting = queue.waiting.saturating_sub(chunk.len());
+            queue.written = queue
+                .written
+                .saturating_add(u64::try_from(chunk.len()).unwrap_or(u64::MAX));
+            drop(queue);
+            self.changed.notify_all();
+        }
+        Ok(())
+    }
+}
+
+/// Tries again where a signal came, or where the output takes nothing now: another program that shares it may have set it to that.
+fn insist<T>(mut write: impl FnMut() -> io::Result<T>) -> io::Result<T> {
+    loop {
+        match write() {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                std::thread::sleep(RETRY_DELAY);
+            }
+            done => return done,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+
+    /// Takes what the test lets it take, and tells it.
+    struct Pipe {
+        room: mpsc::Receiver<usize>,
+        taken: mpsc::Sender<Vec<u8>>,
+    }
+
+    impl Write for Pipe {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let room = self
+                .room
+                .recv()
+                .map_err(|_closed| io::ErrorKind::BrokenPipe)?;
+            if room == 0 {
+                return Err(io::ErrorKind::WouldBlock.into());
+            }
+            let len = room.min(bytes.len());
+            self.taken.send(bytes[..len].to_vec()).unwrap();
+            Ok(len)
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    fn piped() -> (LineWriter, mpsc::Sender<usize>, mpsc::Receiver<Vec<u8>>) {
+        let (read, room) = mpsc::channel();
+        let (taken, seen) = mpsc::channel();
+        let writer = LineWriter::start("test", Pipe { room, taken }).unwrap();
+        (writer, read, seen)
+    }
+
+    #[test]
+    fn a_reader_that_does_not_read_costs_stream_lines_and_no_result() {
+        let (writer, _read, _seen) = piped();
+        let line = [b'x'; 64 * 1024];
+        let taken = (0..100).filter(|_| writer.push(&line, LineClass::Stream).unwrap());
+        assert_eq!(taken.count(), STREAM_MAX / line.len());
+        assert_eq!(writer.push(b"result\n", LineClass::Result), Ok(true));
+        let results = (0..1000).filter(|_| writer.push(&line, LineClass::Result).unwrap());
+        assert_eq!(results.count(), (QUEUE_MAX - STREAM_MAX) / line.len() - 1);
+        let left = writer.drained(|stalled| stalled < ASK_INTERVAL);
+        assert!(left.unwrap() > QUEUE_MAX - 2 * line.len());
+    }
+
+    #[test]
+    fn a_slow_reader_gets_everything_in_order() {
+        let (writer, read, seen) = piped();
+        writer.push(b"one\n", LineClass::Stream).unwrap();
+        writer.push(b"two\n", LineClass::Result).unwrap();
+        let slow = std::thread::spawn(move || {
+            let sizes = [0, 1, 0, 2, 3, 0, 1, 1, 9];
+            sizes
+                .into_iter()
+                .take_while(|size| read.send(*size).is_ok())
+                .count()
+        });
+        assert_eq!(writer.drained(|_| true), Ok(0));
+        slow.join().unwrap();
+        assert_eq!(seen.try_iter().flatten().collect::<Vec<_>>(), b"one\ntwo\n");
+        assert_eq!(writer.progress(), (0, 8));
+    }
+
+    #[test]
+    fn a_closed_reader_ends_the_output() {
+        let (writer, read, _seen) = piped();
+        drop(read);
+        writer.push(b"one\n", LineClass::Result).unwrap();
+        let broken = Err(WriteEnd::Io(io::ErrorKind::BrokenPipe));
+        assert_eq!(writer.drained(|_| true).map(|_| ()), broken);
+        assert_eq!(writer.check(), broken);
+        assert_eq!(writer.push(b"two\n", LineClass::Stream).map(|_| ()), broken);
+    }
+
+    #[test]
+    fn the_wait_for_a_reader_ends_when_it_is_told_to() {
+        let (writer, _read, _seen) = piped();
+        writer.push(b"one\n", LineClass::Result).unwrap();
+        let mut asked = 0;
+        let left = writer.drained(|_| {
+            asked += 1;
+            asked < 3
+        });
+        assert_eq!(left, Ok(4));
+    }
+}
