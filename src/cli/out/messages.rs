@@ -12,7 +12,7 @@ use std::time::Duration;
 /// After a signal, output that is not read for this long is given up. It was the user who wanted the end.
 const UNREAD_TIMEOUT: Duration = Duration::from_secs(1);
 /// Output that is read at all is read by then: only later are signals listened for.
-const READ_AT_ONCE: Duration = Duration::from_millis(100);
+pub(crate) const READ_AT_ONCE: Duration = Duration::from_millis(100);
 
 /// Standard error; `None` where no thread can be started for it.
 fn messages() -> Option<&'static LineWriter> {

@@ -8,7 +8,7 @@ mod writer;
 
 pub(crate) use crate::cli::out::messages::{finish_messages, say};
 
-use crate::cli::out::messages::drained;
+use crate::cli::out::messages::{READ_AT_ONCE, drained};
 use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
 use crate::printable;
 use anyhow::{Context as _, bail};
@@ -134,6 +134,12 @@ impl Out {
     /// Fails if what was written before could not be shown. It is shown without this.
     pub(crate) fn flush(&self) -> anyhow::Result<()> {
         self.to.check().map_err(failed)
+    }
+
+    /// Fails if what was written cannot be shown. Gives a reader that reads the time to take it, so not for what moves a hand.
+    pub(crate) fn shown(&self) -> anyhow::Result<()> {
+        let left = self.to.drained(|stalled| stalled < READ_AT_ONCE);
+        left.map(drop).map_err(failed)
     }
 
     /// Bytes that wait to be read, and how many were read so far.

@@ -51,7 +51,7 @@ pub(crate) fn show(
     lines: &[String],
 ) -> anyhow::Result<()> {
     let shown = out.result(as_json, object, lines);
-    let shown = shown.and_then(|()| out.flush());
+    let shown = shown.and_then(|()| out.shown());
     if shown.is_err() {
         lines.iter().for_each(|line| say(line));
     }

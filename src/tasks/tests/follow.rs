@@ -1,11 +1,12 @@
 //! What a source may not keep a hand from that follows it.
 
-use crate::hand::{Angle, Force, Moment, PerDof, Speed};
+use crate::hand::{Angle, Force, HandSample, Moment, PerDof, Speed};
+use crate::inputs::follow::FollowPhase;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Owner};
 use crate::tasks::TaskHand as _;
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
-use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
+use crate::tasks::tests::fake::{Asked, FakeHand, WELL};
 use tokio::sync::{mpsc, watch};
 
 /// Offers that wait at once: whoever sends without a pause always has some.
@@ -32,16 +33,13 @@ async fn a_flood_of_offers_does_not_keep_what_the_hand_says_from_being_heard() {
             speed: PerDof::splat(Speed::GENTLE),
             force: PerDof::splat(Force::GENTLE),
         },
-        seen: WELL.sample(hand.clock.now()),
+        // Nothing is armed before the joints are read.
+        seen: HandSample::default(),
         clock: hand.clock,
     };
     let (offers, offered) = mpsc::channel(FLOOD);
     while offers.try_send(offer(hand.clock.now())).is_ok() {}
-    let hot = Said {
-        celsius: 75,
-        ..WELL
-    };
-    // It says so after the first view.
+    // They are read after the first view.
     let mut is_told = false;
     let taken = || {
         let asked = hand.asked();
@@ -50,17 +48,17 @@ async fn a_flood_of_offers_does_not_keep_what_the_hand_says_from_being_heard() {
             .filter(|asked| matches!(asked, Asked::RunUntil(_)));
         taken.count()
     };
-    let mut taken_before_heat = None;
+    let mut taken_before_it_follows = None;
     let end = follow(&hand, start, offered, |view| {
         if !std::mem::replace(&mut is_told, true) {
-            hand.tells(hot.sample(hand.clock.now()));
+            hand.tells(WELL.sample(hand.clock.now()));
         }
-        if view.heat.is_some() {
-            taken_before_heat.get_or_insert_with(taken);
+        if view.phase == FollowPhase::Following {
+            taken_before_it_follows.get_or_insert_with(taken);
         }
     });
     let end = end.await;
     assert_eq!(end, FollowEnd::Silent);
-    let taken = taken_before_heat.expect("the view shows the heat");
+    let taken = taken_before_it_follows.expect("it follows");
     assert!(taken < FLOOD / 2, "{taken} were taken before the hand");
 }

@@ -9,8 +9,8 @@ use crate::hand::Dof;
 use crate::hand::statistics::{count, mean, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::JointClaim;
-use crate::trials::search::growth::Contact;
 use crate::trials::search::joint::JointModel;
+use crate::trials::search::peak::Contact;
 use crate::trials::search::tolerance::{Assurance, tolerance_factor};
 
 /// A largest peak is no bound to the last gram: readings may miss the top of a peak, and what is carried is a little unsure. So

@@ -5,6 +5,7 @@
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::offset::{Compared, OffsetEvidence};
+use crate::trials::search::peak::{CarriedPeaks, Contact, SeenPeak};
 
 /// Mixtures of the two published shapes that are tried.
 const MIXTURES: u32 = 10;
@@ -38,40 +39,6 @@ const CARRY_MOST: f64 = 2.0;
 /// Then the worst shape is taken, and so much more.
 const STRANGE_MORE: f64 = 1.3;
 
-/// A speed and a threshold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
-    /// Units of SPEED_SET.
-    pub speed: f64,
-    /// FORCE_SET, g.
-    pub threshold_g: f64,
-}
-
-/// The peak of one close.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SeenPeak {
-    pub at: Contact,
-    /// What the force sensor read at rest before it, g.
-    pub offset_g: f64,
-    /// Highest force above that, g.
-    pub peak_g: f64,
-    /// What it may have been more between two readings, g.
-    pub missed_g: f64,
-    /// Whether its readings were as near to each other as they usually are.
-    pub is_certain: bool,
-}
-
-/// The peaks of closes, as they would be at one speed and threshold.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CarriedPeaks {
-    /// All of them, g.
-    pub peaks_g: Vec<f64>,
-    /// Those that were closed with it, g.
-    pub here_g: Vec<f64>,
-    /// How many of all are certain.
-    pub certain: usize,
-}
-
 /// What one joint's closes measured.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PeakGrowth {
@@ -99,6 +66,8 @@ struct Fit {
     /// Standard deviation of the scale.
     unsure: f64,
     misfit: f64,
+    /// The same with one mean close a setting: a shape is wrong by as much in each repeat, so repeats tell no drives apart.
+    misfit_of_settings: f64,
 }
 
 impl PeakGrowth {
@@ -293,9 +262,10 @@ impl PeakGrowth {
         let mixtures =
             mixtures.flat_map(|second| PACES.map(|pace| Shape::Published { second, pace }));
         let shapes: Vec<Shape> = mixtures.chain(POWERS.map(Shape::Late)).collect();
+        let repeats = self.repeats();
         let fits_of = |compared: Compared| -> Vec<Fit> {
             let shapes = shapes.iter();
-            let fits = shapes.filter_map(|shape| self.fit(compared, *shape));
+            let fits = shapes.filter_map(|shape| self.fit(compared, *shape, &repeats));
             fits.collect()
         };
         let all: Vec<Vec<Fit>> = self.evidence.possible().into_iter().map(fits_of).collect();
@@ -309,8 +279,12 @@ impl PeakGrowth {
             let own = all.iter().flatten().filter(|fit| fit.compared == compared);
             own.map(|fit| fit.misfit).reduce(f64::min)
         };
-        self.as_read = misfit_of(Compared::AsRead);
-        self.above_rest = misfit_of(Compared::AboveRest);
+        let evidence_of = |compared: Compared| {
+            let own = all.iter().flatten().filter(|fit| fit.compared == compared);
+            own.map(|fit| fit.misfit_of_settings).reduce(f64::min)
+        };
+        self.as_read = evidence_of(Compared::AsRead);
+        self.above_rest = evidence_of(Compared::AboveRest);
         let trials: f64 = self.seen.iter().map(|_| 1.0).sum();
         self.is_strange = least > STRANGE * trials;
         let possible = all.iter().flatten().filter(|fit| {
@@ -323,23 +297,32 @@ impl PeakGrowth {
         self.repeats_to = self.repeated();
     }
 
+    /// How many closes had the same speed and threshold as each.
+    fn repeats(&self) -> Vec<f64> {
+        let same = |own: &SeenPeak| self.seen.iter().filter(|other| other.at == own.at);
+        let seen = self.seen.iter();
+        seen.map(|own| same(own).map(|_| 1.0).sum()).collect()
+    }
+
     /// The scale by weighted least squares. A peak below what stops the drive tells nothing of what it runs past that.
-    fn fit(&self, compared: Compared, shape: Shape) -> Option<Fit> {
+    fn fit(&self, compared: Compared, shape: Shape, repeats: &[f64]) -> Option<Fit> {
         let noise = self.noise_g + 1.0;
         let (mut xy, mut xx) = (0.0, 0.0);
         let tells = |own: &&SeenPeak| !compared.is_contradicted_by(own, self.noise_g);
-        let points: Vec<(f64, f64, f64)> = self
+        let points: Vec<(f64, (f64, f64, f64))> = self
             .seen
             .iter()
-            .filter(tells)
-            .map(|own| {
+            .zip(repeats)
+            .filter(|(own, _)| tells(own))
+            .map(|(own, repeats)| {
                 let over = compared.over_g(own);
                 let error = noise.hypot(SHAPE_ERROR * over).hypot(own.missed_g / 2.0);
                 let peak = own.peak_g + own.missed_g / 2.0;
-                shape.point(own.at.speed, compared.stops_at_in(own), (peak, error))
+                let point = shape.point(own.at.speed, compared.stops_at_in(own), (peak, error));
+                (*repeats, point)
             })
             .collect();
-        for (x, over, weight) in &points {
+        for (_, (x, over, weight)) in &points {
             xy += weight * x * over;
             xx += weight * x * x;
         }
@@ -347,15 +330,19 @@ impl PeakGrowth {
             return None;
         }
         let scale = (xy / xx).max(0.0);
-        let misfits = points
-            .iter()
-            .map(|(x, over, weight)| weight * (over - scale * x).powi(2));
+        let (mut misfit, mut misfit_of_settings) = (0.0, 0.0);
+        for (repeats, (x, over, weight)) in &points {
+            let own = weight * (over - scale * x).powi(2);
+            misfit += own;
+            misfit_of_settings += own / repeats;
+        }
         Some(Fit {
             compared,
             shape,
             scale,
             unsure: 1.0 / xx.sqrt(),
-            misfit: misfits.sum(),
+            misfit,
+            misfit_of_settings,
         })
     }
 

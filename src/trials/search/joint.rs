@@ -4,8 +4,9 @@ use crate::hand::Dof;
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::{ComparedThreshold, NoClaim};
-use crate::trials::search::growth::{Contact, PeakGrowth, SeenPeak};
+use crate::trials::search::growth::PeakGrowth;
 use crate::trials::search::offset::Compared;
+use crate::trials::search::peak::{Contact, SeenPeak};
 
 /// Scatter of a contact as published, units of ANGLE_ACT (7.5 counts of the position), and for how many closes that counts.
 const CONTACT_SCATTER: f64 = 3.75;

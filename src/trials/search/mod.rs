@@ -14,6 +14,7 @@ mod joint;
 #[cfg(test)]
 mod late_stops;
 pub mod offset;
+pub mod peak;
 pub mod settings_search;
 pub mod tolerance;
 

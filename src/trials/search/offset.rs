@@ -1,7 +1,7 @@
 //! What a drive compares its force threshold with: what its sensor reads, or what that is more than at rest. The manual says the
 //! first (2.6.12); a peak below the threshold of one of them tells. Pure.
 
-use crate::trials::search::growth::SeenPeak;
+use crate::trials::search::peak::SeenPeak;
 use serde::Serialize;
 
 /// A peak is told from a threshold by so many times the noise, and some grams more.

@@ -14,9 +14,9 @@ use crate::trials::search::finding::{
     Untold,
 };
 use crate::trials::search::goal::{GoalError, LIMIT_MIN_G, SearchGoal, whole};
-use crate::trials::search::growth::Contact;
 use crate::trials::search::joint::JointModel;
 use crate::trials::search::offset::Compared;
+use crate::trials::search::peak::Contact;
 use crate::trials::search::tolerance::{Assurance, FREE_95, tolerance_factor};
 use crate::trials::summary::Trial;
 use std::time::Duration;
