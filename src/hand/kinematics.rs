@@ -22,6 +22,17 @@ pub enum Side {
 }
 
 impl Side {
+    /// Motors of both hands, where they are numbered together as Unitree's messages do.
+    pub const MOTORS: usize = 2 * Dof::ALL.len();
+
+    /// The first of the motors of this hand: the right hand's come first.
+    pub const fn first_motor(self) -> usize {
+        match self {
+            Self::Right => 0,
+            Self::Left => Dof::ALL.len(),
+        }
+    }
+
     /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {

@@ -4,7 +4,6 @@
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment};
-use crate::inputs::dds::motors::{MOTORS, first_motor};
 use crate::record::file::format::cdr;
 use crate::transport::dds::DdsTopic;
 use serde::{Deserialize, Serialize};
@@ -88,7 +87,7 @@ impl MotorPair {
         let Some(Motors { states }) = cdr::decode(bytes) else {
             return;
         };
-        if states.len() != MOTORS {
+        if states.len() != Side::MOTORS {
             return;
         }
         let is_measured = |motor: &Motor| motor.reserve == [MEASURED, 0];
@@ -99,7 +98,7 @@ impl MotorPair {
             Side::Left => Side::Right,
             Side::Right => Side::Left,
         };
-        let half = states.get(first_motor(other)..).unwrap_or_default();
+        let half = states.get(other.first_motor()..).unwrap_or_default();
         if let Some(half) = half.first_chunk()
             && half.iter().all(is_measured)
         {
@@ -172,7 +171,7 @@ mod tests {
         let pair = MotorPair::new(Side::Right);
         let message = pair.message(&ANGLES, &CELSIUS, ms(0)).unwrap();
         // Head, count, and for each motor: mode, padding, seven numbers, temperature, padding, three words.
-        assert_eq!(message.len(), 4 + 4 + MOTORS * 48);
+        assert_eq!(message.len(), 4 + 4 + Side::MOTORS * 48);
         let ring = &message[8 + 48..][..48];
         assert_eq!(ring[4..8], 1.0_f32.to_le_bytes());
         assert_eq!((ring[0], ring[32]), (0, 32));
@@ -216,7 +215,7 @@ mod tests {
                 lost: 0,
                 ..Motor::UNKNOWN
             };
-            MOTORS
+            Side::MOTORS
         ];
         pair.heard(&cdr::encode(&Motors { states }), ms(100));
         assert_eq!(pair.message(&ANGLES, &CELSIUS, ms(2099)), None);

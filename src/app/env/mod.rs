@@ -7,11 +7,11 @@ pub(crate) mod running;
 
 use crate::app::env::choose::ChooseFile;
 use crate::app::env::reveal::Reveal;
-pub use crate::app::env::running::LostSteps;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What the program stands on.
 #[derive(Clone)]
@@ -34,4 +34,19 @@ pub struct Env {
     pub documents: Option<PathBuf>,
     /// What the window did not look at in time.
     pub lost_steps: LostSteps,
+}
+
+/// Steps of tasks that the window did not look at in time. Copies are the same count.
+#[derive(Debug, Clone, Default)]
+pub struct LostSteps(Arc<AtomicU64>);
+
+impl LostSteps {
+    pub(crate) fn add(&self, count: u64) {
+        self.0.fetch_add(count, Ordering::Relaxed);
+    }
+
+    /// How many since the last call.
+    pub(crate) fn take(&self) -> u64 {
+        self.0.swap(0, Ordering::Relaxed)
+    }
 }

@@ -1,31 +1,14 @@
 //! A task that runs beside the window: its steps with their times, and its end.
 
-use crate::app::env::Env;
+use crate::app::env::{Env, LostSteps};
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::broadcast;
 use tokio::sync::broadcast::error::TryRecvError;
 use tokio_util::task::AbortOnDrop;
 
 /// Steps that may wait for the window: five seconds of a hand that follows. A window that does not look for longer gets the newest.
 const STEPS_MAX: usize = 1024;
-
-/// Steps of tasks that the window did not look at in time. Copies are the same count.
-#[derive(Debug, Clone, Default)]
-pub struct LostSteps(Arc<AtomicU64>);
-
-impl LostSteps {
-    fn add(&self, count: u64) {
-        self.0.fetch_add(count, Ordering::Relaxed);
-    }
-
-    /// How many since the last call.
-    pub(crate) fn take(&self) -> u64 {
-        self.0.swap(0, Ordering::Relaxed)
-    }
-}
 
 /// A task under way. Dropping it breaks it off.
 #[derive(Debug)]

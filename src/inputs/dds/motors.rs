@@ -11,8 +11,6 @@ use crate::record::file::format::cdr;
 use crate::transport::dds::DdsTopic;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Motors of both hands.
-pub(crate) const MOTORS: usize = 2 * Dof::ALL.len();
 /// Twelve motors of 36 bytes and the head, with room for fields of later versions.
 const BYTES_MAX: usize = 1024;
 
@@ -21,14 +19,6 @@ pub fn topic() -> DdsTopic {
     DdsTopic {
         name: "rt/inspire/cmd".into(),
         type_name: "unitree_go::msg::dds_::MotorCmds_".into(),
-    }
-}
-
-/// The first motor of a hand.
-pub(crate) const fn first_motor(side: Side) -> usize {
-    match side {
-        Side::Right => 0,
-        Side::Left => Dof::ALL.len(),
     }
 }
 
@@ -56,14 +46,14 @@ pub fn parse(bytes: &[u8], side: Side) -> Result<CtrlMessage, CtrlFault> {
         return Err(CtrlFault::Malformed);
     }
     let raw: MotorCmds = cdr::decode(bytes).ok_or(CtrlFault::Malformed)?;
-    if raw.cmds.len() != MOTORS {
+    if raw.cmds.len() != Side::MOTORS {
         return Err(CtrlFault::Motors);
     }
     let mut aims: PerDof<Option<Angle>> = PerDof::splat(None);
     let mut hasher = DefaultHasher::new();
     for (dof, motor) in Dof::ALL
         .into_iter()
-        .zip(raw.cmds.iter().skip(first_motor(side)))
+        .zip(raw.cmds.iter().skip(side.first_motor()))
     {
         aims[dof] = Some(angle_of(f64::from(motor.q)).ok_or(CtrlFault::Range)?);
         motor.q.to_bits().hash(&mut hasher);

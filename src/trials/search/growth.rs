@@ -299,9 +299,11 @@ impl PeakGrowth {
 
     /// How many closes had the same speed and threshold as each.
     fn repeats(&self) -> Vec<f64> {
-        let same = |own: &SeenPeak| self.seen.iter().filter(|other| other.at == own.at);
-        let seen = self.seen.iter();
-        seen.map(|own| same(own).map(|_| 1.0).sum()).collect()
+        let same = |own: &SeenPeak| {
+            let same = self.seen.iter().filter(|other| other.at == own.at);
+            same.map(|_| 1.0).sum()
+        };
+        self.seen.iter().map(same).collect()
     }
 
     /// The scale by weighted least squares. A peak below what stops the drive tells nothing of what it runs past that.
