@@ -290,7 +290,7 @@ fn a_dead_drive_is_a_result_of_its_own_and_no_success() {
     .concat();
     let ended = run(&[&line[..], &["--json"]].concat());
     assert_eq!(ended.code, Some(1), "{}", ended.err);
-    assert!(ended.err.contains("index never moved"), "{}", ended.err);
+    assert!(ended.err.contains("never moved"), "{}", ended.err);
     let joint = &ended.lines()[0]["trial"]["joints"][0];
     assert_eq!(joint["end_status"], "dead_drive");
     assert_eq!(joint["dead_drive"], true);

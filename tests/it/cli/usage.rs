@@ -216,7 +216,7 @@ fn a_reader_that_went_away_ends_it_quietly() {
 }
 
 #[test]
-fn a_slow_reader_slows_the_reads_and_loses_nothing() {
+fn a_slow_reader_slows_no_reads_and_lost_lines_are_counted() {
     let args = [
         "watch",
         "--hand",
@@ -237,7 +237,10 @@ fn a_slow_reader_slows_the_reads_and_loses_nothing() {
         .collect();
     let stats = &lines[lines.len() - 1]["stats"];
     assert_eq!(stats["dropped_samples"], 0, "{stats}");
-    assert_eq!(stats["state_reads"], lines.len() - 1, "{stats}");
+    let lost = lines.iter().filter_map(|line| line["lost"].as_u64());
+    let (gaps, lost) = lost.fold((0, 0), |(gaps, all), lost| (gaps + 1, all + lost));
+    let shown = lines.len() as u64 - 1 - gaps;
+    assert_eq!(stats["state_reads"], shown + lost, "{stats}");
     assert!(lines.len() > 50, "{stats}");
 }
 

@@ -422,7 +422,7 @@ async fn a_request_that_the_lost_link_took_along_is_told() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_stop_while_the_link_is_gone_says_so_and_nothing_goes_out_later() {
+async fn a_stop_while_the_link_is_gone_says_so_and_goes_first_when_it_is_back() {
     let (mut bench, line) = Bench::on_line("rs485:x", 0).await;
     bench.arm().await;
     bench.act(Action::Target(Dof::Index, Angle::MIN));
@@ -438,7 +438,14 @@ async fn a_stop_while_the_link_is_gone_says_so_and_nothing_goes_out_later() {
     assert_eq!(bench.hand().connection.status.state, LinkState::Monitoring);
     assert!(!bench.hand().connection.is_armed());
     assert!(bench.told().contains(&NoticeKind::Reconnected));
-    assert_eq!(bench.addresses(), [0_u16; 0]);
+    let told = bench.addresses();
+    assert!(
+        !told.is_empty() && told.iter().all(|address| *address == 1486),
+        "{told:?}"
+    );
+    let before = bench.angle(Dof::Index);
+    bench.run(1000).await;
+    assert_eq!(bench.angle(Dof::Index), before);
 }
 
 #[tokio::test(start_paused = true)]

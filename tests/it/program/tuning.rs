@@ -206,7 +206,7 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
     for (break_off, why) in ways {
         let mut bench = running().await;
         break_off(&mut bench);
-        bench.run(3000).await;
+        bench.run(5000).await;
         check_ended(&bench, why);
         bench.forget();
         bench.run(3000).await;
@@ -217,7 +217,8 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
     start(&mut bench);
     bench.run(300).await;
     spoil(&line, Trouble::Gone(Duration::from_secs(5)));
-    bench.run(3000).await;
+    // A stop stays pending for three seconds.
+    bench.run(5000).await;
     check_ended(&bench, Abort::LinkLost);
 }
 
