@@ -388,6 +388,10 @@ const fn share(column: Column) -> Cell {
 const fn stdio(column: Column) -> Cell {
     match column {
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        // A fault disarms: the other joints finish.
+        Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
+        // A process that stood still did not sleep: it holds the hand, and follows again what is sent then.
+        Column::Asleep => Tried(NothingWrong, ""),
         Column::Signal
         | Column::Panic
         | Column::Killed
@@ -396,7 +400,6 @@ const fn stdio(column: Column) -> Cell {
         | Column::FeedbackFrozen
         | Column::OddReplies
         | Column::SecondHandscope
-        | Column::Asleep
         | Column::Disobeys
         | Column::LinkLost
         | Column::Replugged
@@ -404,8 +407,7 @@ const fn stdio(column: Column) -> Cell {
         | Column::SecondMaster
         | Column::OutputUnread
         | Column::HolderKilled
-        | Column::HolderFrozen
-        | Column::FaultOrHeat => share(column),
+        | Column::HolderFrozen => share(column),
     }
 }
 

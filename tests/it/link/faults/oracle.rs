@@ -18,6 +18,8 @@ use std::time::Duration;
 const STAMP_STEP: Duration = Duration::from_micros(100);
 /// Hold frames are at most this far apart: the repeat, and one exchange that was under way …
 const HOLD_GAP_MAX: Duration = Duration::from_millis(40 + 350);
+/// … and over Modbus TCP, once replies were late, the longest wait for an acknowledgement and for a pose between two frames.
+const HOLD_GAP_MAX_SLOW: Duration = Duration::from_millis(40 + 425 + 425);
 /// … which over CAN is a read of eleven pieces through an adapter, and a hold of two.
 const HOLD_GAP_MAX_PIECES: Duration = Duration::from_millis(40 + 500 + 160);
 /// Without faults every group is newer than this, on the slowest wire: forty pieces of a fingertip sweep at 15 ms each.
@@ -606,10 +608,10 @@ impl Witness {
             .iter()
             .find(|(at, state)| *at > pressed && *state != LinkState::Holding);
         let end = end.map_or(lost, |(at, _)| (*at).min(lost));
-        let longest = if self.protocol.in_pieces() {
-            HOLD_GAP_MAX_PIECES
-        } else {
-            HOLD_GAP_MAX
+        let longest = match self.protocol {
+            Protocol::Tcp => HOLD_GAP_MAX_SLOW,
+            protocol if protocol.in_pieces() => HOLD_GAP_MAX_PIECES,
+            _ => HOLD_GAP_MAX,
         };
         let mut last = pressed;
         for frame in sent
