@@ -227,7 +227,7 @@ impl<'a> Watch<'a> {
             }
             self.out.object(&line)?;
         } else {
-            self.out.line(&stats_text(&stats, elapsed))?
+            self.out.lines(stats_text(&stats, elapsed).lines())?
         }
         self.out.flush()
     }

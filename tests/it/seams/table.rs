@@ -323,9 +323,7 @@ const fn trial(column: Column) -> Cell {
         Column::Panic => NO_PANIC,
         Column::Frozen | Column::DisplayLost => NO_WINDOW,
         Column::Asleep => Tried(NothingMore(500), ""),
-        Column::LinkLost | Column::Replugged => {
-            Tried(NothingMore(0), "the link was lost|feedback shows rest")
-        }
+        Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "feedback shows rest"),
         Column::PowerCycled => Tried(Rests, "the link was lost"),
         Column::FeedbackFrozen => Tried(Held(1500), ""),
         Column::OddReplies => Tried(NothingWrong, ""),

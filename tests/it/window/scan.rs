@@ -163,11 +163,11 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
     bench.run(200);
     bench.hand(SimHand::switch_off);
     bench.click_button("Scan");
-    bench.until(4000, is_done);
+    bench.until(20_000, is_done);
     assert_eq!(
         bench.dials(),
-        dials + 2,
-        "two units of one address, no port"
+        dials + 12,
+        "two units of one address, ten tries of a device server there, no port"
     );
     assert!(
         !bench

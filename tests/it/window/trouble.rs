@@ -147,7 +147,7 @@ fn a_hand_that_moved_on_while_the_link_was_gone_can_be_held_when_it_is_back() {
 }
 
 #[test]
-fn a_stop_pressed_while_the_link_is_gone_does_not_write_later() {
+fn a_stop_pressed_while_the_link_is_gone_holds_the_hand_when_it_is_back() {
     let mut bench = Bench::armed();
     let armed = bench.writes().len();
     bench.unplug();
@@ -155,10 +155,13 @@ fn a_stop_pressed_while_the_link_is_gone_does_not_write_later() {
     bench.click_button("STOP");
     bench.wait(1500);
     assert!(bench.shows("LINK LOST"));
+    let before = Dof::ALL.map(|dof| bench.angle(dof));
     bench.plug();
     bench.wait(2500);
     assert!(bench.shows("Link state: Monitoring"));
-    assert_eq!(bench.writes().len(), armed);
+    let held = bench.writes().split_off(armed);
+    assert!(!held.is_empty() && held.iter().all(|write| write.address == ANGLE_SET));
+    assert_eq!(Dof::ALL.map(|dof| bench.angle(dof)), before);
 }
 
 #[test]

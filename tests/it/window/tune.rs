@@ -566,7 +566,8 @@ fn a_fault_ends_it() {
 fn a_lost_link_ends_it() {
     let mut bench = running();
     bench.unplug();
-    bench.wait(1500);
+    // A stop stays pending for three seconds.
+    bench.wait(5000);
     let why = ended_by(&bench);
     assert!(
         matches!(why, Abort::LinkLost | Abort::NotRead { .. }),
