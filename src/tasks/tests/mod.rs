@@ -3,7 +3,6 @@
 mod booth;
 mod exhibit;
 mod fake;
-mod follow;
 mod grip;
 mod move_to;
 mod place;
