@@ -334,11 +334,14 @@ impl Session {
             return Ok(IdentityReply::Unasked);
         };
         let (limit, asked) = (self.reply_limit(bus, span.len), self.now());
-        match bus.read(span, limit).await {
-            Ok(bytes) => {
+        let wanted = Arc::clone(&self.ends.wanted);
+        let urgent = || wanted.borrow().stop;
+        match bus.read_unless(span, limit, &urgent).await {
+            Ok(Some(bytes)) => {
                 self.answered(self.now().since(asked));
                 Ok(IdentityReply::Bytes(bytes))
             }
+            Ok(None) => Ok(IdentityReply::Unasked),
             Err(error) => self.unanswered(bus, error).await,
         }
     }

@@ -27,8 +27,6 @@ const HOLDER_TIMEOUT: Duration = Duration::from_millis(250);
 const STALL_FORGIVEN: Duration = Duration::from_secs(1);
 /// Bytes of an acknowledgement's data.
 const ACK_LEN: u16 = 1;
-/// An angle this old still tells where its joint is by now, from what it was told; an older one is read before a hold.
-const ANGLE_NEAR: Duration = Duration::from_millis(500);
 
 impl Session {
     /// Serves the wire until it is lost or the handle is gone.
@@ -433,10 +431,9 @@ impl Session {
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
         let seen = hold_targets(&self.sample, now);
-        // On a slow line or way the newest pose is old: where the joints must be by now follows from what they were told.
+        // On a slow way the newest pose is old: where the joints must be by now follows from what they were told.
         let is_slow = self.slowness.slowest().is_some();
-        let is_near = is_slow || self.sample.angles_fresh(now, ANGLE_NEAR);
-        let is_old = is_near && !self.sample.angles_fresh(now, ANGLE_FRESH);
+        let is_old = is_slow && !self.sample.angles_fresh(now, ANGLE_FRESH);
         PerDof::from_fn(|dof| {
             let doubted = self.feedback.hold_target(dof, now);
             let expected = || self.feedback.expected(dof, now).filter(|_| is_old);
