@@ -126,6 +126,8 @@ enum Sign {
 pub(crate) struct SeriesEvidence {
     signs: [Option<Sign>; SeriesQuestion::ALL.len()],
     has_fingertips: bool,
+    /// Questions of the present round that had their turn.
+    asked: usize,
 }
 
 impl SeriesEvidence {
@@ -154,6 +156,18 @@ impl SeriesEvidence {
     pub(crate) fn needs(&self, question: SeriesQuestion) -> bool {
         let is_open = self.unanswered().any(|open| open == question);
         is_open && self.verdict() == Series::Unknown
+    }
+
+    /// The next question of this round whose answer is missing; `None` once, at the end of each round.
+    pub(crate) fn next_question(&mut self) -> Option<SeriesQuestion> {
+        while let Some(question) = SeriesQuestion::ALL.get(self.asked) {
+            self.asked += 1;
+            if self.needs(*question) {
+                return Some(*question);
+            }
+        }
+        self.asked = 0;
+        None
     }
 
     /// What was all answered and gave no verdict is asked anew: a hand that moves or warms up tells more.

@@ -98,6 +98,8 @@ pub(crate) struct Session {
     pub(crate) evidence: SeriesEvidence,
     /// When it is asked for more.
     pub(crate) evidence_due: Moment,
+    /// The last step asked for evidence: the next one does not.
+    pub(crate) asked_evidence: bool,
     closed_wires: BusCounts,
     /// What holds the hand if this program ends.
     pub(crate) guard: Arc<MotionGuard>,
@@ -140,6 +142,7 @@ impl Session {
             others: OtherController::default(),
             evidence: SeriesEvidence::default(),
             evidence_due: now,
+            asked_evidence: false,
             closed_wires: BusCounts::default(),
         }
     }

@@ -33,7 +33,8 @@ pub(crate) struct HoldWatch {
     first_sent: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
-    moved: bool,
+    /// No rest is believed before this has passed since the first frame.
+    rest_after: Duration,
     /// The pose was read, or tried to, since the last frame.
     looked: bool,
     /// The first frame for joints in doubt that the hand acknowledged, and the newest.
@@ -52,8 +53,13 @@ pub(crate) struct PendingStop {
 }
 
 impl HoldWatch {
-    /// A stop that is asked for now, of a hand that moves or does not, as far as is known.
-    pub(crate) const fn new(at: Moment, moved: bool) -> Self {
+    /// A stop that is asked for now, of a hand that moves or does not as far as is known. `way_back`: how long its joints need from
+    /// where they must be by now to where they were seen last.
+    pub(crate) fn new(at: Moment, moved: bool, way_back: Duration) -> Self {
+        let rest_after = match moved {
+            true => way_back.max(MOVED_REST_AFTER),
+            false => way_back,
+        };
         Self {
             at,
             sent: 0,
@@ -63,7 +69,7 @@ impl HoldWatch {
             first_sent: None,
             last_sent: None,
             still_since: None,
-            moved,
+            rest_after,
             looked: true,
             doubted_acknowledged: None,
             has_ceased: false,
@@ -71,21 +77,21 @@ impl HoldWatch {
     }
 
     /// A stop that was asked for at `at` over a link that was lost, of a hand that answers again now.
-    pub(crate) const fn resumed(at: Moment, now: Moment) -> Self {
+    pub(crate) fn resumed(at: Moment, now: Moment) -> Self {
         Self {
             follows_from: now,
             looked: false,
-            ..Self::new(at, true)
+            ..Self::new(at, true, Duration::ZERO)
         }
     }
 
     /// The same stop, begun anew: it became known where a joint is.
-    pub(crate) const fn again(&self, now: Moment) -> Self {
+    pub(crate) fn again(&self, now: Moment) -> Self {
         Self {
             sent: self.sent,
             alarmed: self.alarmed,
             follows_from: now,
-            ..Self::new(self.at, true)
+            ..Self::new(self.at, true, Duration::ZERO)
         }
     }
 
@@ -162,8 +168,8 @@ impl HoldWatch {
         }
         match self.still_since {
             Some((since, from)) if near(&from, &angle.value, doubted) => {
-                let is_back = angle.asked.since(first_sent) >= MOVED_REST_AFTER;
-                angle.asked.since(since) >= REST_OVER && (is_back || !self.moved)
+                let is_back = angle.asked.since(first_sent) >= self.rest_after;
+                angle.asked.since(since) >= REST_OVER && is_back
             }
             _ => {
                 self.still_since = Some((angle.received, angle.value));
@@ -209,7 +215,7 @@ mod tests {
 
     /// Feeds an angle each 10 ms and gives the time at which rest was seen.
     fn rest_at(angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
-        rest_of(HoldWatch::new(ms(0), false), angle_at, sent)
+        rest_of(HoldWatch::new(ms(0), false, Duration::ZERO), angle_at, sent)
     }
 
     fn rest_of(mut watch: HoldWatch, angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
@@ -231,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_hand_that_moved_rests_only_once_it_may_be_back_from_where_it_was_not_seen() {
-        let moved = || HoldWatch::new(ms(0), true);
+        let moved = || HoldWatch::new(ms(0), true, Duration::ZERO);
         let frozen = rest_of(moved(), |_| 500, 0).unwrap();
         assert!((250..=280).contains(&frozen), "{frozen}");
         let late = rest_of(moved(), |t| 500 - i16::try_from(t.min(300)).unwrap(), 0).unwrap();
@@ -254,14 +260,14 @@ mod tests {
 
     #[test]
     fn the_alarm_is_due_after_half_a_second() {
-        let watch = HoldWatch::new(ms(0), false);
+        let watch = HoldWatch::new(ms(0), false, Duration::ZERO);
         assert!(!watch.alarm_due(ms(499)));
         assert!(watch.alarm_due(ms(500)));
     }
 
     #[test]
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
-        let mut watch = HoldWatch::new(ms(7), false);
+        let mut watch = HoldWatch::new(ms(7), false, Duration::ZERO);
         assert_eq!(watch.next_frame(ms(7)), Some(ms(7)));
         watch.frame(&PerDof::splat(Target::Leave), ms(9));
         assert_eq!(watch.next_frame(ms(10)), Some(ms(49)));
@@ -269,7 +275,7 @@ mod tests {
 
     #[test]
     fn frames_for_joints_in_doubt_cease_once_the_hand_had_time_to_obey_and_the_others_rest() {
-        let mut watch = HoldWatch::new(ms(0), true);
+        let mut watch = HoldWatch::new(ms(0), true, Duration::ZERO);
         for t in (0..=240).step_by(40) {
             watch.frame(&PerDof::splat(Target::Leave), ms(t));
             watch.doubted_acknowledged(ms(t));
@@ -286,7 +292,7 @@ mod tests {
     fn the_pose_is_read_once_before_a_frame_that_would_hold_nothing_and_never_over_a_live_link() {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
         let unknown = PerDof::splat(Target::Leave);
-        assert!(!HoldWatch::new(ms(0), true).needs_pose(&unknown));
+        assert!(!HoldWatch::new(ms(0), true, Duration::ZERO).needs_pose(&unknown));
         let mut watch = HoldWatch::resumed(ms(0), ms(60));
         assert!(!watch.needs_pose(&pose(500)));
         assert!(watch.needs_pose(&unknown));
@@ -296,11 +302,11 @@ mod tests {
     #[test]
     fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
-        let mut watch = HoldWatch::new(ms(0), false);
+        let mut watch = HoldWatch::new(ms(0), false, Duration::ZERO);
         assert_eq!(watch.frame(&pose(500), ms(0)), pose(500));
         assert_eq!(watch.frame(&pose(480), ms(40)), pose(480));
         assert_eq!(watch.frame(&pose(470), ms(160)), pose(480));
-        let mut blind = HoldWatch::new(ms(0), false);
+        let mut blind = HoldWatch::new(ms(0), false, Duration::ZERO);
         let unknown = PerDof::splat(Target::Leave);
         assert_eq!(blind.frame(&unknown, ms(0)), unknown);
         assert_eq!(blind.frame(&pose(300), ms(200)), pose(300));

@@ -115,41 +115,46 @@ impl Session {
     async fn ask_series(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
         for question in SeriesQuestion::ALL {
             if self.evidence.needs(question) {
-                self.ask_one(bus, question, until).await?;
+                let reply = self.ask(bus, question.shapes(), until).await?;
+                self.note_evidence(question, &reply);
             }
         }
         self.judge_series()
     }
 
-    async fn ask_one(
-        &mut self,
-        bus: &mut dyn Bus,
-        question: SeriesQuestion,
-        until: Moment,
-    ) -> Result<(), WireEnd> {
-        let shapes = question.shapes();
-        match self.ask(bus, shapes, until).await? {
+    fn note_evidence(&mut self, question: SeriesQuestion, reply: &IdentityReply) {
+        match reply {
             IdentityReply::Bytes(bytes) => {
                 let is_it = |shape: &&Span| usize::from(shape.len) == bytes.len();
-                if let Some(span) = shapes.iter().find(is_it) {
-                    self.evidence.read(question, *span, &bytes);
+                if let Some(span) = question.shapes().iter().find(is_it) {
+                    self.evidence.read(question, *span, bytes);
                 }
             }
             IdentityReply::Refused => self.evidence.refused(question),
             IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => {}
         }
-        Ok(())
     }
 
-    /// Asks for more where that is not clear yet; true if it did.
+    /// Asks one more question where the series is not clear yet; true if it did. A job or a poll has its turn between two.
     pub(crate) async fn identify_further(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
         if self.status.series != Series::Unknown || now < self.evidence_due {
             return Ok(false);
         }
-        self.evidence.begin_again();
-        self.ask_series(bus, now.plus(WITHIN)).await?;
-        self.evidence_due = self.now().plus(EVIDENCE_EACH);
+        if std::mem::take(&mut self.asked_evidence) {
+            return Ok(false);
+        }
+        let Some(question) = self.evidence.next_question() else {
+            self.evidence.begin_again();
+            self.evidence_due = now.plus(EVIDENCE_EACH);
+            return Ok(false);
+        };
+        self.asked_evidence = true;
+        let reply = self
+            .ask_once(bus, question.shapes(), now.plus(WITHIN))
+            .await?;
+        self.note_evidence(question, &reply);
+        self.judge_series()?;
         Ok(true)
     }
 
@@ -330,6 +335,9 @@ impl Session {
             return Ok(IdentityReply::Unasked);
         }
         self.turn(bus).await?;
+        if self.is_stop_wanted() {
+            return Ok(IdentityReply::Unasked);
+        }
         let Some(span) = bus.choose(shapes) else {
             return Ok(IdentityReply::Unasked);
         };

@@ -387,7 +387,11 @@ impl Session {
         }
         // Joints in doubt that were told where to stay are not told again: a deaf one that woke would move.
         if (self.motion.hold).is_none_or(|hold| hold.alarmed && !hold.has_ceased()) {
-            self.motion.hold = Some(HoldWatch::new(now, self.moving.moves(now)));
+            self.motion.hold = Some(HoldWatch::new(
+                now,
+                self.moving.moves(now),
+                self.feedback.way_back(now),
+            ));
             self.motion.waits_for_look = false;
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }

@@ -13,6 +13,9 @@ const STEP: Duration = Duration::from_millis(20);
 /// What is on its way has come so far.
 const UNDER_WAY: i16 = 850;
 
+/// As over a VPN or a relay.
+const SLOW_REPLY: Duration = Duration::from_millis(150);
+
 /// Looks at the joints while time goes by.
 pub(super) struct Witness<'a> {
     mover: &'a mut dyn Mover,
@@ -177,6 +180,41 @@ impl<'a> Witness<'a> {
             Column::SecondHandscope => {
                 self.mover.second_handscope();
                 self.pass(9000);
+            }
+            Column::GatewayRefuses => {
+                hand.refuse();
+                self.pass(2000);
+                hand.silence(false);
+                self.pass(4000);
+            }
+            Column::StopThenLost => {
+                hand.silence(true);
+                self.pass(100);
+                self.mover.stop();
+                self.pass(800);
+                hand.silence(false);
+                self.pass(5000);
+            }
+            Column::RepliesSlow => {
+                hand.delay_replies(SLOW_REPLY);
+                self.pass(600);
+                self.mover.stop();
+                self.pass(5000);
+            }
+            Column::Busy => {
+                let mut rng = fastrand::Rng::with_seed(self.event.micros());
+                for _ in 0..4 {
+                    self.mover.sleep(Duration::from_millis(rng.u64(100..=400)));
+                    self.pass(rng.u64(100..=500));
+                }
+                self.mover.stop();
+                self.pass(5000);
+            }
+            Column::NoDescriptors => {
+                self.mover.exhaust_descriptors();
+                self.pass(1500);
+                self.mover.signal(Signal::SIGTERM);
+                self.pass(4000);
             }
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
         }

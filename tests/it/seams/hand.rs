@@ -4,6 +4,7 @@
 use crate::setup::body::Protocol;
 use crate::setup::hand;
 use crate::setup::link;
+use handscope::codec::modbus_rtu::crc16;
 use handscope::hand::{Dof, Fault, Moment, Span};
 use handscope::sim::{JournalEntry, Personality, Scenario, SharedHand, SimConfig, SimHand};
 use handscope::transport::{Dial, Endpoint, PtyLink, Wire, pair};
@@ -38,6 +39,10 @@ enum Carries {
     Nothing,
     /// Requests pass; replies are late, doubled or wrong now and then.
     OddReplies,
+    /// Requests pass; each reply comes this much later.
+    Late(Duration),
+    /// No request passes: a Modbus gateway answers that the hand does not.
+    Refusals,
 }
 
 /// The wire between a program and the hand, governed from outside.
@@ -70,6 +75,9 @@ impl Gate {
                 },
                 read = near.read(&mut asked) => match read {
                     Ok(1..) if self.carries() == Carries::Nothing => Ok(()),
+                    Ok(len @ 1..) if self.carries() == Carries::Refusals => {
+                        near.write_all(&refusal(self.protocol, &asked[..len])).await
+                    }
                     Ok(len @ 1..) => far.write_all(&asked[..len]).await,
                     _ => return,
                 },
@@ -84,7 +92,8 @@ impl Gate {
         let (mut bytes, mut copies) = (bytes.to_vec(), 1);
         match self.carries() {
             Carries::All => {}
-            Carries::Nothing => return Ok(()),
+            Carries::Nothing | Carries::Refusals => return Ok(()),
+            Carries::Late(by) => sleep(by).await,
             Carries::OddReplies => {
                 let (kind, late_ms) = {
                     let mut rng = self.rng.lock().unwrap();
@@ -121,6 +130,24 @@ impl Gate {
             Protocol::Slcan => bytes[0] = b'?',
             Protocol::Can => bytes.clear(),
         }
+    }
+}
+
+/// Exception 0B to a request: the gateway target device failed to respond.
+fn refusal(protocol: Protocol, asked: &[u8]) -> Vec<u8> {
+    const NO_RESPONSE: u8 = 0x0B;
+    match protocol {
+        Protocol::Tcp => {
+            let mut refused = vec![asked[0], asked[1], 0, 0, 0, 3];
+            refused.extend([asked[6], asked[7] | 0x80, NO_RESPONSE]);
+            refused
+        }
+        Protocol::Rtu => {
+            let mut refused = vec![asked[0], asked[1] | 0x80, NO_RESPONSE];
+            refused.extend(crc16(&refused).to_le_bytes());
+            refused
+        }
+        Protocol::Rs485 | Protocol::Can | Protocol::Slcan => panic!("only Modbus has exceptions"),
     }
 }
 
@@ -314,6 +341,16 @@ impl SeamHand {
             true => Carries::Nothing,
             false => Carries::All,
         };
+    }
+
+    /// A gateway answers in place of the hand.
+    pub(super) fn refuse(&self) {
+        *self.gate.carries.lock().unwrap() = Carries::Refusals;
+    }
+
+    /// Each reply comes this much later.
+    pub(super) fn delay_replies(&self, by: Duration) {
+        *self.gate.carries.lock().unwrap() = Carries::Late(by);
     }
 
     /// Replies are late, doubled or wrong now and then.

@@ -63,7 +63,9 @@ impl Try {
                 | Column::ReaderGone
                 | Column::OutputUnread
                 | Column::HolderKilled
-                | Column::HolderFrozen => &[Start::Process(Place::led)],
+                | Column::HolderFrozen
+                | Column::Busy
+                | Column::NoDescriptors => &[Start::Process(Place::led)],
                 Column::Panic
                 | Column::Frozen
                 | Column::DisplayLost
@@ -76,6 +78,9 @@ impl Try {
                 | Column::Disobeys
                 | Column::SecondMaster
                 | Column::SecondHandscope
+                | Column::GatewayRefuses
+                | Column::StopThenLost
+                | Column::RepliesSlow
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
             Row::Trial => &[
@@ -164,6 +169,10 @@ fn tries(column: Column, wanted: &str) -> Vec<Try> {
     let at_column = Column::ALL.iter().position(|one| *one == column).unwrap();
     let mut all = Vec::new();
     for (at_row, row) in Row::ALL.into_iter().enumerate() {
+        let can_be = |protocol| matches!(cell_on(row, column, protocol), Cell::Tried(..));
+        let open: Vec<Protocol> = wires.into_iter().filter(|wire| can_be(*wire)).collect();
+        let turn = (at_row + at_column) % open.len().max(1);
+        let turn = open.get(turn).copied();
         let all_wires = wires.into_iter().chain(has_can.then_some(Protocol::Can));
         for (at_wire, protocol) in all_wires.enumerate() {
             let one = Try {
@@ -174,15 +183,14 @@ fn tries(column: Column, wanted: &str) -> Vec<Try> {
             };
             // Another program is another thing on a port than on a socket.
             let is_other = column == Column::SecondHandscope;
-            let turn = (at_row + at_column) % wires.len();
             let is_other = is_other || column == Column::SecondMaster;
-            let is_its_turn = turn == at_wire || is_other && protocol == Protocol::Tcp;
+            let is_its_turn = turn == Some(protocol) || is_other && protocol == Protocol::Tcp;
             let is_wanted = match wanted {
                 "" => is_its_turn,
                 "whole" => true,
                 part => one.name().contains(part),
             };
-            if is_wanted && matches!(cell_on(row, column, protocol), Cell::Tried(..)) {
+            if is_wanted && can_be(protocol) {
                 all.push(one);
             }
         }
@@ -267,6 +275,11 @@ events! {
     the_output_is_not_taken OutputUnread,
     the_holder_is_killed HolderKilled,
     the_holder_is_frozen HolderFrozen,
+    the_gateway_refuses GatewayRefuses,
+    a_stop_meets_a_lost_link StopThenLost,
+    replies_are_slow RepliesSlow,
+    the_computer_is_busy Busy,
+    no_descriptor_is_left NoDescriptors,
 }
 
 #[test]

@@ -56,6 +56,11 @@ pub(super) trait Mover {
         panic!("it is no process");
     }
 
+    /// Its process can open nothing more.
+    fn exhaust_descriptors(&mut self) {
+        panic!("it is no process");
+    }
+
     /// Another Handscope begins to move the same hand, or tries to. What it says is added to what is said here.
     fn second_handscope(&mut self);
 }

@@ -453,6 +453,16 @@ impl Mover for Process {
         let _gone = kill(holder, signal);
     }
 
+    fn exhaust_descriptors(&mut self) {
+        use rustix::process::{Resource, Rlimit, prlimit};
+        let id = rustix::process::Pid::from_raw(i32::try_from(self.child.id()).unwrap());
+        let none = Rlimit {
+            current: Some(0),
+            maximum: Some(0),
+        };
+        prlimit(id, Resource::Nofile, none).unwrap();
+    }
+
     fn second_handscope(&mut self) {
         let slow = SLOW.to_string();
         let plan = [

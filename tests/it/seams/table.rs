@@ -46,6 +46,11 @@ pub(super) enum Column {
     OutputUnread,
     HolderKilled,
     HolderFrozen,
+    GatewayRefuses,
+    StopThenLost,
+    RepliesSlow,
+    Busy,
+    NoDescriptors,
 }
 
 impl Row {
@@ -83,7 +88,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 19] = [
+    pub(super) const ALL: [Self; 24] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -103,6 +108,11 @@ impl Column {
         Self::OutputUnread,
         Self::HolderKilled,
         Self::HolderFrozen,
+        Self::GatewayRefuses,
+        Self::StopThenLost,
+        Self::RepliesSlow,
+        Self::Busy,
+        Self::NoDescriptors,
     ];
 
     pub(super) const fn name(self) -> &'static str {
@@ -126,6 +136,11 @@ impl Column {
             Self::OutputUnread => "output not read, SIGTERM",
             Self::HolderKilled => "holder killed, then killed",
             Self::HolderFrozen => "holder frozen, killed",
+            Self::GatewayRefuses => "gateway refuses",
+            Self::StopThenLost => "stop, then link lost",
+            Self::RepliesSlow => "slow replies",
+            Self::Busy => "computer busy",
+            Self::NoDescriptors => "no descriptor left",
         }
     }
 }
@@ -161,6 +176,12 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
         ) if !matches!(protocol, Protocol::Tcp) => {
             CannotBe("the frames of a second master are heard on a bus: tried with the link")
         }
+        (Column::GatewayRefuses, _) if !matches!(protocol, Protocol::Tcp | Protocol::Rtu) => {
+            CannotBe("only Modbus has exceptions")
+        }
+        (Column::RepliesSlow, _) if !matches!(protocol, Protocol::Tcp) => {
+            CannotBe("late replies carry no number there: that is a lost link, which is tried")
+        }
         (Column::SecondHandscope, _) if is_port && is_in_the_window => {
             CannotBe("one program opens a serial port: tried with the commands")
         }
@@ -193,6 +214,10 @@ pub(super) const fn cell(row: Row, column: Column) -> Cell {
 const NO_STDOUT: Cell = CannotBe("a window prints nothing");
 const HELD_BY_COMMANDS: Cell =
     CannotBe("these windows are no processes; its link starts the same holder as a command's");
+const VIRTUAL: Cell = CannotBe(
+    "its time is virtual and does not stall: the rule for stalls is the link's, as in commands",
+);
+const NO_PROCESS: Cell = CannotBe("it is no process of its own here; its link is a command's");
 const NO_WINDOW: Cell = CannotBe("a command has no window");
 const LINK_IS_LOST: &str = "LinkLost";
 const NO_PANIC: Cell =
@@ -217,6 +242,11 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::FaultOrHeat => Tried(NothingMore(500), "Fault"),
         Column::ReaderGone | Column::OutputUnread => NO_STDOUT,
         Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
+        Column::GatewayRefuses => Tried(NothingMore(0), LINK_IS_LOST),
+        Column::StopThenLost => Tried(Held(4000), ""),
+        Column::RepliesSlow => Tried(Held(4500), ""),
+        Column::Busy => VIRTUAL,
+        Column::NoDescriptors => NO_PROCESS,
     }
 }
 
@@ -240,7 +270,12 @@ const fn series(column: Column) -> Cell {
         | Column::ReaderGone
         | Column::OutputUnread
         | Column::HolderKilled
-        | Column::HolderFrozen => told_by_the_window(column),
+        | Column::HolderFrozen
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::Busy
+        | Column::NoDescriptors => told_by_the_window(column),
     }
 }
 
@@ -255,6 +290,8 @@ const fn leading(column: Column) -> Cell {
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
         Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
+        Column::Busy => Tried(Held(6000), ""),
+        Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
         // What leads is never far ahead: the hand comes to rest there by itself.
         Column::Disobeys => Tried(Insists, ""),
         Column::SecondHandscope
@@ -265,6 +302,9 @@ const fn leading(column: Column) -> Cell {
         | Column::FeedbackFrozen
         | Column::OddReplies
         | Column::SecondMaster
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::FaultOrHeat => told_by_the_window(column),
     }
 }
@@ -289,7 +329,12 @@ const fn exhibition(column: Column) -> Cell {
         | Column::ReaderGone
         | Column::OutputUnread
         | Column::HolderKilled
-        | Column::HolderFrozen => told_by_the_window(column),
+        | Column::HolderFrozen
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::Busy
+        | Column::NoDescriptors => told_by_the_window(column),
     }
 }
 
@@ -311,7 +356,12 @@ const fn calibration(column: Column) -> Cell {
         | Column::PowerCycled
         | Column::FeedbackFrozen
         | Column::OddReplies
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::FaultOrHeat => Tried(Still, ""),
+        Column::Busy => VIRTUAL,
+        Column::NoDescriptors => NO_PROCESS,
         Column::Disobeys => By("a_stop_passes_while_the_hand_calibrates"),
     }
 }
@@ -334,6 +384,11 @@ const fn trial(column: Column) -> Cell {
         Column::ReaderGone => Tried(Ends, ""),
         Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
+        Column::GatewayRefuses => Tried(NothingMore(0), "feedback shows rest"),
+        Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
+        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
+        Column::Busy => Tried(HeldAtTheEnd(6000), ""),
+        Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
 }
 
@@ -355,6 +410,11 @@ const fn follow(column: Column) -> Cell {
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
         Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
+        Column::GatewayRefuses => Tried(NothingMore(0), "lost"),
+        Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
+        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
+        Column::Busy => Tried(HeldAtTheEnd(6000), ""),
+        Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
 }
 
@@ -373,6 +433,11 @@ const fn share(column: Column) -> Cell {
         | Column::OutputUnread
         | Column::HolderKilled
         | Column::HolderFrozen
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::Busy
+        | Column::NoDescriptors
         | Column::Disobeys => follow(column),
         Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "lost"),
         Column::PowerCycled => Tried(Rests, "lost"),
@@ -405,7 +470,12 @@ const fn stdio(column: Column) -> Cell {
         | Column::SecondMaster
         | Column::OutputUnread
         | Column::HolderKilled
-        | Column::HolderFrozen => share(column),
+        | Column::HolderFrozen
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::Busy
+        | Column::NoDescriptors => share(column),
     }
 }
 
@@ -430,6 +500,11 @@ const fn params(column: Column) -> Cell {
         | Column::Disobeys
         | Column::SecondHandscope
         | Column::FaultOrHeat
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::Busy
+        | Column::NoDescriptors
         | Column::ReaderGone => Tried(Settled, ""),
     }
 }

@@ -21,6 +21,8 @@ const SUSPECT_AFTER: Duration = Duration::from_millis(30);
 const VISIBLE: f64 = 25.0;
 /// A drive that reports that it arrived may rest this many counts beside its target: some joints end before the range does.
 const ARRIVED_WITHIN: f64 = 50.0;
+/// A stop waits no longer than this for joints to come back.
+const WAY_BACK_MAX: Duration = Duration::from_secs(1);
 /// From a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
 /// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
@@ -187,9 +189,13 @@ impl FeedbackWatch {
         match status {
             Status::ForceReached => joint.estimate < f64::from(joint.seen),
             Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
-            Status::PositionReached => target.is_some_and(|target| {
-                (f64::from(target) - f64::from(joint.seen)).abs() <= ARRIVED_WITHIN
-            }),
+            // One that was told to go and come back had to have the time for it: until then this may be as old as the angle.
+            Status::PositionReached => [target.map(f64::from), Some(joint.estimate)]
+                .into_iter()
+                .all(|place| {
+                    let way = place.map(|place| (place - f64::from(joint.seen)).abs());
+                    way.is_some_and(|way| way <= ARRIVED_WITHIN)
+                }),
             Status::Releasing | Status::Grasping | Status::Unknown(_) => false,
         }
     }
@@ -297,6 +303,21 @@ impl FeedbackWatch {
     pub(crate) fn expected(&self, dof: Dof, now: Moment) -> Option<Target> {
         let joint = self.joints[dof]?;
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
+    }
+
+    /// How long the joints need from where they must be by now to where they were seen last, dead time included; nothing where that
+    /// way is too short to be seen.
+    pub(crate) fn way_back(&self, now: Moment) -> Duration {
+        let own = self.joints.iter().filter_map(|(dof, joint)| {
+            let joint = joint.as_ref()?;
+            let way = (self.estimate(dof, joint, now) - f64::from(joint.seen)).abs();
+            let speed = self.commands.back()?.speeds[dof]?;
+            let counts_per_s = f64::from(speed) * Speed::ANGLE_PER_UNIT;
+            let is_visible = way >= VISIBLE && counts_per_s > 0.0;
+            let back = is_visible.then(|| Duration::from_secs_f64(way / counts_per_s))?;
+            Some((back + DEAD_TIME).min(WAY_BACK_MAX))
+        });
+        own.max().unwrap_or_default()
     }
 
     /// Where a joint must be: from where it was on to what it was told, as fast as it was told, and never beyond.
