@@ -149,6 +149,14 @@ impl StepRecord {
         close
     }
 
+    /// What a force sensor read on average from this time on, g.
+    pub(crate) fn mean_force(&self, dof: Dof, since: Moment) -> Option<f64> {
+        let force = self.curve(dof, |own| own.force);
+        let later = force.points().iter();
+        let later = later.filter(|own| own.t >= since.secs());
+        mean(&later.map(|own| own.v).collect::<Vec<_>>())
+    }
+
     /// What each force sensor reads at rest, g.
     pub(crate) fn zeros(&self) -> PerDof<Option<f64>> {
         PerDof::from_fn(|dof| mean(&values(&self.curve(dof, |own| own.force))))

@@ -39,6 +39,9 @@ const STILL: i16 = 1;
 const ARRIVED: i16 = 3;
 /// A joint this near to its open end did not begin to close.
 const STUCK_WITHIN: i16 = 10;
+/// A joint may have been stopped by its own offset that rests so far below its threshold at most, g: more than the noise of a
+/// worn sensor.
+const OFFSET_STOPS_WITHIN_G: f64 = 40.0;
 /// The angle from which on a joint is in no other's way.
 const OPEN_ENOUGH: i16 = 900;
 /// A fingertip is let go so long after its last pressed reading.
@@ -109,7 +112,7 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
-    /// Joints that do not close below what their sensors read at rest: their drives count that as force.
+    /// Joints that stopped with nothing in their way: their drives count what their sensors read at rest as force.
     counts_zero: PerDof<bool>,
     figures: Figures,
     free: FreeForce,
@@ -238,22 +241,37 @@ impl Checkup {
         threshold(self.zero_g[dof].unwrap_or_default())
     }
 
-    /// Begins the step anew with thresholds above the zero, for joints that did not begin to close below it.
-    // Manual: whether a drive counts what its sensor reads at rest is not said. The lower threshold is gentle either way.
+    /// Whether a closing joint stopped because its drive counts the sensor's offset: it met nothing, and reads about its threshold.
+    // Manual: 2.6.12 says that FORCE_SET is compared with FORCE_ACT, but not whether that includes the offset. The lower threshold
+    // is gentle either way.
+    fn stopped_by_offset(&self, running: &RunningStep, dof: Dof) -> Option<bool> {
+        let (since, pose) = running.pose?;
+        let (target, force) = (running.targets[dof]?, running.forces[dof]?);
+        let is_short = pose[dof] - target.get() > ARRIVED;
+        let can_rise = running.record.step.closes() && force != self.threshold(dof);
+        let reads = running.record.mean_force(dof, since)?;
+        let reaches = reads >= f64::from(force.get()) - OFFSET_STOPS_WITHIN_G;
+        let met = running.record.met(dof, self.zero_g[dof]?);
+        Some(is_short && can_rise && reaches && met.is_none())
+    }
+
+    /// Begins the step anew with thresholds above the zero, for joints that their own offset stopped.
     fn raise(&mut self, now: Moment) -> Option<SeriesOrder> {
         let running = self.running.as_ref()?;
         let (step, (_, pose)) = (running.record.step, running.pose?);
-        let stuck = |dof: Dof| {
-            let is_closing = step.closes() && running.targets[dof].is_some();
-            let is_open = pose[dof] >= Angle::MAX.get() - STUCK_WITHIN;
-            is_closing && is_open && running.forces[dof] != Some(self.threshold(dof))
-        };
-        let stuck = PerDof::from_fn(stuck);
-        if !stuck.iter().any(|(_, is_stuck)| *is_stuck) {
+        let stopped = |dof| self.stopped_by_offset(running, dof).unwrap_or_default();
+        let stopped = PerDof::from_fn(stopped);
+        if !stopped.iter().any(|(_, is_stopped)| *is_stopped) {
             return None;
         }
-        self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stuck[dof]);
+        self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stopped[dof]);
         self.left.push_front(step);
+        // Its figures are those of a whole stroke.
+        let is_open = |dof: Dof| pose[dof] >= Angle::MAX.get() - STUCK_WITHIN;
+        let moved = |dof: &Dof| running.targets[*dof].is_some();
+        if !Dof::ALL.into_iter().filter(moved).all(is_open) {
+            self.left.push_front(Step::Open);
+        }
         self.running = None;
         self.next(now)
     }

@@ -12,6 +12,7 @@ const SLEPT_AFTER: Duration = Duration::from_secs(1);
 pub struct Clock {
     start: Instant,
     asleep: fn() -> Option<Duration>,
+    is_virtual: bool,
 }
 
 impl Clock {
@@ -20,11 +21,25 @@ impl Clock {
         Self::with_sleep(asleep)
     }
 
+    /// The same inside a paused tokio runtime. Threads outside of it, for which this time passes too fast, are waited for.
+    pub fn start_virtual() -> Self {
+        Self {
+            is_virtual: true,
+            ..Self::start()
+        }
+    }
+
+    /// True of one that was started by [`Self::start_virtual`].
+    pub const fn is_virtual(&self) -> bool {
+        self.is_virtual
+    }
+
     /// The same, with a source of its own for how long the computer was asleep since it was started; `None` where that is not known.
     pub fn with_sleep(asleep: fn() -> Option<Duration>) -> Self {
         Self {
             start: Instant::now(),
             asleep,
+            is_virtual: false,
         }
     }
 

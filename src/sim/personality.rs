@@ -109,8 +109,8 @@ switches! {
     }
     "What a drive compares FORCE_SET with (manual 2.6.12: FORCE_ACT)."
     force_compared "force-compared" ForceCompared {
-        "The load alone." Load "load",
         "FORCE_ACT as read: what it reads without load counts, and a threshold below that keeps the joint from closing." AsRead "as-read",
+        "The load alone." Load "load",
     }
     "A write outside an element's range."
     out_of_range "out-of-range" OutOfRangeWrite {

@@ -175,3 +175,54 @@ impl HandRecording {
         self.input.push(Entry::Event(Event { at, kind, words }));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::connect::SimDial;
+    use crate::link::{Clock, LinkConfig, PollRates, open};
+    use crate::record::Record;
+    use tokio::runtime::Handle;
+    use tokio::time::sleep;
+
+    /// Entries that may wait: fewer than come in the virtual time of the test, and more than are waited for at once.
+    const ROOM: usize = 3000;
+
+    // A check-up of a minute and a half in virtual time is over in a few seconds: its recording lacked a close where the recorder's
+    // thread got no processor for one of them.
+    #[tokio::test(start_paused = true)]
+    async fn a_recorder_that_is_held_up_misses_nothing_of_virtual_time() {
+        let clock = Clock::start_virtual();
+        let (input, taken) = RecorderInput::new(ROOM);
+        let recorder = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_secs(1));
+            let (mut entries, mut lost, mut angles) = (0, 0, 0);
+            for given in taken {
+                entries += 1;
+                lost += given.lost_before;
+                angles += u64::from(matches!(given.entry, Entry::Heard(Record::Reading { .. })));
+            }
+            (entries, lost, angles)
+        });
+        let config = LinkConfig {
+            endpoint: "sim:".parse().unwrap(),
+            rates: PollRates::default(),
+            clock,
+            dial: Arc::new(SimDial::new(clock)),
+            wake: Arc::new(|| ()),
+        };
+        let (link, _records) = open(config, &Handle::current());
+        let pump = tokio::spawn(recording::record(link.observe(), input.clone(), clock));
+        sleep(Duration::from_secs(20)).await;
+        pump.abort();
+        let _aborted = pump.await;
+        let lost_last = input.take_lost();
+        drop(input);
+        let (entries, lost, readings) = recorder.join().unwrap();
+        assert_eq!((lost, lost_last), (0, 0));
+        assert!(
+            entries > 2 * ROOM && readings > 1000,
+            "{entries} {readings}"
+        );
+    }
+}

@@ -35,9 +35,27 @@ impl RecorderInput {
     /// Gives an entry. One that finds no room is counted.
     pub fn push(&self, entry: Entry) {
         let lost_before = self.take_lost();
-        let given = Given { entry, lost_before };
+        let given = Given {
+            entry,
+            lost_before,
+            _taken: None,
+        };
         if let Err(TrySendError::Full(_)) = self.given.try_send(given) {
             self.missed(lost_before + 1);
+        }
+    }
+
+    /// Gives an entry and waits until the recorder has taken it and all before it, however busy the computer is.
+    pub fn push_in_step(&self, entry: Entry) {
+        let (open, taken) = sync_channel(0);
+        let given = Given {
+            entry,
+            lost_before: self.take_lost(),
+            _taken: Some(open),
+        };
+        if self.given.send(given).is_ok() {
+            // Nothing is sent: this ends when the other end is dropped, with the entry or with the recorder.
+            let _closed = taken.recv();
         }
     }
 

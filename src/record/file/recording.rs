@@ -9,6 +9,7 @@ use crate::record::{Entry, Event, EventKind, LinkReport, Record};
 use mcap::McapError;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
 /// Bytes that may wait for the disk: two minutes of one hand.
@@ -141,6 +142,8 @@ pub(crate) struct Now {
 pub(crate) struct Given {
     pub(crate) entry: Entry,
     pub(crate) lost_before: u64,
+    /// Closed once this entry is taken; for whoever waits for that.
+    pub(crate) _taken: Option<SyncSender<()>>,
 }
 
 /// A recording and its files.

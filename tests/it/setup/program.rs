@@ -17,13 +17,18 @@ use handscope::shell::DesktopApp;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::runtime::{EnterGuard, Handle, Runtime};
+use tokio::runtime::{EnterGuard, Handle, Runtime, RuntimeFlavor};
 
 /// What a program is given in front of the built-in hand. Its time begins now.
 pub(crate) fn env() -> Env {
-    let clock = Clock::start();
+    let runtime = Handle::current();
+    // A runtime of one thread is one whose time is virtual.
+    let clock = match runtime.runtime_flavor() {
+        RuntimeFlavor::CurrentThread => Clock::start_virtual(),
+        _ => Clock::start(),
+    };
     Env {
-        runtime: Handle::current(),
+        runtime,
         clock,
         dial: Arc::new(SimDial::new(clock)),
         wake: Arc::new(|| ()),

@@ -1,7 +1,7 @@
 //! A check-up on bodies that it does not know: healthy ones, and each kind of wear at the size that it is to be found at.
 
 use crate::trials::virtual_hand::{VirtualHand, object};
-use crate::trials::worn::{JOINT, WEARS, checked, finds, started, told};
+use crate::trials::worn::{JOINT, WEARS, checked, checked_with, finds, started, told};
 use handscope::checkup::check::{checks, stopped_early};
 use handscope::checkup::free_file;
 use handscope::checkup::report::{CheckupReport, Keeping};
@@ -9,15 +9,15 @@ use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger};
 use handscope::record::{SetpointConflict, SetpointRegister};
 use handscope::sim::body_params::random::random;
-use handscope::sim::{BodyParams, Object};
+use handscope::sim::{BodyParams, ForceCompared, Object};
 use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
 use handscope::tasks::series::SeriesReport;
 use handscope::transport::Endpoint;
 use handscope::trials::Abort;
 use handscope::trials::series::Series;
 
-/// FORCE_SET (manual 2.6.12).
-const FORCE_SET: u16 = 1498;
+/// What drives compare their thresholds with, the manual's first.
+const DRIVES: [ForceCompared; 2] = [ForceCompared::AsRead, ForceCompared::Load];
 
 #[test]
 fn healthy_bodies_are_told_to_be_healthy() {
@@ -29,6 +29,25 @@ fn healthy_bodies_are_told_to_be_healthy() {
     }
     assert_eq!(figures, 25 * (6 * 16 + 5 * 3 + 1));
     assert!(wrong.len() * 50 < 25, "{wrong:?}");
+}
+
+#[test]
+fn both_kinds_of_drives_get_the_same_verdicts() {
+    let verdicts = |compared, body, seed| {
+        let told = told(&checked_with(compared, (body, seed), &[]));
+        let whats = told.into_iter().map(|(what, of, _)| (what, of));
+        whats.collect::<Vec<_>>()
+    };
+    let healthy = (0..4).map(|seed| ("healthy", random(seed), seed));
+    let worn = (4..).zip(WEARS).map(|(seed, (name, wear, _))| {
+        let mut body = random(seed);
+        wear(&mut body);
+        (name, body, seed)
+    });
+    for (name, body, seed) in healthy.chain(worn) {
+        let [as_read, load] = DRIVES.map(|compared| verdicts(compared, body, seed));
+        assert_eq!(as_read, load, "{name}, {seed}");
+    }
 }
 
 #[test]
@@ -63,7 +82,7 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
 
 #[test]
 fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
     let (checkup, _) = hand.run(started(), |_, _| ());
     assert_eq!(checkup.aborted(), None);
     for entry in hand.hand.journal() {
@@ -78,7 +97,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
             assert!((-1..=most).contains(&raw), "{entry:?}");
         }
     }
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
     let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         if checkup.view().joint == Some(Dof::Index) {
             hand.inject_fault(Dof::Index, Fault::OverCurrent);
@@ -104,7 +123,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
 
 #[test]
 fn no_joint_moves_while_another_does_not_open() {
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
     let (checkup, stopped) = hand.run(started(), |hand, checkup| {
         let is_bent = hand.true_angles()[Dof::Index] < 500.0;
         if is_bent && checkup.view().joint == Some(Dof::Index) {
@@ -118,12 +137,15 @@ fn no_joint_moves_while_another_does_not_open() {
 }
 
 /// The most that a fingertip was pressed with in a check-up of a hand with something in it, and how it ended, g.
-fn pressed(zero_g: f64, stiffness: f64) -> (f64, Checkup, VirtualHand) {
+fn pressed(
+    compared: ForceCompared,
+    (zero_g, stiffness): (f64, f64),
+) -> (f64, Checkup, VirtualHand) {
     let mut body = BodyParams::default();
     for (_, joint) in body.joints.iter_mut() {
         joint.force_zero_g = zero_g;
     }
-    let mut hand = VirtualHand::new(body, 1, &object(stiffness, None));
+    let mut hand = VirtualHand::with(compared, (body, 1), &object(stiffness, None));
     let mut most = 0.0_f64;
     let (checkup, _) = hand.run(started(), |hand, _| {
         let loads = hand.true_loads();
@@ -134,25 +156,35 @@ fn pressed(zero_g: f64, stiffness: f64) -> (f64, Checkup, VirtualHand) {
 
 #[test]
 fn what_stands_in_the_hand_ends_it_at_once_whatever_the_sensors_say_of_nothing() {
-    for zero_g in [-170.0, -50.0, 0.0, 240.0, 400.0] {
-        for stiffness in [0.3, 1.0, 3.0] {
-            let (most, checkup, hand) = pressed(zero_g, stiffness);
-            // What is too soft to be felt stops a joint early all the same.
-            let why = checkup.aborted();
-            let said = matches!(why, Some(Abort::NotEmpty { .. } | Abort::Ceiling { .. }));
-            let all = checks(checkup.measured(), "", &[]);
-            let early = stopped_early(&all).is_some();
-            assert!(said || early, "{zero_g} {stiffness}: {why:?}");
-            assert!(said || zero_g < -100.0, "{zero_g} {stiffness}");
-            assert!(most <= 300.0, "{zero_g} {stiffness}: {most}");
-            let highest = forces_written(&hand).into_iter().max();
-            let limit = (zero_g + 165.0).clamp(20.0, 150.0);
-            assert!(
-                f64::from(highest.unwrap()) <= limit,
-                "{zero_g}: {highest:?}"
-            );
+    for compared in DRIVES {
+        for zero_g in [-170.0, -50.0, 0.0, 75.0, 110.0, 145.0, 240.0, 400.0] {
+            for stiffness in [0.3, 1.0, 3.0] {
+                something_ends_it(compared, zero_g, stiffness);
+            }
         }
     }
+}
+
+fn something_ends_it(compared: ForceCompared, zero_g: f64, stiffness: f64) {
+    let case = format!("{compared:?} {zero_g} {stiffness}");
+    let (most, checkup, hand) = pressed(compared, (zero_g, stiffness));
+    // What is too soft to be felt stops a joint early all the same.
+    let why = checkup.aborted();
+    let said = matches!(why, Some(Abort::NotEmpty { .. } | Abort::Ceiling { .. }));
+    let all = checks(checkup.measured(), "", &[]);
+    let early = stopped_early(&all).is_some();
+    assert!(said || early, "{case}: {why:?}");
+    assert!(said || zero_g < -100.0, "{case}");
+    assert!(most <= 300.0, "{case}: {most}");
+    let highest = forces_written(&hand).into_iter().max();
+    // A drive that counts its zero is given as much above that.
+    let above = match compared {
+        ForceCompared::AsRead => 500.0,
+        ForceCompared::Load => 150.0,
+    };
+    let limit = (zero_g + 165.0).clamp(20.0, above);
+    let limit = limit.max(if zero_g > -50.0 { 150.0 } else { 20.0 });
+    assert!(f64::from(highest.unwrap()) <= limit, "{case}: {highest:?}");
 }
 
 /// The force thresholds that were sent for closing: for the little finger, which closes first.
@@ -169,28 +201,26 @@ fn forces_written(hand: &VirtualHand) -> Vec<i16> {
 }
 
 #[test]
-fn a_drive_that_counts_its_zero_gets_its_threshold_above_that_once_it_does_not_begin() {
-    let mut body = BodyParams::default();
-    body.joints[JOINT].force_zero_g = 200.0;
-    let mut hand = VirtualHand::new(body, 1, &Object::none());
-    let (checkup, stopped) = hand.run(started(), |hand, _| {
-        let at = FORCE_SET + 2 * u16::try_from(JOINT.index()).unwrap();
-        let set = hand.journal().iter().rev().find_map(|own| {
-            let from = usize::from(at.checked_sub(own.address)?);
-            let bytes = own.bytes.get(from..from + 2)?;
-            let set = i16::from_le_bytes([bytes[0], bytes[1]]);
-            (own.address >= FORCE_SET && set >= 0).then_some(set)
-        });
-        hand.set_dead(JOINT, set.is_some_and(|set| set < 200));
-    });
-    assert_eq!((checkup.aborted(), stopped), (None, false));
-    assert_eq!(told(&checks(checkup.measured(), "", &[])), []);
+fn a_joint_that_its_own_offset_stops_anywhere_on_its_way_goes_the_whole_way() {
+    for zero_g in [130.0, 146.0, 149.0, 152.0, 156.0, 200.0, 240.0] {
+        for noise_g in [1.0, 8.0] {
+            let mut body = BodyParams::default();
+            body.joints[JOINT].force_zero_g = zero_g;
+            body.joints[JOINT].force_noise_g = noise_g;
+            let object = Object::none();
+            let mut hand = VirtualHand::with(ForceCompared::AsRead, (body, 1), &object);
+            let (checkup, stopped) = hand.run(started(), |_, _| ());
+            assert_eq!((checkup.aborted(), stopped), (None, false), "{zero_g}");
+            let told = told(&checks(checkup.measured(), "", &[]));
+            assert_eq!(told, [], "{zero_g} {noise_g}");
+        }
+    }
 }
 
 #[test]
 fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
     for zero_g in [-600.0, -300.0, 700.0] {
-        let (most, checkup, _) = pressed(zero_g, 3.0);
+        let (most, checkup, _) = pressed(ForceCompared::AsRead, (zero_g, 3.0));
         assert!(most < 1.0, "{zero_g}: {most}");
         assert_eq!(checkup.left_alone().len(), 6, "{zero_g}");
         let all = checks(checkup.measured(), "", &[]);
@@ -198,7 +228,7 @@ fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
     }
     let mut body = BodyParams::default();
     body.joints[JOINT].force_zero_g = -600.0;
-    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let mut hand = VirtualHand::counting(body, 1, &Object::none());
     let (checkup, stopped) = hand.run(started(), |hand, _| {
         assert!(hand.true_angles()[JOINT] > 990.0);
     });
@@ -227,7 +257,7 @@ fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
 
 #[test]
 fn a_joint_that_is_jammed_is_measured_so_and_makes_no_birth_record() {
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
     hand.hand.set_jam(JOINT, Some(300.0));
     let (checkup, _) = hand.run(started(), |hand, _| {
         // The drive calls that a stall before it is told to open.
@@ -242,7 +272,7 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
     let plan = CheckupPlan { press: true };
     let mut body = BodyParams::default();
     body.fingertips[Finger::Ring].dead[3] = true;
-    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let mut hand = VirtualHand::counting(body, 1, &Object::none());
     let mut asked = Vec::new();
     let (mut held, mut open) = (0, true);
     let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1), plan), |hand, checkup| {
@@ -283,7 +313,7 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
 
 #[test]
 fn another_controller_that_moves_the_hand_while_fingertips_are_pressed_ends_it_with_a_stop() {
-    let mut hand = VirtualHand::new(BodyParams::default(), 1, &Object::none());
+    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
     let wrote = SetpointConflict {
         register: SetpointRegister::AngleSet,
         dof: Dof::Index,
@@ -302,7 +332,7 @@ fn another_controller_that_moves_the_hand_while_fingertips_are_pressed_ends_it_w
 fn concluded(files: &CheckupFiles, backlash: f64, jam: Option<f64>) -> CheckupReport {
     let mut body = BodyParams::default();
     body.joints[JOINT].backlash = backlash;
-    let mut hand = VirtualHand::new(body, 1, &Object::none());
+    let mut hand = VirtualHand::counting(body, 1, &Object::none());
     hand.hand.set_jam(JOINT, jam);
     let (checkup, _) = hand.run(started(), |_, _| ());
     let report = SeriesReport {

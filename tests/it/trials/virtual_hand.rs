@@ -86,7 +86,8 @@ impl VirtualHand {
         Self::with(ForceCompared::AsRead, (body, seed), object)
     }
 
-    fn with(
+    /// One whose drives compare them so.
+    pub(crate) fn with(
         force_compared: ForceCompared,
         (body, seed): (BodyParams, u64),
         object: &Object,

@@ -8,7 +8,7 @@ use handscope::checkup::{Check, Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
-use handscope::sim::{BodyParams, Object};
+use handscope::sim::{BodyParams, ForceCompared, Object};
 use handscope::trials::series::Series;
 
 pub(crate) const JOINT: Dof = Dof::Middle;
@@ -16,7 +16,16 @@ const TIP: Finger = Finger::Ring;
 
 /// Checks a body; what it was at its first check-up is compared where it is given.
 pub(crate) fn checked(body: BodyParams, seed: u64, first: &[Check]) -> Vec<Check> {
-    let mut hand = VirtualHand::new(body, seed, &Object::none());
+    checked_with(ForceCompared::default(), (body, seed), first)
+}
+
+/// The same of a body whose drives compare their thresholds so.
+pub(crate) fn checked_with(
+    compared: ForceCompared,
+    (body, seed): (BodyParams, u64),
+    first: &[Check],
+) -> Vec<Check> {
+    let mut hand = VirtualHand::with(compared, (body, seed), &Object::none());
     let (checkup, stopped) = hand.run(started(), |_, _| ());
     assert_eq!((checkup.aborted(), stopped), (None, false));
     let first = (!first.is_empty()).then(|| kept(first));

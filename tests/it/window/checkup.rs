@@ -107,6 +107,7 @@ fn a_check_up_is_told_joint_by_joint_and_its_figures_report_and_recording_stay()
     let item = handscope::record::file::RecordingFile::open(&folder(&shown).join("check.mcap"));
     let item = item.unwrap();
     assert!(item.overview().counts.writes > 50 && item.is_closed());
+    assert_eq!(item.overview().counts.missing, 0);
     // From such a recording its use is counted: each joint closed at both speeds.
     let hand = bench.state().hand().connection.endpoint.clone().unwrap();
     let usage = Usage::of(&folder(&shown), &hand).unwrap();

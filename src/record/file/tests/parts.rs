@@ -39,6 +39,7 @@ fn record(opening: Opening, path: PathBuf, entries: &[Entry]) -> PathBuf {
     for entry in entries {
         last = entry.at();
         recording.take(&Given {
+            _taken: None,
             entry: entry.clone(),
             lost_before: 0,
         });
