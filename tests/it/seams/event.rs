@@ -1,5 +1,6 @@
 //! What happens while the hand moves: the columns of the table that strike the hand, its wire or its time.
 
+use crate::seams::hand::SeamHand;
 use crate::seams::judge::{INDEX, Seen};
 use crate::seams::mover::Mover;
 use crate::seams::table::Column;
@@ -181,6 +182,18 @@ impl<'a> Witness<'a> {
                 self.mover.second_handscope();
                 self.pass(9000);
             }
+            Column::GatewayRefuses
+            | Column::StopThenLost
+            | Column::RepliesSlow
+            | Column::Busy
+            | Column::NoDescriptors => self.degrades(column, &hand),
+            Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
+        }
+    }
+
+    /// The wire or the computer gets worse, and a person stops the hand or ends the program.
+    fn degrades(&mut self, column: Column, hand: &SeamHand) {
+        match column {
             Column::GatewayRefuses => {
                 hand.refuse();
                 self.pass(2000);
@@ -216,7 +229,7 @@ impl<'a> Witness<'a> {
                 self.mover.signal(Signal::SIGTERM);
                 self.pass(4000);
             }
-            Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
+            _ => panic!("tried above"),
         }
     }
 
