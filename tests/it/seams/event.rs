@@ -14,9 +14,6 @@ const STEP: Duration = Duration::from_millis(20);
 /// What is on its way has come so far.
 const UNDER_WAY: i16 = 850;
 
-/// As over a VPN or a relay.
-const SLOW_REPLY: Duration = Duration::from_millis(150);
-
 /// Looks at the joints while time goes by.
 pub(super) struct Witness<'a> {
     mover: &'a mut dyn Mover,
@@ -184,7 +181,6 @@ impl<'a> Witness<'a> {
             }
             Column::GatewayRefuses
             | Column::StopThenLost
-            | Column::RepliesSlow
             | Column::Busy
             | Column::NoDescriptors => self.degrades(column, &hand),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
@@ -206,12 +202,6 @@ impl<'a> Witness<'a> {
                 self.mover.stop();
                 self.pass(800);
                 hand.silence(false);
-                self.pass(5000);
-            }
-            Column::RepliesSlow => {
-                hand.delay_replies(SLOW_REPLY);
-                self.pass(600);
-                self.mover.stop();
                 self.pass(5000);
             }
             Column::Busy => {

@@ -48,7 +48,6 @@ pub(super) enum Column {
     HolderFrozen,
     GatewayRefuses,
     StopThenLost,
-    RepliesSlow,
     Busy,
     NoDescriptors,
 }
@@ -88,7 +87,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 24] = [
+    pub(super) const ALL: [Self; 23] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -110,7 +109,6 @@ impl Column {
         Self::HolderFrozen,
         Self::GatewayRefuses,
         Self::StopThenLost,
-        Self::RepliesSlow,
         Self::Busy,
         Self::NoDescriptors,
     ];
@@ -138,7 +136,6 @@ impl Column {
             Self::HolderFrozen => "holder frozen, killed",
             Self::GatewayRefuses => "gateway refuses",
             Self::StopThenLost => "stop, then link lost",
-            Self::RepliesSlow => "slow replies",
             Self::Busy => "computer busy",
             Self::NoDescriptors => "no descriptor left",
         }
@@ -178,9 +175,6 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
         }
         (Column::GatewayRefuses, _) if !matches!(protocol, Protocol::Tcp | Protocol::Rtu) => {
             CannotBe("only Modbus has exceptions")
-        }
-        (Column::RepliesSlow, _) if !matches!(protocol, Protocol::Tcp) => {
-            CannotBe("late replies carry no number there: that is a lost link, which is tried")
         }
         (Column::SecondHandscope, _) if is_port && is_in_the_window => {
             CannotBe("one program opens a serial port: tried with the commands")
@@ -244,7 +238,6 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
         Column::GatewayRefuses => Tried(NothingMore(0), LINK_IS_LOST),
         Column::StopThenLost => Tried(Held(4000), ""),
-        Column::RepliesSlow => Tried(Held(4500), ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
     }
@@ -273,7 +266,6 @@ const fn series(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => told_by_the_window(column),
     }
@@ -304,7 +296,6 @@ const fn leading(column: Column) -> Cell {
         | Column::SecondMaster
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::FaultOrHeat => told_by_the_window(column),
     }
 }
@@ -332,7 +323,6 @@ const fn exhibition(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => told_by_the_window(column),
     }
@@ -358,7 +348,6 @@ const fn calibration(column: Column) -> Cell {
         | Column::OddReplies
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::FaultOrHeat => Tried(Still, ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
@@ -386,7 +375,6 @@ const fn trial(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "feedback shows rest"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
-        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
@@ -412,7 +400,6 @@ const fn follow(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "lost"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
-        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
@@ -435,7 +422,6 @@ const fn share(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
         | Column::Disobeys => follow(column),
@@ -473,7 +459,6 @@ const fn stdio(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => share(column),
     }
@@ -502,7 +487,6 @@ const fn params(column: Column) -> Cell {
         | Column::FaultOrHeat
         | Column::GatewayRefuses
         | Column::StopThenLost
-        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
         | Column::ReaderGone => Tried(Settled, ""),
