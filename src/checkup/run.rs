@@ -242,8 +242,8 @@ impl Checkup {
     }
 
     /// Whether a closing joint stopped because its drive counts the sensor's offset: it met nothing, and reads about its threshold.
-    // Manual: 2.6.12 says that FORCE_SET is compared with FORCE_ACT, but not whether that includes the offset. The lower threshold
-    // is gentle either way.
+    // Manual 2.6.12: FORCE_SET is compared with FORCE_ACT; whether its offset counts is not stated. The lower threshold is gentle
+    // either way.
     fn stopped_by_offset(&self, running: &RunningStep, dof: Dof) -> Option<bool> {
         let (since, pose) = running.pose?;
         let (target, force) = (running.targets[dof]?, running.forces[dof]?);

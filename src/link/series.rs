@@ -337,6 +337,17 @@ mod tests {
     }
 
     #[test]
+    fn questions_without_an_answer_have_their_turns_and_then_a_pause() {
+        let mut evidence = SeriesEvidence::default();
+        for _ in 0..2 {
+            let asked = std::iter::from_fn(|| evidence.next_question());
+            assert!(asked.eq(SeriesQuestion::ALL));
+        }
+        evidence.refused(SeriesQuestion::ALL[0]);
+        assert_eq!(evidence.next_question(), Some(SeriesQuestion::ALL[1]));
+    }
+
+    #[test]
     fn hands_of_the_series_pass_warm_or_cold_with_a_network_or_without() {
         for degrees in [25, 45, 99, 255, 0, 1] {
             for ip in [[192, 168, 11, 210], [10, 0, 0, 7], [0; 4], [255; 4]] {

@@ -242,6 +242,12 @@ mod tests {
         assert!((250..=280).contains(&frozen), "{frozen}");
         let late = rest_of(moved(), |t| 500 - i16::try_from(t.min(300)).unwrap(), 0).unwrap();
         assert!((400..=430).contains(&late), "{late}");
+        // What it was seen at last is as far as 480 ms away.
+        for moved in [true, false] {
+            let slow = HoldWatch::new(ms(0), moved, Duration::from_millis(480));
+            let back = rest_of(slow, |_| 500, 0).unwrap();
+            assert!((480..=510).contains(&back), "{back}");
+        }
     }
 
     #[test]

@@ -179,48 +179,49 @@ impl<'a> Witness<'a> {
                 self.mover.second_handscope();
                 self.pass(9000);
             }
-            Column::GatewayRefuses
-            | Column::StopThenLost
-            | Column::Busy
-            | Column::NoDescriptors => self.degrades(column, &hand),
+            Column::GatewayRefuses => self.gateway_refuses(&hand),
+            Column::StopThenLost => self.stop_then_lost(&hand),
+            Column::Busy => self.computer_is_busy(),
+            Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
         }
     }
 
-    /// The wire or the computer gets worse, and a person stops the hand or ends the program.
-    fn degrades(&mut self, column: Column, hand: &SeamHand) {
-        match column {
-            Column::GatewayRefuses => {
-                hand.refuse();
-                self.pass(2000);
-                hand.silence(false);
-                self.pass(4000);
-            }
-            Column::StopThenLost => {
-                hand.silence(true);
-                self.pass(100);
-                self.mover.stop();
-                self.pass(800);
-                hand.silence(false);
-                self.pass(5000);
-            }
-            Column::Busy => {
-                let mut rng = fastrand::Rng::with_seed(self.event.micros());
-                for _ in 0..4 {
-                    self.mover.sleep(Duration::from_millis(rng.u64(100..=400)));
-                    self.pass(rng.u64(100..=500));
-                }
-                self.mover.stop();
-                self.pass(5000);
-            }
-            Column::NoDescriptors => {
-                self.mover.exhaust_descriptors();
-                self.pass(1500);
-                self.mover.signal(Signal::SIGTERM);
-                self.pass(4000);
-            }
-            _ => panic!("tried above"),
+    /// For two seconds a gateway answers that the hand does not.
+    fn gateway_refuses(&mut self, hand: &SeamHand) {
+        hand.refuse();
+        self.pass(2000);
+        hand.silence(false);
+        self.pass(4000);
+    }
+
+    /// A person presses STOP before the link is known to be lost, and the hand is back within 3 s.
+    fn stop_then_lost(&mut self, hand: &SeamHand) {
+        hand.silence(true);
+        self.pass(100);
+        self.mover.stop();
+        self.pass(800);
+        hand.silence(false);
+        self.pass(5000);
+    }
+
+    /// The program gets no processor four times, for 100 to 400 ms each, before a person stops the hand.
+    fn computer_is_busy(&mut self) {
+        let mut rng = fastrand::Rng::with_seed(self.event.micros());
+        for _ in 0..4 {
+            self.mover.sleep(Duration::from_millis(rng.u64(100..=400)));
+            self.pass(rng.u64(100..=500));
         }
+        self.mover.stop();
+        self.pass(5000);
+    }
+
+    /// The program can open nothing more, and is ended.
+    fn no_descriptor_is_left(&mut self) {
+        self.mover.exhaust_descriptors();
+        self.pass(1500);
+        self.mover.signal(Signal::SIGTERM);
+        self.pass(4000);
     }
 
     pub(super) fn seen(self) -> Seen {

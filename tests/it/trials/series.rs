@@ -205,7 +205,8 @@ const TABLE: [(i16, [f64; 5]); 3] = [
 ];
 const TWO_STAGE: [f64; 5] = [2.0, 25.0, 39.0, 71.0, 92.0];
 
-/// Within 15 %, or 5 g where that is more: the force sensor tells whole grams, at rest as at the peak. (The drive itself is within 15 % in every cell: `tests/sim_drive.rs`.)
+/// Within 15 %, or 5 g where that is more: the force sensor reads in whole grams, at rest as at the peak. (The drive itself is within
+/// 15 % in every cell: `tests/it/sim/drive.rs`.)
 #[track_caller]
 fn like_the_table(what: &str, trial: &Trial, wanted: f64) {
     let joint = &trial.summary.joints[0];

@@ -451,6 +451,22 @@ mod tests {
     }
 
     #[test]
+    fn the_way_back_takes_as_long_as_the_way_that_was_not_seen() {
+        let mut watch = watch(250, go(0));
+        assert_eq!(watch.way_back(ms(100)), Duration::ZERO, "14 counts");
+        // 120 counts in 300 ms, and the dead time.
+        assert_eq!(watch.way_back(ms(364)).as_millis(), 364);
+        assert_eq!(watch.way_back(ms(3000)), WAY_BACK_MAX);
+        // It is sent back to where it is seen: at rest there it is only once it had the time to come back, whatever its drive reports.
+        let back = HandCommand::Angles(PerDof::splat(go(1000)));
+        watch.wrote(&back.writes()[0], ms(300));
+        let (frozen, fresh) = sample(at(1000, 2), ms(400));
+        watch.take(&frozen, fresh);
+        let left = watch.way_back(ms(400)).as_millis();
+        assert!((300..400).contains(&left), "{left}");
+    }
+
+    #[test]
     fn only_feedback_that_stands_still_where_motion_was_asked_for_is_in_doubt() {
         let cases = [
             Case {
