@@ -1,8 +1,8 @@
 //! What a session asks of a wire, whichever protocol it speaks.
 
 use crate::codec::rs485::SaveResult;
-use crate::hand::Span;
 use crate::hand::register::BytePacking;
+use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::error::{BusCounts, BusError, Bytes};
 use crate::link::bus::late_replies::{LateReplies, LateReply};
 use crate::link::poll::cost::WireCost;
@@ -30,6 +30,14 @@ pub(crate) trait Bus: Send {
 
     /// Writes, and waits for the acknowledgement.
     async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError>;
+
+    /// Whether a write may be sent over this wire at all.
+    ///
+    /// # Errors
+    /// It could change a neighbour: nothing is sent.
+    fn allows(&self, _write: &RegisterWrite) -> Result<(), BusError> {
+        Ok(())
+    }
 
     /// The first of these spans whose reply cannot be mistaken for a late one; none if all could.
     fn choose(&mut self, shapes: &[Span]) -> Option<Span>;

@@ -4,7 +4,7 @@
 use crate::codec::modbus::words_for;
 use crate::codec::modbus::words_per_group;
 use crate::hand::register::BytePacking;
-use crate::hand::{HandId, Span};
+use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::late_replies::LateReplies;
 
 use crate::link::bus::client::Bus;
@@ -190,7 +190,7 @@ impl Bus for ModbusRtu {
     }
 
     async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError> {
-        self.word_use.allows(&write)?;
+        self.allows(&write)?;
         let response = self.call(modbus::write_request(&write), limit).await?;
         modbus::write_response(&write, &response)?;
         self.late.answered(None);
@@ -226,6 +226,10 @@ impl Bus for ModbusRtu {
         self.line.flush_pending();
         self.note_strays();
         Ok(())
+    }
+
+    fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
+        self.word_use.allows(write)
     }
 
     fn choose(&mut self, shapes: &[Span]) -> Option<Span> {

@@ -1,8 +1,8 @@
 //! Requests over Modbus TCP (manual 2.5), through tokio-modbus. Replies carry a number, which the filter checks.
 
 use crate::codec::modbus::words_per_group;
-use crate::hand::Span;
 use crate::hand::register::BytePacking;
+use crate::hand::{RegisterWrite, Span};
 use crate::link::bus::client::{Bus, Urgent};
 use crate::link::bus::error::{BusCounts, BusError, Bytes};
 use crate::link::bus::filter::{FilterCounts, ReplyFilter};
@@ -127,6 +127,10 @@ impl Bus for ModbusTcp {
     }
 
     // Transaction ids tell replies apart, so the first serves always.
+    fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
+        self.word_use.allows(write)
+    }
+
     fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
         shapes.first().copied()
     }
@@ -161,7 +165,7 @@ impl Bus for ModbusTcp {
         limit: Duration,
         urgent: Urgent<'_>,
     ) -> Result<(), BusError> {
-        self.word_use.allows(&write)?;
+        self.allows(&write)?;
         let request = modbus::write_request(&write);
         let response = self.call(request, limit, urgent).await?;
         modbus::write_response(&write, &response)

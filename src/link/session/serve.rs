@@ -527,6 +527,7 @@ impl Session {
         let Some(permitted) = self.status.series.permit(write, cause) else {
             return Err(BusError::Refused { reason });
         };
+        bus.allows(write)?;
         let limit = self.reply_limit(bus, ACK_LEN);
         let asked = self.now();
         self.counters.stats.writes += 1;

@@ -34,6 +34,8 @@ struct Command {
     at: Moment,
     targets: PerDof<Option<i16>>,
     speeds: PerDof<Option<i16>>,
+    /// A gesture moves the joints without a target, nobody knows where to.
+    gesture: bool,
 }
 
 /// Readings of one joint that should have shown motion and did not.
@@ -84,7 +86,10 @@ impl FeedbackWatch {
             self.tell(now, |command| put(&mut command.speeds, &speeds));
         } else if write.is_motion() {
             // A gesture: the hand may go anywhere.
-            self.tell(now, |command| command.targets = PerDof::splat(None));
+            self.tell(now, |command| {
+                command.targets = PerDof::splat(None);
+                command.gesture = true;
+            });
         }
     }
 
@@ -94,10 +99,11 @@ impl FeedbackWatch {
             at,
             targets: before.map_or(PerDof::splat(None), |command| command.targets),
             speeds: before.map_or(PerDof::splat(None), |command| command.speeds),
+            gesture: before.is_some_and(|command| command.gesture),
         };
         change(&mut command);
-        let told = |command: Command| (command.targets, command.speeds);
-        if before.map(told) == Some(told(command)) {
+        let is_same = |before: Command| command == Command { at, ..before };
+        if before.is_some_and(is_same) {
             return;
         }
         if self.commands.len() == COMMANDS_MAX {
@@ -299,9 +305,19 @@ impl FeedbackWatch {
         self.expected(dof, now).filter(|_| is_doubted)
     }
 
-    /// Where a joint must be at this time; `None` for one that was never read.
+    /// Where a joint must be at this time; `None` for one that was never read, or that a gesture may have moved since.
     pub(crate) fn expected(&self, dof: Dof, now: Moment) -> Option<Target> {
         let joint = self.joints[dof]?;
+        let ends = self.commands.iter().skip(1).map(|next| next.at);
+        let ends = ends.map(|at| at.plus(DEAD_TIME)).chain([now]);
+        let mut since = self
+            .commands
+            .iter()
+            .zip(ends)
+            .filter(|(_, end)| *end > joint.at);
+        if since.any(|(command, _)| command.gesture && command.targets[dof].is_none()) {
+            return None;
+        }
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
     }
 
@@ -376,7 +392,7 @@ fn nearest(angle: f64) -> Angle {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
-    use crate::hand::{AngleReading, ForceReading, HandCommand, Timed};
+    use crate::hand::{AngleReading, ForceReading, Gesture, GestureRoute, HandCommand, Timed};
 
     fn ms(ms: u64) -> Moment {
         Moment::from_micros(ms * 1000)
@@ -448,6 +464,22 @@ mod tests {
     fn moving(t: u64) -> i16 {
         let way = i16::try_from(t.saturating_sub(64) * 400 / 1000).unwrap();
         (1000 - way).max(0)
+    }
+
+    #[test]
+    fn where_a_gesture_moves_a_joint_is_not_known_until_it_is_read() {
+        let mut watch = watch(250, go(0));
+        let gesture = HandCommand::Gesture(Gesture::MIN, GestureRoute::Register1008);
+        watch.wrote(&gesture.writes()[0], ms(300));
+        assert_eq!(watch.expected(Dof::Index, ms(400)), None);
+        let (read, fresh) = sample(at(700, 1), ms(500));
+        watch.take(&read, fresh);
+        assert_eq!(watch.expected(Dof::Index, ms(600)), None, "it goes on");
+        let hold = HandCommand::Angles(PerDof::splat(go(700)));
+        watch.wrote(&hold.writes()[0], ms(600));
+        let (read, fresh) = sample(at(690, 1), ms(700));
+        watch.take(&read, fresh);
+        assert!(watch.expected(Dof::Index, ms(750)).is_some());
     }
 
     #[test]

@@ -35,7 +35,7 @@ const RESTS_WITHIN: f64 = 60.0;
 /// A pose that is expected, not read, is one in which the joints were by so many counts …
 const EXPECTED_COUNTS: f64 = 20.0;
 /// … not longer ago than this.
-const EXPECTED_WITHIN: Duration = Duration::from_millis(1200);
+const EXPECTED_WITHIN: Duration = Duration::from_millis(200);
 /// Joints in doubt get frames for this long, and then nothing more.
 const DOUBTED_HOLD: Duration = Duration::from_millis(250);
 /// A joint that another controller moves arrives within this.
@@ -282,9 +282,18 @@ impl Witness {
         let jobs =
             jobs.map(|(asked, done)| (*done, format!("answers what was asked at {asked:?}")));
         let quiet = [(self.quiet, "the faults end".to_owned())];
-        let all = frames.chain(states).chain(poses).chain(presses);
+        let truly = self.reality.iter().map(|(at, joints)| {
+            let rounded = joints.as_array().map(|angle| angle.round() as i16);
+            (*at, format!("is at {rounded:?}"))
+        });
+        let all = frames
+            .chain(states)
+            .chain(poses)
+            .chain(presses)
+            .chain(truly);
         let mut lines: Vec<(Moment, String)> = all.chain(jobs).chain(quiet).collect();
         lines.sort();
+        lines.dedup();
         for (at, what) in lines {
             println!("{at:?} {what}");
         }
