@@ -100,8 +100,9 @@ impl Session {
         let now = self.now();
         let hold = self.motion.hold;
         // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
-        // would never see the hand rest.
-        let waits = self.motion.waits_for_look && self.slowness.slowest().is_some();
+        // would never see the hand rest. While the line is left to the hand nobody looks.
+        let looks = self.slowness.slowest().is_some() && !self.leaves_line;
+        let waits = self.motion.waits_for_look && looks;
         let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now) && !waits;
         if hold.is_some_and(is_due) {
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).

@@ -14,6 +14,9 @@ const STEP: Duration = Duration::from_millis(20);
 /// What is on its way has come so far.
 const UNDER_WAY: i16 = 850;
 
+/// As over a VPN or a relay.
+const SLOW_REPLY: Duration = Duration::from_millis(150);
+
 /// Looks at the joints while time goes by.
 pub(super) struct Witness<'a> {
     mover: &'a mut dyn Mover,
@@ -181,6 +184,7 @@ impl<'a> Witness<'a> {
             }
             Column::GatewayRefuses => self.gateway_refuses(&hand),
             Column::StopThenLost => self.stop_then_lost(&hand),
+            Column::RepliesSlow => self.replies_are_slow(&hand),
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
@@ -202,6 +206,14 @@ impl<'a> Witness<'a> {
         self.mover.stop();
         self.pass(800);
         hand.silence(false);
+        self.pass(5000);
+    }
+
+    /// Replies come later from now on, as over a VPN or a relay, and a person presses STOP.
+    fn replies_are_slow(&mut self, hand: &SeamHand) {
+        hand.delay_replies(SLOW_REPLY);
+        self.pass(600);
+        self.mover.stop();
         self.pass(5000);
     }
 

@@ -39,6 +39,8 @@ enum Carries {
     Nothing,
     /// Requests pass; replies are late, doubled or wrong now and then.
     OddReplies,
+    /// Requests pass; each reply comes this much later.
+    Late(Duration),
     /// No request passes: a Modbus gateway answers that the hand does not.
     Refusals,
 }
@@ -91,6 +93,7 @@ impl Gate {
         match self.carries() {
             Carries::All => {}
             Carries::Nothing | Carries::Refusals => return Ok(()),
+            Carries::Late(by) => sleep(by).await,
             Carries::OddReplies => {
                 let (kind, late_ms) = {
                     let mut rng = self.rng.lock().unwrap();
@@ -343,6 +346,11 @@ impl SeamHand {
     /// A gateway answers in place of the hand.
     pub(super) fn refuse(&self) {
         *self.gate.carries.lock().unwrap() = Carries::Refusals;
+    }
+
+    /// Each reply comes this much later.
+    pub(super) fn delay_replies(&self, by: Duration) {
+        *self.gate.carries.lock().unwrap() = Carries::Late(by);
     }
 
     /// Replies are late, doubled or wrong now and then.

@@ -80,6 +80,7 @@ impl Try {
                 | Column::SecondHandscope
                 | Column::GatewayRefuses
                 | Column::StopThenLost
+                | Column::RepliesSlow
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
             Row::Trial => &[
@@ -276,6 +277,7 @@ events! {
     the_holder_is_frozen HolderFrozen,
     the_gateway_refuses GatewayRefuses,
     a_stop_meets_a_lost_link StopThenLost,
+    replies_are_slow RepliesSlow,
     the_computer_is_busy Busy,
     no_descriptor_is_left NoDescriptors,
 }

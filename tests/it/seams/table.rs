@@ -48,6 +48,7 @@ pub(super) enum Column {
     HolderFrozen,
     GatewayRefuses,
     StopThenLost,
+    RepliesSlow,
     Busy,
     NoDescriptors,
 }
@@ -87,7 +88,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 23] = [
+    pub(super) const ALL: [Self; 24] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -109,6 +110,7 @@ impl Column {
         Self::HolderFrozen,
         Self::GatewayRefuses,
         Self::StopThenLost,
+        Self::RepliesSlow,
         Self::Busy,
         Self::NoDescriptors,
     ];
@@ -136,6 +138,7 @@ impl Column {
             Self::HolderFrozen => "holder frozen, killed",
             Self::GatewayRefuses => "gateway refuses",
             Self::StopThenLost => "stop, then link lost",
+            Self::RepliesSlow => "slow replies",
             Self::Busy => "computer busy",
             Self::NoDescriptors => "no descriptor left",
         }
@@ -175,6 +178,9 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
         }
         (Column::GatewayRefuses, _) if !matches!(protocol, Protocol::Tcp | Protocol::Rtu) => {
             CannotBe("only Modbus has exceptions")
+        }
+        (Column::RepliesSlow, _) if !matches!(protocol, Protocol::Tcp) => {
+            CannotBe("late replies carry no number there: that is a lost link, which is tried")
         }
         (Column::SecondHandscope, _) if is_port && is_in_the_window => {
             CannotBe("one program opens a serial port: tried with the commands")
@@ -238,6 +244,7 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
         Column::GatewayRefuses => Tried(NothingMore(0), LINK_IS_LOST),
         Column::StopThenLost => Tried(Held(4000), ""),
+        Column::RepliesSlow => Tried(Held(4500), ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
     }
@@ -266,6 +273,7 @@ const fn series(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => told_by_the_window(column),
     }
@@ -296,6 +304,7 @@ const fn leading(column: Column) -> Cell {
         | Column::SecondMaster
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::FaultOrHeat => told_by_the_window(column),
     }
 }
@@ -323,6 +332,7 @@ const fn exhibition(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => told_by_the_window(column),
     }
@@ -348,6 +358,7 @@ const fn calibration(column: Column) -> Cell {
         | Column::OddReplies
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::FaultOrHeat => Tried(Still, ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
@@ -375,6 +386,7 @@ const fn trial(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "feedback shows rest"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
+        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
@@ -400,6 +412,7 @@ const fn follow(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "lost"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
+        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
     }
@@ -422,6 +435,7 @@ const fn share(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
         | Column::Disobeys => follow(column),
@@ -459,6 +473,7 @@ const fn stdio(column: Column) -> Cell {
         | Column::HolderFrozen
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors => share(column),
     }
@@ -487,6 +502,7 @@ const fn params(column: Column) -> Cell {
         | Column::FaultOrHeat
         | Column::GatewayRefuses
         | Column::StopThenLost
+        | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
         | Column::ReaderGone => Tried(Settled, ""),
