@@ -34,12 +34,18 @@ fn quick() -> SearchGoal {
 #[test]
 fn a_claim_holds_and_its_close_is_about_as_quick_as_the_best() {
     let (mut above, mut checked) = (0, 0);
-    for (seed, stiffness) in [(0, 13.0), (5, 40.0), (11, 3.0), (14, 25.0)] {
+    // The second one is missed: on a stiff object the search stays with two stages where one fast stage would do.
+    for (seed, stiffness, slower) in [
+        (0, 13.0, 1.15),
+        (5, 40.0, 1.5),
+        (11, 3.0, 1.15),
+        (14, 25.0, 1.15),
+    ] {
         let case = case(seed, stiffness, (&goal(), 20));
         assert!(case.claims, "{case:?}");
-        assert!(case.close_s < 1.5 * case.best_s, "{case:?}");
+        assert!(case.close_s < slower * case.best_s, "{case:?}");
         assert!(case.highest_g < 1.1 * f64::from(LIMIT), "{case:?}");
-        assert!(case.trials <= 95 && case.took_s < 450.0, "{case:?}");
+        assert!(case.trials <= 90 && case.took_s < 420.0, "{case:?}");
         above += case.above;
         checked += case.checked;
     }
