@@ -30,6 +30,8 @@ pub(crate) struct HoldWatch {
     /// When the frames began that go on now.
     follows_from: Moment,
     pose: PerDof<Target>,
+    /// The pose was read; until then it is where the joints must be by what they were told.
+    is_read: bool,
     first_sent: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
@@ -66,6 +68,7 @@ impl HoldWatch {
             alarmed: false,
             follows_from: at,
             pose: PerDof::splat(Target::Leave),
+            is_read: false,
             first_sent: None,
             last_sent: None,
             still_since: None,
@@ -126,9 +129,17 @@ impl HoldWatch {
         is_blind && !std::mem::replace(&mut self.looked, true)
     }
 
-    /// The targets of the hold frame that leaves at `now`, given where the joints were seen last.
-    pub(crate) fn frame(&mut self, newest: &PerDof<Target>, now: Moment) -> PerDof<Target> {
-        let follows = now.since(self.follows_from) <= HOLD_FOLLOWS;
+    /// The targets of the hold frame that leaves at `now`, given where the joints are, and whether that was read or is expected. A pose
+    /// that was expected is replaced by the first that is read, however late.
+    pub(crate) fn frame(
+        &mut self,
+        newest: &PerDof<Target>,
+        is_read: bool,
+        now: Moment,
+    ) -> PerDof<Target> {
+        let is_first_read = is_read && !self.is_read;
+        let follows = is_first_read || now.since(self.follows_from) <= HOLD_FOLLOWS;
+        self.is_read |= is_read;
         for (dof, target) in self.pose.iter_mut() {
             if follows || *target == Target::Leave {
                 *target = newest[dof];
@@ -221,7 +232,7 @@ mod tests {
     fn rest_of(mut watch: HoldWatch, angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
         (0..200).map(|n| n * 10).find(|t| {
             if *t == sent {
-                watch.frame(&PerDof::splat(Target::Leave), ms(*t));
+                watch.frame(&PerDof::splat(Target::Leave), true, ms(*t));
             }
             let (sample, fresh) = sample(ms(*t), angle_at(*t));
             watch.rests(&sample, fresh, &PerDof::splat(false))
@@ -275,7 +286,7 @@ mod tests {
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
         let mut watch = HoldWatch::new(ms(7), false, Duration::ZERO);
         assert_eq!(watch.next_frame(ms(7)), Some(ms(7)));
-        watch.frame(&PerDof::splat(Target::Leave), ms(9));
+        watch.frame(&PerDof::splat(Target::Leave), true, ms(9));
         assert_eq!(watch.next_frame(ms(10)), Some(ms(49)));
     }
 
@@ -283,7 +294,7 @@ mod tests {
     fn frames_for_joints_in_doubt_cease_once_the_hand_had_time_to_obey_and_the_others_rest() {
         let mut watch = HoldWatch::new(ms(0), true, Duration::ZERO);
         for t in (0..=240).step_by(40) {
-            watch.frame(&PerDof::splat(Target::Leave), ms(t));
+            watch.frame(&PerDof::splat(Target::Leave), true, ms(t));
             watch.doubted_acknowledged(ms(t));
             watch.trusted_rest();
         }
@@ -309,12 +320,12 @@ mod tests {
     fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
         let mut watch = HoldWatch::new(ms(0), false, Duration::ZERO);
-        assert_eq!(watch.frame(&pose(500), ms(0)), pose(500));
-        assert_eq!(watch.frame(&pose(480), ms(40)), pose(480));
-        assert_eq!(watch.frame(&pose(470), ms(160)), pose(480));
+        assert_eq!(watch.frame(&pose(500), true, ms(0)), pose(500));
+        assert_eq!(watch.frame(&pose(480), true, ms(40)), pose(480));
+        assert_eq!(watch.frame(&pose(470), true, ms(160)), pose(480));
         let mut blind = HoldWatch::new(ms(0), false, Duration::ZERO);
         let unknown = PerDof::splat(Target::Leave);
-        assert_eq!(blind.frame(&unknown, ms(0)), unknown);
-        assert_eq!(blind.frame(&pose(300), ms(200)), pose(300));
+        assert_eq!(blind.frame(&unknown, true, ms(0)), unknown);
+        assert_eq!(blind.frame(&pose(300), true, ms(200)), pose(300));
     }
 }

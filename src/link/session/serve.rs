@@ -99,16 +99,17 @@ impl Session {
         self.watch_heat();
         let now = self.now();
         let hold = self.motion.hold;
-        // Where an acknowledgement takes longer than the frames are apart, the next waits for a look at the pose: frames alone
-        // would never see the hand rest. While the line is left to the hand nobody looks.
-        let looks = self.slowness.slowest().is_some() && !self.leaves_line;
-        let waits = self.motion.waits_for_look && looks;
-        let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now) && !waits;
+        let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
         if hold.is_some_and(is_due) {
+            // Where an acknowledgement takes longer than the frames are apart, the pose is read between two: frames alone would never
+            // see the hand rest. While the line is left to the hand nobody looks.
+            let looks = self.slowness.slowest().is_some() && !self.leaves_line;
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
-            if self.motion.hold.as_mut().is_some_and(is_blind) {
+            if looks && self.motion.waits_for_look
+                || self.motion.hold.as_mut().is_some_and(is_blind)
+            {
                 return self.read_pose(bus).await.map(|()| true);
             }
             self.send_hold(bus).await?;
@@ -464,10 +465,11 @@ impl Session {
     async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
         let newest = self.hold_targets(now);
+        let is_read = self.sample.angles_fresh(now, ANGLE_FRESH);
         let Some(hold) = &mut self.motion.hold else {
             return Ok(());
         };
-        let command = HandCommand::Angles(hold.frame(&newest, now));
+        let command = HandCommand::Angles(hold.frame(&newest, is_read, now));
         if !hold.alarmed && !self.feedback.is_doubted() {
             self.status.hold = Hold::Asked {
                 at: hold.at,

@@ -60,6 +60,8 @@ struct Joint {
     began: bool,
     /// What is read of it counts for nothing until its angle changes.
     doubted: bool,
+    /// Should its angle and its status be old, it is back where it was seen by then.
+    back_at: Moment,
 }
 
 /// Watches feedback of one conversation.
@@ -151,12 +153,15 @@ impl FeedbackWatch {
                 unchanged: None,
                 began: !is_stopped && self.joints[dof].is_some(),
                 doubted: false,
+                back_at: asked,
             };
         };
         joint.estimate = self.estimate(dof, &joint, asked);
         joint.at = asked;
         let way = joint.estimate - f64::from(seen);
         if self.has_reason(dof, &joint) {
+            let back = self.back_from(dof, way);
+            joint.back_at = joint.back_at.max(asked.plus(back));
             joint.estimate = f64::from(seen);
             joint.unchanged = None;
             joint.began = false;
@@ -195,13 +200,9 @@ impl FeedbackWatch {
         match status {
             Status::ForceReached => joint.estimate < f64::from(joint.seen),
             Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
-            // One that was told to go and come back had to have the time for it: until then this may be as old as the angle.
-            Status::PositionReached => [target.map(f64::from), Some(joint.estimate)]
-                .into_iter()
-                .all(|place| {
-                    let way = place.map(|place| (place - f64::from(joint.seen)).abs());
-                    way.is_some_and(|way| way <= ARRIVED_WITHIN)
-                }),
+            Status::PositionReached => target.is_some_and(|target| {
+                (f64::from(target) - f64::from(joint.seen)).abs() <= ARRIVED_WITHIN
+            }),
             Status::Releasing | Status::Grasping | Status::Unknown(_) => false,
         }
     }
@@ -326,14 +327,21 @@ impl FeedbackWatch {
     pub(crate) fn way_back(&self, now: Moment) -> Duration {
         let own = self.joints.iter().filter_map(|(dof, joint)| {
             let joint = joint.as_ref()?;
-            let way = (self.estimate(dof, joint, now) - f64::from(joint.seen)).abs();
-            let speed = self.commands.back()?.speeds[dof]?;
-            let counts_per_s = f64::from(speed) * Speed::ANGLE_PER_UNIT;
-            let is_visible = way >= VISIBLE && counts_per_s > 0.0;
-            let back = is_visible.then(|| Duration::from_secs_f64(way / counts_per_s))?;
-            Some((back + DEAD_TIME).min(WAY_BACK_MAX))
+            let way = self.estimate(dof, joint, now) - f64::from(joint.seen);
+            Some(self.back_from(dof, way).max(joint.back_at.since(now)))
         });
         own.max().unwrap_or_default()
+    }
+
+    /// How long a joint needs for this way, counts; nothing where it is too short to be seen.
+    fn back_from(&self, dof: Dof, way: f64) -> Duration {
+        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
+        let counts_per_s = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
+        if way.abs() < VISIBLE || counts_per_s <= 0.0 {
+            return Duration::ZERO;
+        }
+        let back = Duration::from_secs_f64(way.abs() / counts_per_s);
+        (back + DEAD_TIME).min(WAY_BACK_MAX)
     }
 
     /// Where a joint must be: from where it was on to what it was told, as fast as it was told, and never beyond.
