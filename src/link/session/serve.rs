@@ -559,6 +559,7 @@ impl Session {
         let span = write.span();
         self.ends.image.send_modify(|image| image.forget(span));
         written?;
+        self.feedback.acknowledged(write);
         self.answered(took.saturating_sub(late));
         Ok(())
     }

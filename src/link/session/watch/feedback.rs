@@ -23,6 +23,10 @@ const VISIBLE: f64 = 25.0;
 const ARRIVED_WITHIN: f64 = 50.0;
 /// A stop waits no longer than this for joints to come back.
 const WAY_BACK_MAX: Duration = Duration::from_secs(1);
+/// A joint that goes so many counts away from its target is moved by something else …
+const AWAY: f64 = 5.0;
+/// … if it was told so long ago: the dead time, and as much for a late frame.
+const TURNS_WITHIN: Duration = Duration::from_millis(130);
 /// From a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
 /// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
@@ -36,6 +40,14 @@ struct Command {
     speeds: PerDof<Option<i16>>,
     /// A gesture moves the joints without a target, nobody knows where to.
     gesture: bool,
+}
+
+/// Where a joint was told to go, when, and where it was seen then.
+#[derive(Debug, Clone, Copy)]
+struct Aim {
+    target: i16,
+    at: Moment,
+    from: i16,
 }
 
 /// Readings of one joint that should have shown motion and did not.
@@ -72,15 +84,21 @@ pub(crate) struct FeedbackWatch {
     /// Oldest first.
     commands: VecDeque<Command>,
     speeds_written: Option<Moment>,
+    /// Whether this joint goes where it was told is not known: the newest write to it was not acknowledged, or it was seen to go
+    /// elsewhere.
+    unsure: PerDof<bool>,
+    aims: PerDof<Option<Aim>>,
 }
 
 impl FeedbackWatch {
     /// We write this, or may have. A joint that is left alone goes where it was told before.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
+        self.mark(write, true);
         let within = |row: &register::Register| row.span().covers(write.span());
         if within(&register::ANGLE_SET) {
             let targets = write.shorts(&register::ANGLE_SET);
             let targets = targets.map(|target| target.filter(|target| *target >= 0));
+            self.aim(&targets, now);
             self.tell(now, |command| put(&mut command.targets, &targets));
         } else if within(&register::SPEED_SET) {
             self.speeds_written = Some(now);
@@ -92,6 +110,38 @@ impl FeedbackWatch {
                 command.targets = PerDof::splat(None);
                 command.gesture = true;
             });
+            self.aims = PerDof::default();
+        }
+    }
+
+    /// The hand acknowledged this write.
+    pub(crate) fn acknowledged(&mut self, write: &RegisterWrite) {
+        self.mark(write, false);
+    }
+
+    fn aim(&mut self, targets: &PerDof<Option<i16>>, at: Moment) {
+        for (dof, target) in targets.iter() {
+            let is_new = |target: &i16| self.aims[dof].is_none_or(|aim| aim.target != *target);
+            if let (Some(target), Some(joint)) = (target.filter(is_new), self.joints[dof]) {
+                let from = joint.seen;
+                self.aims[dof] = Some(Aim { target, at, from });
+            }
+        }
+    }
+
+    fn mark(&mut self, write: &RegisterWrite, unsure: bool) {
+        let within = |row: &register::Register| row.span().covers(write.span());
+        let rows = [&register::ANGLE_SET, &register::SPEED_SET];
+        let written = match rows.into_iter().find(|row| within(row)) {
+            Some(row) => write
+                .shorts(row)
+                .map(|value| value.is_some_and(|value| value >= 0)),
+            None => PerDof::splat(write.is_motion()),
+        };
+        for (dof, is_written) in written.iter() {
+            if *is_written {
+                self.unsure[dof] = unsure;
+            }
         }
     }
 
@@ -131,12 +181,26 @@ impl FeedbackWatch {
             return;
         };
         for dof in Dof::ALL {
+            self.unsure[dof] |= self.goes_elsewhere(dof, angle.value[dof], angle.asked);
             // An angle that makes no sense says nothing of where the joint is.
             if angle.value[dof].hold().is_some() {
                 self.joints[dof] = Some(self.judged(dof, angle.value[dof], angle.asked));
             }
         }
         self.forget_old(angle.asked);
+    }
+
+    /// True if a joint moves away from where it was told to go, or is farther from it than its own speed can have carried it.
+    fn goes_elsewhere(&self, dof: Dof, angle: AngleReading, asked: Moment) -> bool {
+        let (Some(joint), Some(aim)) = (self.joints[dof], self.aims[dof]) else {
+            return false;
+        };
+        let way = |from: i16| (f64::from(aim.target) - f64::from(from)).abs();
+        let goes_away = way(angle.raw()) > way(joint.seen) + AWAY;
+        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
+        let speed = f64::from(speed.unwrap_or(Speed::MAX.get())) * Speed::ANGLE_PER_UNIT;
+        let farthest = way(aim.from) + VISIBLE + speed * TURNS_WITHIN.as_secs_f64();
+        goes_away && asked.since(aim.at) >= TURNS_WITHIN || way(angle.raw()) > farthest
     }
 
     /// A joint after this reading of its angle.
@@ -159,7 +223,7 @@ impl FeedbackWatch {
         joint.estimate = self.estimate(dof, &joint, asked);
         joint.at = asked;
         let way = joint.estimate - f64::from(seen);
-        if self.has_reason(dof, &joint) {
+        if self.unsure[dof] || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
             joint.back_at = joint.back_at.max(asked.plus(back));
             joint.estimate = f64::from(seen);
@@ -459,9 +523,16 @@ mod tests {
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(speed))));
         let angles = HandCommand::Angles(PerDof::splat(target));
         for command in [speeds, angles] {
-            watch.wrote(&command.writes()[0], ms(0));
+            tell(&mut watch, &command, ms(0));
         }
         watch
+    }
+
+    /// It is written and acknowledged.
+    fn tell(watch: &mut FeedbackWatch, command: &HandCommand, at: Moment) {
+        let writes = command.writes();
+        watch.wrote(&writes[0], at);
+        watch.acknowledged(&writes[0]);
     }
 
     fn go(angle: i16) -> Target {
@@ -475,16 +546,44 @@ mod tests {
     }
 
     #[test]
+    fn a_write_without_acknowledgement_puts_no_joint_in_doubt() {
+        let mut watch = watch(250, go(1000));
+        let close = HandCommand::Angles(PerDof::splat(go(0)));
+        watch.wrote(&close.writes()[0], ms(0));
+        for t in (20..900).step_by(20) {
+            let (unmoved, fresh) = sample(at(1000, 2), ms(t));
+            watch.take(&unmoved, fresh);
+            assert!(!watch.is_suspect() && !watch.is_frozen(), "{t}");
+        }
+        tell(&mut watch, &close, ms(900));
+        for t in (900..1500).step_by(20) {
+            let (unmoved, fresh) = sample(at(1000, 2), ms(t));
+            watch.take(&unmoved, fresh);
+        }
+        assert!(watch.is_frozen());
+    }
+
+    #[test]
+    fn a_joint_that_another_program_moved_is_not_in_doubt_where_it_rests() {
+        let mut watch = watch(250, go(1000));
+        for t in (20..2000).step_by(20) {
+            let (moved, fresh) = sample(at((1000 - i16::try_from(t).unwrap()).max(600), 2), ms(t));
+            watch.take(&moved, fresh);
+            assert!(!watch.is_suspect(), "{t}");
+        }
+    }
+
+    #[test]
     fn where_a_gesture_moves_a_joint_is_not_known_until_it_is_read() {
         let mut watch = watch(250, go(0));
         let gesture = HandCommand::Gesture(Gesture::MIN, GestureRoute::Register1008);
-        watch.wrote(&gesture.writes()[0], ms(300));
+        tell(&mut watch, &gesture, ms(300));
         assert_eq!(watch.expected(Dof::Index, ms(400)), None);
         let (read, fresh) = sample(at(700, 1), ms(500));
         watch.take(&read, fresh);
         assert_eq!(watch.expected(Dof::Index, ms(600)), None, "it goes on");
         let hold = HandCommand::Angles(PerDof::splat(go(700)));
-        watch.wrote(&hold.writes()[0], ms(600));
+        tell(&mut watch, &hold, ms(600));
         let (read, fresh) = sample(at(690, 1), ms(700));
         watch.take(&read, fresh);
         assert!(watch.expected(Dof::Index, ms(750)).is_some());
@@ -499,7 +598,7 @@ mod tests {
         assert_eq!(watch.way_back(ms(3000)), WAY_BACK_MAX);
         // It is sent back to where it is seen: at rest there it is only once it had the time to come back, whatever its drive reports.
         let back = HandCommand::Angles(PerDof::splat(go(1000)));
-        watch.wrote(&back.writes()[0], ms(300));
+        tell(&mut watch, &back, ms(300));
         let (frozen, fresh) = sample(at(1000, 2), ms(400));
         watch.take(&frozen, fresh);
         let left = watch.way_back(ms(400)).as_millis();
@@ -632,7 +731,7 @@ mod tests {
         assert_eq!(held(&watch, 300), go(824));
         // The hold acts late too.
         let hold = HandCommand::Angles(PerDof::splat(go(824)));
-        watch.wrote(&hold.writes()[0], ms(300));
+        tell(&mut watch, &hold, ms(300));
         assert_eq!(held(&watch, 364), go(775));
         assert_eq!(held(&watch, 1000), go(824));
         assert_eq!(
