@@ -13,6 +13,8 @@ use std::time::Duration;
 pub(crate) const FROZEN_AFTER: Duration = Duration::from_millis(450);
 /// Readings of the angles in this time at least: a pause in reading says nothing.
 const READINGS_MIN: u32 = 5;
+/// Without readings for so long, a joint that is seen where it was may have gone and come back.
+const PAUSE: Duration = Duration::from_millis(250);
 /// Readings after which a stop already relies on nothing that this joint reports …
 const SUSPECT_READINGS: u32 = 2;
 /// … over this time: a hand that acts later than most is not frozen.
@@ -220,9 +222,13 @@ impl FeedbackWatch {
                 back_at: asked,
             };
         };
+        let paused = asked.since(joint.at) > PAUSE;
         joint.estimate = self.estimate(dof, &joint, asked);
         joint.at = asked;
         let way = joint.estimate - f64::from(seen);
+        // Where it was told to stay it is seen.
+        joint.doubted &= self.unsure[dof] || way.abs() >= VISIBLE;
+        joint.unchanged = joint.unchanged.filter(|_| !paused);
         if self.unsure[dof] || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
             joint.back_at = joint.back_at.max(asked.plus(back));
