@@ -95,6 +95,7 @@ pub(crate) struct FeedbackWatch {
 impl FeedbackWatch {
     /// We write this, or may have. A joint that is left alone goes where it was told before.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
+        self.forget_unsure(write);
         self.mark(write, true);
         let within = |row: &register::Register| row.span().covers(write.span());
         if within(&register::ANGLE_SET) {
@@ -132,17 +133,21 @@ impl FeedbackWatch {
     }
 
     fn mark(&mut self, write: &RegisterWrite, unsure: bool) {
-        let within = |row: &register::Register| row.span().covers(write.span());
-        let rows = [&register::ANGLE_SET, &register::SPEED_SET];
-        let written = match rows.into_iter().find(|row| within(row)) {
-            Some(row) => write
-                .shorts(row)
-                .map(|value| value.is_some_and(|value| value >= 0)),
-            None => PerDof::splat(write.is_motion()),
-        };
-        for (dof, is_written) in written.iter() {
+        for (dof, is_written) in written(write).iter() {
             if *is_written {
                 self.unsure[dof] = unsure;
+            }
+        }
+    }
+
+    /// What a joint was told before it went elsewhere is no reason for it to move: it is told anew.
+    fn forget_unsure(&mut self, write: &RegisterWrite) {
+        for (dof, is_written) in written(write).iter() {
+            if *is_written && self.unsure[dof] {
+                for command in &mut self.commands {
+                    command.targets[dof] = None;
+                }
+                self.aims[dof] = None;
             }
         }
     }
@@ -226,10 +231,11 @@ impl FeedbackWatch {
         joint.estimate = self.estimate(dof, &joint, asked);
         joint.at = asked;
         let way = joint.estimate - f64::from(seen);
+        let is_unsure = self.unsure[dof] || self.is_led_by_gesture(dof);
         // Where it was told to stay it is seen.
-        joint.doubted &= self.unsure[dof] || way.abs() >= VISIBLE;
+        joint.doubted &= is_unsure || way.abs() >= VISIBLE;
         joint.unchanged = joint.unchanged.filter(|_| !paused);
-        if self.unsure[dof] || self.has_reason(dof, &joint) {
+        if is_unsure || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
             joint.back_at = joint.back_at.max(asked.plus(back));
             joint.estimate = f64::from(seen);
@@ -259,6 +265,12 @@ impl FeedbackWatch {
             unchanged.readings = unchanged.readings.saturating_add(1);
         }
         joint
+    }
+
+    /// True if a gesture moves this joint, nobody knows where to.
+    fn is_led_by_gesture(&self, dof: Dof) -> bool {
+        let told = self.commands.back();
+        told.is_some_and(|told| told.gesture && told.targets[dof].is_none())
     }
 
     /// True if the drive itself reports why the joint does not go further the way it was told.
@@ -434,6 +446,16 @@ impl FeedbackWatch {
     }
 }
 
+/// The joints whose targets or speeds this writes.
+fn written(write: &RegisterWrite) -> PerDof<bool> {
+    let rows = [&register::ANGLE_SET, &register::SPEED_SET];
+    let row = rows.into_iter().find(|row| row.span().covers(write.span()));
+    row.map_or(PerDof::splat(write.is_motion()), |row| {
+        let values = write.shorts(row);
+        values.map(|value| value.is_some_and(|value| value >= 0))
+    })
+}
+
 impl Unchanged {
     fn is_suspect(&self) -> bool {
         self.readings >= SUSPECT_READINGS && self.last.since(self.since) >= SUSPECT_AFTER
@@ -562,7 +584,7 @@ mod tests {
             assert!(!watch.is_suspect() && !watch.is_frozen(), "{t}");
         }
         tell(&mut watch, &close, ms(900));
-        for t in (900..1500).step_by(20) {
+        for t in (900..1700).step_by(20) {
             let (unmoved, fresh) = sample(at(1000, 2), ms(t));
             watch.take(&unmoved, fresh);
         }
