@@ -1,15 +1,13 @@
 //! A request that is under way.
 
-use crate::hand::{RegisterWrite, Span};
+use crate::hand::{Span, Writes};
 use crate::link::request::{Answer, Request, RequestError};
-use arrayvec::ArrayVec;
-
-/// Writes of one job: those of the longest command, and the hold before clearing errors.
-pub(crate) const JOB_MAX: usize = 7;
 
 /// Writes that go out one a step.
 pub(crate) struct WriteJob {
-    pub(crate) writes: ArrayVec<RegisterWrite, JOB_MAX>,
+    pub(crate) writes: Writes,
+    /// Where the hand is by then is made its target before the first write.
+    pub(crate) holds_first: bool,
     pub(crate) is_motion: bool,
     pub(crate) answer: Answer<()>,
 }

@@ -1,15 +1,14 @@
 //! Commands and reads on their way: writes that go out one a step, and reads of any memory. Motion among them needs
 //! arming, like every other.
 
-use crate::hand::{HandCommand, HandSample, Moment, RegisterWrite, Reply, Span, Writes};
+use crate::hand::{HandCommand, HandSample, Moment, Reply, Span};
 use crate::link::bus::late_replies::LATE_HORIZON;
 use crate::link::bus::{Bus, BusError};
 use crate::link::lease::Lease;
 use crate::link::request::{Answer, Request, RequestError};
 use crate::link::session::conversation::{Session, WireEnd};
-use crate::link::session::job::{JOB_MAX, ReadJob, SessionJob, WriteJob};
+use crate::link::session::job::{ReadJob, SessionJob, WriteJob};
 use crate::record::{LinkState, WriteCause};
-use arrayvec::ArrayVec;
 use std::sync::Arc;
 
 impl Session {
@@ -48,15 +47,10 @@ impl Session {
             let _told = answer.send(Err(refused));
             return;
         }
-        let mut writes = ArrayVec::new();
-        // A cleared fault may set free a move to an old target: the pose is made the target first.
-        if command == HandCommand::ClearErrors {
-            let hold = HandCommand::Angles(self.hold_targets(self.now()));
-            extend(&mut writes, hold.writes());
-        }
-        extend(&mut writes, command.writes());
         self.job = Some(SessionJob::Write(WriteJob {
-            writes,
+            writes: command.writes(),
+            // A cleared fault may set free a move to an old target.
+            holds_first: command == HandCommand::ClearErrors,
             is_motion,
             answer,
         }));
@@ -87,6 +81,9 @@ impl Session {
     }
 
     async fn write_next(&mut self, bus: &mut dyn Bus, mut job: WriteJob) -> Result<(), WireEnd> {
+        if std::mem::take(&mut job.holds_first) {
+            return self.hold_for(bus, job).await;
+        }
         let Some(write) = job.writes.pop_at(0) else {
             let _told = job.answer.send(Ok(()));
             return Ok(());
@@ -104,6 +101,19 @@ impl Session {
                 self.failed(bus, &error).await?;
             }
         }
+        Ok(())
+    }
+
+    /// Makes the pose of this moment the target: the request may have waited for a stop.
+    async fn hold_for(&mut self, bus: &mut dyn Bus, job: WriteJob) -> Result<(), WireEnd> {
+        let hold = HandCommand::Angles(self.hold_targets(self.now()));
+        for write in hold.writes() {
+            if let Err(error) = self.write(bus, &write, WriteCause::Request).await {
+                let _told = job.answer.send(Err(request_error(&error, write.span())));
+                return self.failed(bus, &error).await;
+            }
+        }
+        self.job = Some(SessionJob::Write(job));
         Ok(())
     }
 
@@ -162,13 +172,6 @@ impl Session {
     fn store_read(&self, span: Span, asked: Moment, read: Result<Vec<u8>, RequestError>) {
         let image = &self.ends.image;
         image.send_modify(|image| image.take_area(span, asked, read));
-    }
-}
-
-fn extend(into: &mut ArrayVec<RegisterWrite, JOB_MAX>, writes: Writes) {
-    for write in writes {
-        let full = into.try_push(write).is_err();
-        debug_assert!(!full, "a job holds the longest command and a hold");
     }
 }
 
