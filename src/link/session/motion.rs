@@ -3,7 +3,9 @@
 use crate::hand::ArmEpoch;
 use crate::hand::Setpoints;
 use crate::hand::{Dof, HandCommand, HandSample, Moment, PerDof, RegisterWrite, Target, Timed};
+use crate::link::lease::Lease;
 use crate::link::session::hold::HoldWatch;
+use crate::link::status::ArmRequest;
 use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -17,16 +19,29 @@ const ROUND_SHARE: u32 = 4;
 pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 /// An armed hand whose angles grow this old is disarmed.
 pub(crate) const ANGLE_LOST: Duration = Duration::from_millis(500);
+/// An arming waits this long for readings that are missing: on a link that was just made, or after a stall of this computer.
+pub(crate) const ARM_READS_TIMEOUT: Duration = Duration::from_secs(1);
 /// Writes of one round: speeds and forces in at most three runs each, and the angles.
 const ROUND_MAX: usize = 7;
 
 /// Rounds in a row between which only the motion state is read, on a line that is full with them.
 const ROUNDS_MAX: u8 = 2;
 
+/// An arming that was asked for.
+#[derive(Debug)]
+pub(crate) struct PendingArm {
+    pub(crate) lease: Lease,
+    pub(crate) request: ArmRequest,
+    /// It is refused if what it needs is still not known at this moment.
+    pub(crate) until: Moment,
+}
+
 /// Arming, setpoints and stop of one session.
 #[derive(Debug, Default)]
 pub(crate) struct Motion {
     pub(crate) last_epoch: ArmEpoch,
+    /// Waits until the pose, the faults and the series are known.
+    pub(crate) arming: Option<PendingArm>,
     pub(crate) hold: Option<HoldWatch>,
     /// A hold frame went out, and the pose was not asked for since.
     pub(crate) waits_for_look: bool,
@@ -58,7 +73,9 @@ impl Motion {
         self.forget_setpoints();
     }
 
+    /// Nothing that was asked for goes out any more; an arming that waits is refused in silence.
     pub(crate) fn forget_setpoints(&mut self) {
+        self.arming = None;
         self.setpoints = None;
         self.round.clear();
     }

@@ -12,7 +12,9 @@ use crate::link::request::RequestError;
 use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
-use crate::link::session::motion::{ANGLE_FRESH, ANGLE_LOST, arm_refusal, hold_targets};
+use crate::link::session::motion::{
+    ANGLE_FRESH, ANGLE_LOST, ARM_READS_TIMEOUT, PendingArm, arm_refusal, hold_targets,
+};
 use crate::link::session::stall::watched;
 use crate::link::status::{ArmRequest, LinkTrouble};
 use crate::link::wanted::PendingControl;
@@ -92,7 +94,15 @@ impl Session {
     /// What goes before everything that was asked for: wishes, a stop, setpoints.
     pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if let Some((lease, request)) = self.take_wishes()? {
-            self.arm(bus, lease, &request).await?;
+            let until = self.now().plus(ARM_READS_TIMEOUT);
+            self.motion.arming = Some(PendingArm {
+                lease,
+                request,
+                until,
+            });
+        }
+        if let Some(arming) = self.due_arming() {
+            self.arm(bus, arming).await?;
             return Ok(true);
         }
         self.watch_age();
@@ -210,6 +220,25 @@ impl Session {
         Ok(wishes.arm)
     }
 
+    /// Why the hand cannot be armed now.
+    fn arm_refusal(&self) -> Option<ArmRefusal> {
+        let busy = self.leaves_line.then_some(ArmRefusal::HandBusy);
+        let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
+        let let_go = is_let_go.then_some(ArmRefusal::LetGo);
+        let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
+        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
+        busy.or(let_go).or_else(refusal).or(unknown)
+    }
+
+    /// The arming that was asked for, once nothing that it needs is missing, or it has waited long enough.
+    fn due_arming(&mut self) -> Option<PendingArm> {
+        let waits = self.arm_refusal() == Some(ArmRefusal::NotRead);
+        let now = self.now();
+        self.motion
+            .arming
+            .take_if(|arming| !waits || now >= arming.until)
+    }
+
     /// True if what is being armed for is not to be any more.
     fn arming_is_over(&self, lease: Lease) -> bool {
         let wanted = self.ends.wanted.borrow();
@@ -219,21 +248,12 @@ impl Session {
 
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
     /// An armed hand stays armed as it is.
-    async fn arm(
-        &mut self,
-        bus: &mut dyn Bus,
-        lease: Lease,
-        request: &ArmRequest,
-    ) -> Result<(), WireEnd> {
+    async fn arm(&mut self, bus: &mut dyn Bus, arming: PendingArm) -> Result<(), WireEnd> {
+        let PendingArm { lease, request, .. } = arming;
         if self.status.armed.is_some() {
             return Ok(());
         }
-        let busy = self.leaves_line.then_some(ArmRefusal::HandBusy);
-        let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
-        let let_go = is_let_go.then_some(ArmRefusal::LetGo);
-        let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
-        if let Some(reason) = busy.or(let_go).or_else(refusal).or(unknown) {
+        if let Some(reason) = self.arm_refusal() {
             self.refuse_arm(reason);
             return Ok(());
         }

@@ -2,7 +2,8 @@
 
 use crate::setup::hand;
 use crate::setup::link::{self, pass};
-use handscope::link::{LinkStatus, LinkTrouble};
+use handscope::link::{LinkHandle, LinkStatus, LinkTrouble};
+use tokio::task::yield_now;
 use tokio::time::{Duration, advance};
 
 const WIRES: [&str; 4] = ["rs485:test", "rtu:test", "tcp:127.0.0.1:6000", "can:test"];
@@ -55,5 +56,32 @@ async fn a_hand_that_is_silent_when_we_stall_is_lost_with_both_named() {
             panic!("{wire}: {status:?}")
         };
         assert!((150..=205).contains(&stalled_ms), "{wire}: {stalled_ms}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn an_arming_waits_for_what_is_not_read_yet_and_a_stop_or_disarm_ends_the_wait() {
+    let armed = |status: &LinkStatus| status.armed.is_some();
+    let disarm: fn(&LinkHandle) = LinkHandle::disarm;
+    for wire in WIRES {
+        let mut link = link::connect(wire, link::to_hand(hand::plain()));
+        // Nothing was read of it but what it is.
+        link::live(&mut link).await;
+        link.arm(link::gentle());
+        link::until(&mut link, SOON, armed).await;
+        for end in [None, Some(disarm), Some(|link| drop(link.stop()))] {
+            link.disarm();
+            pass(&mut link, ms(300)).await;
+            // The pose grows old in the stall.
+            advance(ms(300)).await;
+            link.arm(link::gentle());
+            yield_now().await;
+            if let Some(end) = end {
+                end(&link);
+            }
+            pass(&mut link, ms(600)).await;
+            let status = link.status();
+            assert_eq!(status.armed.is_some(), end.is_none(), "{wire}: {status:?}");
+        }
     }
 }
