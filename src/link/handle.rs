@@ -1,6 +1,6 @@
 //! The program's end of a link: what may be said to it and what is heard. Only a request waits, for its answer.
 
-use crate::hand::{HandCommand, Moment, Setpoints, Setting, Span};
+use crate::hand::{ArmEpoch, HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::clock::Clock;
 use crate::link::config::LinkConfig;
 use crate::link::image::RegisterImage;
@@ -13,17 +13,22 @@ use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::stop::{Stop, until_rest};
 use crate::link::tap::WireTap;
-use crate::link::wanted::{Ends, PendingControl};
-use crate::record::{Calibrated, Disarmed, Hold, Record, Reset, Saved, Written};
+use crate::link::wanted::{AskedArm, Ends, PendingControl};
+use crate::record::{ArmRefusal, Calibrated, Disarmed, Hold, Record, Reset, Saved, Written};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use std::sync::{Arc, Weak};
+use std::time::Duration;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
+use tokio::time::timeout;
 
 /// Requests that may wait: the user cannot ask faster than this drains.
 pub const REQUESTS_MAX: usize = 16;
 /// Records that may wait for a reader: ten seconds of samples at full rate of a serial line.
 pub const RECORDS_MAX: usize = 1024;
+
+/// An arming that has no answer by then has none: longer than one takes on the slowest way to a hand.
+const ARM_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
 /// told last.
@@ -178,12 +183,19 @@ impl LinkHandle {
         self.0.wanted.borrow().book.check(lease)
     }
 
-    /// Asks to arm. The answer is the state `Armed`, or a record that says why not.
+    /// Asks to arm. It happens whether the answer is awaited or not.
     ///
     /// # Errors
     /// Nothing is asked under a lease that does not hold.
-    pub fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
-        self.under(lease, |wanted| wanted.arm = Some((lease, request)))
+    pub fn arm(&self, lease: Lease, request: ArmRequest) -> Result<Arming, LeaseRefusal> {
+        let (answer, answered) = oneshot::channel();
+        let asked = AskedArm {
+            lease,
+            request,
+            answer,
+        };
+        self.under(lease, |wanted| wanted.arm = Some(asked))?;
+        Ok(Arming(answered))
     }
 
     /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second.
@@ -399,6 +411,26 @@ impl LinkHandle {
     /// The recorded traffic; copies go on recording with the link.
     pub fn tap(&self) -> WireTap {
         self.0.tap.clone()
+    }
+}
+
+/// An arming that was asked for. Awaited, it ends with the epoch that setpoints belong to, or why the hand was not armed.
+#[derive(Debug)]
+pub struct Arming(oneshot::Receiver<Result<ArmEpoch, ArmRefusal>>);
+
+impl IntoFuture for Arming {
+    type Output = Result<ArmEpoch, ArmRefusal>;
+    type IntoFuture = BoxFuture<'static, Self::Output>;
+
+    fn into_future(self) -> Self::IntoFuture {
+        async move {
+            match timeout(ARM_TIMEOUT, self.0).await {
+                Ok(Ok(answer)) => answer,
+                Ok(Err(_dropped)) => Err(ArmRefusal::Replaced),
+                Err(_late) => Err(ArmRefusal::NoAnswer),
+            }
+        }
+        .boxed()
     }
 }
 

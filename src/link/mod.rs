@@ -35,7 +35,7 @@ mod wanted;
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};
 pub use entries::LinkEntries;
-pub use handle::{LinkHandle, LinkStopper, StopRequest, open};
+pub use handle::{Arming, LinkHandle, LinkStopper, StopRequest, open};
 pub use latency::Ticks;
 pub use lease::{HoldToRun, Lease, LeaseHolder, LeaseRefusal, Owner};
 pub use poll::line_time::line_time;

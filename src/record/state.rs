@@ -151,6 +151,9 @@ pub enum ArmRefusal {
     /// What has to be held while the hand moves is not held.
     #[error("what has to be held to run is not held")]
     LetGo,
+    /// A stop, a disarm or another arming was asked for before it was done.
+    #[error("something else was asked for before the hand was armed")]
+    Replaced,
     /// The hand did not acknowledge its speed and force limits.
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,

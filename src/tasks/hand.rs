@@ -118,7 +118,7 @@ impl TaskHand for LinkHandle {
         Self::check(self, lease)
     }
     fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
-        Self::arm(self, lease, request)
+        Self::arm(self, lease, request).map(drop)
     }
     fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
         Self::set(self, lease, setpoints)

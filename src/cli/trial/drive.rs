@@ -179,11 +179,12 @@ async fn make_ready(
         }
     }
     let lease = link.grant(Owner::Task);
-    link.arm(lease, limits)?;
-    while link.status().armed.is_none() {
-        take_news(records, &mut seen).await?;
-        if Instant::now() >= until {
-            bail!("the hand at {endpoint} could not be armed in time");
+    if let Err(why) = link.arm(lease, limits)?.await {
+        bail!("the hand cannot be armed: {why}");
+    }
+    while let Some(record) = records.try_next() {
+        if let Record::Reading { sample, .. } = record {
+            seen = *sample;
         }
     }
     Ok((lease, seen))
@@ -193,7 +194,6 @@ async fn make_ready(
 async fn take_news(records: &mut Records, seen: &mut HandSample) -> anyhow::Result<()> {
     match timeout(TICK, records.next()).await {
         Ok(Some(Record::Reading { sample, .. })) => *seen = *sample,
-        Ok(Some(Record::ArmRefused { reason, .. })) => bail!("the hand cannot be armed: {reason}"),
         Ok(None) => bail!("the link ended"),
         Ok(Some(_)) | Err(_) => {}
     }

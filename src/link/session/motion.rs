@@ -3,9 +3,8 @@
 use crate::hand::ArmEpoch;
 use crate::hand::Setpoints;
 use crate::hand::{Dof, HandCommand, HandSample, Moment, PerDof, RegisterWrite, Target, Timed};
-use crate::link::lease::Lease;
 use crate::link::session::hold::HoldWatch;
-use crate::link::status::ArmRequest;
+use crate::link::wanted::AskedArm;
 use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -27,11 +26,10 @@ const ROUND_MAX: usize = 7;
 /// Rounds in a row between which only the motion state is read, on a line that is full with them.
 const ROUNDS_MAX: u8 = 2;
 
-/// An arming that was asked for.
+/// An arming that the session has taken.
 #[derive(Debug)]
 pub(crate) struct PendingArm {
-    pub(crate) lease: Lease,
-    pub(crate) request: ArmRequest,
+    pub(crate) asked: AskedArm,
     /// It is refused if what it needs is still not known at this moment.
     pub(crate) until: Moment,
 }
@@ -73,7 +71,7 @@ impl Motion {
         self.forget_setpoints();
     }
 
-    /// Nothing that was asked for goes out any more; an arming that waits is refused in silence.
+    /// Nothing that was asked for goes out any more.
     pub(crate) fn forget_setpoints(&mut self) {
         self.arming = None;
         self.setpoints = None;

@@ -16,11 +16,12 @@ use crate::link::session::motion::{
     ANGLE_FRESH, ANGLE_LOST, ARM_READS_TIMEOUT, PendingArm, arm_refusal, hold_targets,
 };
 use crate::link::session::stall::watched;
-use crate::link::status::{ArmRequest, LinkTrouble};
-use crate::link::wanted::PendingControl;
+use crate::link::status::LinkTrouble;
+use crate::link::wanted::{AskedArm, PendingControl};
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::oneshot;
 use tokio::time::{sleep_until, timeout};
 
 /// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
@@ -93,16 +94,12 @@ impl Session {
 
     /// What goes before everything that was asked for: wishes, a stop, setpoints.
     pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
-        if let Some((lease, request)) = self.take_wishes()? {
+        if let Some(asked) = self.take_wishes()? {
             let until = self.now().plus(ARM_READS_TIMEOUT);
-            self.motion.arming = Some(PendingArm {
-                lease,
-                request,
-                until,
-            });
+            self.motion.arming = Some(PendingArm { asked, until });
         }
         if let Some(arming) = self.due_arming() {
-            self.arm(bus, arming).await?;
+            self.arm(bus, arming.asked).await?;
             return Ok(true);
         }
         self.watch_age();
@@ -183,7 +180,7 @@ impl Session {
     }
 
     /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
-    fn take_wishes(&mut self) -> Result<Option<(Lease, ArmRequest)>, WireEnd> {
+    fn take_wishes(&mut self) -> Result<Option<AskedArm>, WireEnd> {
         let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = wanted.take();
@@ -248,13 +245,18 @@ impl Session {
 
     /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
     /// An armed hand stays armed as it is.
-    async fn arm(&mut self, bus: &mut dyn Bus, arming: PendingArm) -> Result<(), WireEnd> {
-        let PendingArm { lease, request, .. } = arming;
-        if self.status.armed.is_some() {
+    async fn arm(&mut self, bus: &mut dyn Bus, asked: AskedArm) -> Result<(), WireEnd> {
+        let AskedArm {
+            lease,
+            request,
+            answer,
+        } = asked;
+        if let Some(epoch) = self.status.armed {
+            let _gone = answer.send(Ok(epoch));
             return Ok(());
         }
         if let Some(reason) = self.arm_refusal() {
-            self.refuse_arm(reason);
+            self.refuse_arm(answer, reason);
             return Ok(());
         }
         self.guard.moves(&self.dialled);
@@ -269,10 +271,11 @@ impl Session {
             }
             if let Err(error) = self.write(bus, &write, WriteCause::Arming).await {
                 self.failed(bus, &error).await?;
-                self.refuse_arm(match error {
+                let reason = match error {
                     BusError::Refused { .. } => ArmRefusal::Refused,
                     _ => ArmRefusal::NoAnswer,
-                });
+                };
+                self.refuse_arm(answer, reason);
                 return Ok(());
             }
         }
@@ -294,6 +297,7 @@ impl Session {
         let owner = self.status.holder.map(|holder| holder.owner);
         self.heat.arm(&self.sample, owner, now);
         self.go(LinkState::Armed);
+        let _gone = answer.send(Ok(epoch));
         Ok(())
     }
 
@@ -314,14 +318,18 @@ impl Session {
         }
     }
 
-    fn refuse_arm(&mut self, reason: ArmRefusal) {
+    fn refuse_arm(
+        &mut self,
+        answer: oneshot::Sender<Result<ArmEpoch, ArmRefusal>>,
+        reason: ArmRefusal,
+    ) {
         let at = self.now();
         self.tell(Record::ArmRefused { at, reason });
+        let _gone = answer.send(Err(reason));
     }
 
     /// Disarms, and drops the setpoints that are on their way. What nobody asked for ends the right to move the hand too.
     pub(crate) fn disarm(&mut self, why: Disarmed) {
-        self.motion.forget_setpoints();
         let holder = &mut self.status.holder;
         self.ends.wanted.send_if_modified(|wanted| {
             if !why.is_asked_for() {
@@ -330,6 +338,8 @@ impl Session {
             *holder = wanted.book.holder();
             false
         });
+        // After the lease: whoever waits for an arming finds there why it was dropped.
+        self.motion.forget_setpoints();
         if self.status.armed.take().is_none() {
             return;
         }

@@ -4,7 +4,7 @@
 #[allow(clippy::indexing_slicing, clippy::expect_used, reason = "a test may")]
 mod tests;
 
-use crate::hand::{Moment, Setpoints};
+use crate::hand::{ArmEpoch, Moment, Setpoints};
 use crate::link::image::RegisterImage;
 use crate::link::lease::{HoldToRun, Lease, LeaseBook, LeaseRefusal, Owner};
 use crate::link::poll::plan::{PollPriority, PollRates};
@@ -12,9 +12,17 @@ use crate::link::request::Request;
 use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::tap::WireTap;
-use crate::record::{Disarmed, Record};
+use crate::record::{ArmRefusal, Disarmed, Record};
 use std::sync::Arc;
-use tokio::sync::{broadcast, mpsc, watch};
+use tokio::sync::{broadcast, mpsc, oneshot, watch};
+
+/// An arming that was asked for. Dropped without an answer if something else came first.
+#[derive(Debug)]
+pub(crate) struct AskedArm {
+    pub(crate) lease: Lease,
+    pub(crate) request: ArmRequest,
+    pub(crate) answer: oneshot::Sender<Result<ArmEpoch, ArmRefusal>>,
+}
 
 /// What is wanted and the session has not taken yet. One slot, so that nothing queues up, and a stop empties it in the
 /// same step.
@@ -24,7 +32,7 @@ pub(crate) struct PendingControl {
     pub(crate) disarm: bool,
     /// Why the hand is to be stopped or disarmed, if that is wanted.
     pub(crate) why: Option<Disarmed>,
-    pub(crate) arm: Option<(Lease, ArmRequest)>,
+    pub(crate) arm: Option<AskedArm>,
     pub(crate) setpoints: Option<Setpoints>,
     /// Another may move the hand from now on: what the one before asked for is dropped.
     pub(crate) handed_over: bool,

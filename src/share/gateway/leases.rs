@@ -3,18 +3,15 @@
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
-use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkObserver, Owner, RecentReads};
-use crate::record::{ArmRefusal, Disarmed, LinkState, Record};
+use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, Owner, RecentReads};
+use crate::record::{ArmRefusal, Disarmed, LinkState};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{
     Board, ClientId, ClientLease, Holder, MoverChange, SharedBoard,
 };
 use crate::share::gateway::refusal::WriteRefusal;
 use std::time::Duration;
-use tokio::time::{Instant, sleep_until, timeout};
-
-/// A hand acknowledges its limits long before, on any wire.
-const ARMS_WITHIN: Duration = Duration::from_secs(2);
+use tokio::time::{Instant, sleep_until};
 
 /// The manual's "no action" (2.6.11).
 const NO_ACTION: i16 = -1;
@@ -254,15 +251,13 @@ impl ClientLeases {
             self.board
                 .with(|board| board.mover(before.client, MoverChange::Ended(taken)));
         }
-        let observer = self.link.observe();
         let lease = self.link.grant(owner);
         self.mark(client, ClientLease::Held(lease));
-        let asked = self.link.arm(lease, request);
-        let armed = match asked {
-            Ok(()) => timeout(ARMS_WITHIN, armed(observer)).await,
-            Err(_ended) => Ok(Err(ArmRefusal::Offline)),
+        let armed = match self.link.arm(lease, request) {
+            Ok(arming) => arming.await,
+            Err(_ended) => Err(ArmRefusal::Offline),
         };
-        if let Err(reason) = armed.unwrap_or(Err(ArmRefusal::NoAnswer)) {
+        if let Err(reason) = armed {
             // Nothing was moved, so nothing is stopped.
             if self.link.check(lease).is_ok() {
                 self.link.disarm();
@@ -304,24 +299,6 @@ fn stays(targets: &PerDof<i16>, angles: &PerDof<i16>) -> bool {
     let mut all = targets.iter();
     all.any(|(dof, to)| *to != NO_ACTION && is_near(dof, *to))
         && !targets.iter().any(|(dof, to)| goes(dof, *to))
-}
-
-/// Waits until the hand is armed, or the link says why not.
-async fn armed(mut observer: LinkObserver) -> Result<(), ArmRefusal> {
-    loop {
-        if observer.status.borrow_and_update().armed.is_some() {
-            return Ok(());
-        }
-        tokio::select! {
-            biased;
-            record = observer.records.next() => match record {
-                Some(Record::ArmRefused { reason, .. }) => return Err(reason),
-                Some(_) => {}
-                None => return Err(ArmRefusal::Offline),
-            },
-            changed = observer.status.changed() => changed.map_err(|_gone| ArmRefusal::Offline)?,
-        }
-    }
 }
 
 #[cfg(test)]

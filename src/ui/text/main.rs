@@ -38,6 +38,7 @@ texts! {
     REFUSED_LET_GO: "Hold the H key: hold to run is on.", "请按住 H 键：已开启“按住运行”。";
     REFUSED_AFAR: "The hand refused its speed and force limits. If another Handscope shares it, a person there has to let you.", "灵巧手拒绝了速度与力阈值设置。若由其他 Handscope 共享，需由对方的人允许。";
     REFUSED_NO_ANSWER: "The hand did not acknowledge its speed and force limits.", "灵巧手没有确认速度与力阈值设置。";
+    REFUSED_REPLACED: "Something else was asked for before the hand was armed.", "使能前又提出了其他请求。";
     REFUSED_NOT_READ: "Angles and faults are not known yet, or are old.", "角度与故障尚未读取或已过时。";
     REFUSED_POSE: "The angle of a joint makes no sense:", "有自由度的角度不合理：";
     NOT_ARMED: "Not armed: press Arm first.", "未使能：请先点击“使能”。";

@@ -58,6 +58,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::LetGo => look.say(main::REFUSED_LET_GO).into(),
         ArmRefusal::Refused => look.say(main::REFUSED_AFAR).into(),
         ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
+        ArmRefusal::Replaced => look.say(main::REFUSED_REPLACED).into(),
         ArmRefusal::NotRead => look.say(main::REFUSED_NOT_READ).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
             look.told(main::REFUSED_POSE, look.say(dof(joint)))

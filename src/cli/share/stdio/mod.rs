@@ -667,26 +667,13 @@ async fn granted(
 
 /// Arms the hand under a right that was granted, once a stop before is over.
 async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
-    let mut records = link.records();
     let until = Instant::now() + ARMS_WITHIN;
-    let mut asked = false;
-    let why = loop {
-        link.check(right.lease)?;
-        let status = link.status();
-        if let Some(epoch) = status.armed {
-            return Ok(epoch);
-        }
-        if !asked && status.state != LinkState::Holding {
-            link.arm(right.lease, right.limits)?;
-            asked = true;
-        }
-        if Instant::now() >= until {
-            break "it does not answer in time".to_owned();
-        }
-        let record = timeout(LOOK_EACH, records.next()).await;
-        if let Ok(Some(Record::ArmRefused { reason, .. })) = record {
-            break reason.to_string();
-        }
+    while link.status().state == LinkState::Holding && Instant::now() < until {
+        sleep(LOOK_EACH).await;
+    }
+    let why = match link.arm(right.lease, right.limits)?.await {
+        Ok(epoch) => return Ok(epoch),
+        Err(why) => why,
     };
     link.check(right.lease)?;
     link.disarm();
