@@ -1,0 +1,2 @@
+cargo fmt --check
+CLIPPY_CONF_DIR=.ci cargo clippy --all-targets --locked -- -D warnings
