@@ -80,6 +80,9 @@ pub mod record;
 pub mod share;
 pub mod shell;
 pub mod sim;
+#[cfg(test)]
+#[path = "../tests/it/setup/soak.rs"]
+mod soak;
 pub mod store;
 pub mod system;
 pub mod tasks;

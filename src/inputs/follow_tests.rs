@@ -8,6 +8,7 @@ use crate::inputs::follow::{
 };
 use crate::inputs::offer::{Offer, OfferLimits};
 use crate::record::LinkState;
+use crate::soak;
 use fastrand::Rng;
 use std::time::Duration;
 
@@ -381,7 +382,7 @@ fn next_offer(now: Moment, before: Option<Offer>, rng: &mut Rng) -> Option<Offer
 #[test]
 fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
     let (mut aims, mut halts, mut ends) = (0, 0, 0);
-    for seed in 0..20_000 {
+    for seed in 0..soak::times(20_000) {
         let mut rng = Rng::with_seed(seed);
         let limits = FollowLimits {
             lead: rng.u16(20..=500),

@@ -3,6 +3,7 @@ use crate::link::lease::{Lease, Owner};
 use crate::link::status::ArmRequest;
 use crate::link::wanted::{AskedArm, PendingControl};
 use crate::record::Disarmed;
+use crate::soak;
 use fastrand::Rng;
 use tokio::sync::oneshot;
 
@@ -56,7 +57,7 @@ const REQUEST: ArmRequest = ArmRequest {
 #[test]
 fn never_two_owners_and_nothing_after_an_end_before_a_new_grant() {
     let (mut passed, mut refused) = (0, 0);
-    for seed in 0..20_000 {
+    for seed in 0..soak::times(20_000) {
         let mut rng = Rng::with_seed(seed);
         let mut wanted = PendingControl::default();
         let mut oracle = Oracle::default();

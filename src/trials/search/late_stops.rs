@@ -1,6 +1,5 @@
 //! Whole searches against the physics of a hand by another author (a spring with relaxation, a drive that stops some time after its
-//! threshold, read every ten milliseconds), without a wire: how many of their claims are false, by the closes to come. The
-//! environment variable `HANDSCOPE_SEARCHES` says how many there are of each hand.
+//! threshold, read every ten milliseconds), without a wire: how many of their claims are false, by the closes to come.
 
 use crate::hand::Dof;
 use crate::trials::plan::{Approach, Until};
@@ -189,12 +188,11 @@ struct Count {
     normal: usize,
 }
 
-fn count(stops: Stops, goal: &SearchGoal, most: usize) -> Count {
-    let asked = std::env::var("HANDSCOPE_SEARCHES").ok();
-    let searches = asked.and_then(|n| n.parse().ok()).unwrap_or(most);
+fn count(stops: Stops, goal: &SearchGoal, most: u64) -> Count {
+    let searches = crate::soak::times_at_least(2, most);
     let mut count = Count::default();
     for seed in 0..searches {
-        let rng = fastrand::Rng::with_seed(u64::try_from(seed).unwrap());
+        let rng = fastrand::Rng::with_seed(seed);
         let mut hand = Hand { stops, rng };
         count.searches += 1;
         let Some((claim, _)) = hand.search(goal) else {

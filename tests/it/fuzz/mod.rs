@@ -1,5 +1,5 @@
 //! Millions of damaged and random inputs through every decoder: nothing panics, nothing grows, and what is accepted is
-//! what it says. `HANDSCOPE_INPUTS=100000000` runs more of each, `HANDSCOPE_SEED` others.
+//! what it says. `HANDSCOPE_SEED` takes others.
 
 #[expect(
     unreachable_pub,
@@ -8,10 +8,11 @@
 mod targets;
 
 use crate::fuzz::targets::{OTHERS, State, Target, WIRES, seeds};
+use crate::setup::soak;
 use fastrand::Rng;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Inputs of each decoder of a wire.
+/// Inputs of each decoder of a wire, of which an ordinary run takes a share.
 const WIRE_INPUTS: u64 = 10_000_000;
 /// Inputs of all others, which make text of what they read or take much longer ones.
 const OTHER_INPUTS: u64 = 50_000;
@@ -76,7 +77,7 @@ fn run(name: &str, target: Target, inputs: u64) {
 
 /// Two threads, each of which takes the next target as soon as it is done with one.
 fn run_all(targets: &[(&str, Target)], inputs: u64) {
-    let inputs = setting("HANDSCOPE_INPUTS").unwrap_or(inputs);
+    let inputs = soak::times(inputs);
     let next = AtomicUsize::new(0);
     let work = || {
         while let Some((name, target)) = targets.get(next.fetch_add(1, Ordering::Relaxed)) {
@@ -90,7 +91,7 @@ fn run_all(targets: &[(&str, Target)], inputs: u64) {
 }
 
 #[test]
-fn every_wire_decoder_stands_ten_million_inputs() {
+fn every_wire_decoder_stands_millions_of_inputs() {
     run_all(&WIRES, WIRE_INPUTS);
 }
 

@@ -1,9 +1,10 @@
 //! How long a stop takes from the press to the last byte of the first hold frame, in virtual time, on lines that take
 //! their time: all wires, all bauds, hands of 3 to 15 ms, at rest, in the hands of another controller, and while a
-//! person drags. `HANDSCOPE_SEEDS=n` runs more.
+//! person drags. `HANDSCOPE_SOAK=1` runs all.
 
 use crate::setup::hand;
 use crate::setup::link::{self, Client};
+use crate::setup::soak;
 use crate::setup::time::in_virtual_time;
 use futures::FutureExt as _;
 use handscope::codec::can::{CanFunction, CanId, CanRecord, frame, from_record, to_record};
@@ -414,7 +415,7 @@ async fn stop_times(
 }
 
 fn check(protocol: Protocol, limit_ms: u64, slowest_ms: u64) {
-    let seeds = std::env::var("HANDSCOPE_SEEDS").map_or(SEEDS, |seeds| seeds.parse().unwrap());
+    let seeds = soak::times_at_least(3, SEEDS);
     let limit = Duration::from_millis(limit_ms);
     for scene in [Scene::Rest, Scene::Moved, Scene::Dragged] {
         let mut worst = Duration::ZERO;

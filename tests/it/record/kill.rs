@@ -4,6 +4,7 @@
 use crate::record::journal::{Connection, Journal, Said, nanos_now, pass_on};
 use crate::setup::hand;
 use crate::setup::process::{Running, listen};
+use crate::setup::soak;
 use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Group, Moment, Span, register};
@@ -24,9 +25,8 @@ use tokio::runtime::Runtime;
 
 /// Makes this program the one that is killed: the endpoint, and after a space the file.
 const ORDER: &str = "HANDSCOPE_TEST_RECORDS";
-/// How many are killed; each takes about a second.
-const KILLS: &str = "HANDSCOPE_TEST_KILLS";
-const KILLS_USUALLY: u64 = 200;
+/// How many are killed in a full run; each takes about a second.
+const KILLS: u64 = 200;
 /// So many run at once.
 const AT_ONCE: usize = 5;
 /// May be in memory only.
@@ -245,7 +245,7 @@ fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
 
 #[test]
 fn a_killed_program_leaves_a_file_that_opens_and_lacks_a_quarter_of_a_second_at_most() {
-    let kills = std::env::var(KILLS).map_or(KILLS_USUALLY, |kills| kills.parse().unwrap());
+    let kills = soak::times_at_least(20, KILLS);
     let folder = tempfile::tempdir().unwrap();
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)

@@ -15,6 +15,7 @@ pub(crate) mod recorded;
 #[cfg(unix)]
 pub(crate) mod referee;
 pub(crate) mod skipped;
+pub(crate) mod soak;
 pub(crate) mod states;
 pub(crate) mod time;
 pub(crate) mod view;

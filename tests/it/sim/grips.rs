@@ -5,6 +5,7 @@ mod grip_model;
 #[path = "../../bench/grip_table.rs"]
 mod grip_table;
 
+use crate::setup::soak;
 use grip_table::{GripTable, grasps};
 
 /// Thresholds were adjusted with hands of seeds below this.
@@ -18,14 +19,9 @@ fn judged(table: &GripTable) -> String {
     told
 }
 
-fn count(name: &str, usual: u64) -> u64 {
-    let asked = std::env::var(name).ok();
-    asked.and_then(|count| count.parse().ok()).unwrap_or(usual)
-}
-
 #[test]
 fn the_state_of_a_grip_is_the_objects_own() {
-    let table = grasps(0..count("GRIP_BODIES", 3));
+    let table = grasps(0..soak::times_at_least(3, 12));
     let told = judged(&table);
     assert!(GripTable::wrong(&table.fingers) <= 0.01, "{told}");
     assert!(GripTable::wrong(&table.grasps) <= 0.02, "{told}");
@@ -36,7 +32,7 @@ fn the_state_of_a_grip_is_the_objects_own() {
 
 #[test]
 fn drift_friction_wrist_turns_and_slow_slips_of_unseen_hands_are_told_as_what_they_are() {
-    let table = grip_model::grasps(UNSEEN..UNSEEN + count("GRIP_HANDS", 12));
+    let table = grip_model::grasps(UNSEEN..UNSEEN + soak::times_at_least(4, 24));
     let told = judged(&table);
     assert!(GripTable::wrong(&table.fingers) <= 0.01, "{told}");
     assert!(GripTable::wrong(&table.grasps) <= 0.01, "{told}");

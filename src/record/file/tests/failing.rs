@@ -15,6 +15,7 @@ use crate::record::file::recording::{
 };
 use crate::record::file::tests::{Atom, atoms, entries, opening, read};
 use crate::record::{Entry, EventKind};
+use crate::soak;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -350,10 +351,13 @@ fn troubles(random: &mut fastrand::Rng) -> Vec<(Duration, Duration, Trouble)> {
     (0..count).map(|_| one(random)).collect()
 }
 
+/// Disks in a full run.
+const DISKS: u64 = 500;
+
 #[test]
-fn on_500_disks_that_fail_no_value_differs_and_all_that_is_missing_is_counted() {
+fn on_disks_that_fail_no_value_differs_and_all_that_is_missing_is_counted() {
     let folder = tempfile::tempdir().unwrap();
-    for seed in 0..500 {
+    for seed in 0..soak::times(DISKS) {
         let mut random = fastrand::Rng::with_seed(seed);
         let troubles = troubles(&mut random);
         let room = if random.bool() { 16_384 } else { 100 };
