@@ -315,7 +315,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(crate::soak::times(20_000) as u32))]
+        #![proptest_config(ProptestConfig::with_cases(u32::try_from(crate::soak::times(20_000)).unwrap()))]
         #[test]
         fn no_write_leaves_the_manuals_addresses_or_ranges(
             writes in prop_oneof![

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// The modules of each floor, from the lowest up.
 const FLOORS: [&[&str]; 11] = [
-    &["hand", "manual", "printable", "system"],
+    &["hand", "manual", "printable", "soak", "system"],
     &["codec", "transport", "record", "store", "model"],
     &["history"],
     &["link", "sim", "params", "poses", "trials"],

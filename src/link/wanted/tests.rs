@@ -57,7 +57,8 @@ const REQUEST: ArmRequest = ArmRequest {
 #[test]
 fn never_two_owners_and_nothing_after_an_end_before_a_new_grant() {
     let (mut passed, mut refused) = (0, 0);
-    for seed in 0..soak::times(20_000) {
+    let seeds = soak::times(20_000);
+    for seed in 0..seeds {
         let mut rng = Rng::with_seed(seed);
         let mut wanted = PendingControl::default();
         let mut oracle = Oracle::default();
@@ -150,5 +151,8 @@ fn never_two_owners_and_nothing_after_an_end_before_a_new_grant() {
             }
         }
     }
-    assert!(passed > 5_000 && refused > 100_000, "{passed} {refused}");
+    assert!(
+        passed > seeds / 4 && refused as u64 > seeds * 5,
+        "{passed} {refused}"
+    );
 }

@@ -14,6 +14,7 @@ use crate::hand::{
 use crate::link::Clock;
 use crate::link::LinkStatus;
 use crate::record::{Disarmed, LinkState};
+use crate::soak;
 use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, PageDrawn, exhibit};
 use crate::tasks::tests::booth::BoothHand;
 use std::collections::BTreeMap;
@@ -655,11 +656,12 @@ async fn crowd(hours: u64, heating: f64) -> (f64, u64, u64) {
 }
 
 #[tokio::test(start_paused = true)]
-async fn no_drive_passes_60_degrees_in_eight_hours_of_a_crowd() {
-    let (usual, _, pieces) = crowd(8, 1.0).await;
-    assert!(usual < 60.0 && pieces > 5000, "{usual} {pieces}");
-    let (harsher, _, pieces) = crowd(8, 1.5).await;
-    assert!(harsher < 60.0 && pieces > 5000, "{harsher} {pieces}");
+async fn no_drive_passes_60_degrees_in_hours_of_a_crowd() {
+    let hours = soak::times_at_least(1, 8);
+    let (usual, _, pieces) = crowd(hours, 1.0).await;
+    assert!(usual < 60.0 && pieces > 625 * hours, "{usual} {pieces}");
+    let (harsher, _, pieces) = crowd(hours, 1.5).await;
+    assert!(harsher < 60.0 && pieces > 625 * hours, "{harsher} {pieces}");
     println!("hottest: {usual:.1} and {harsher:.1}");
 }
 
@@ -717,7 +719,8 @@ async fn a_day() {
         1.0,
     );
     let mut chance = fastrand::Rng::with_seed(14);
-    let day = s(24 * 3600);
+    let hours = soak::times_at_least(3, 24);
+    let day = s(hours * 3600);
     let start = booth.hand.clock.now();
     let mut longest_halt = Duration::ZERO;
     let mut halted_since = None;
@@ -742,7 +745,7 @@ async fn a_day() {
         "{} moves, {} clears, longest halt {longest_halt:?}",
         facts.moves, facts.clears
     );
-    assert!(facts.moves > 5000 && facts.clears > 5);
+    assert!(facts.moves > 200 * hours && (facts.clears > 5 || !soak::is_full()));
     drop(facts);
     for event in [
         "Visit",
@@ -752,11 +755,15 @@ async fn a_day() {
         "Fault(Stall)",
         "Fault(Motor)",
     ] {
-        assert!(booth.count(event) > 5, "{event}: {:?}", booth.events);
+        assert!(
+            booth.count(event) > 5 || !soak::is_full(),
+            "{event}: {:?}",
+            booth.events
+        );
     }
     assert!(longest_halt < s(3 * 3600), "{longest_halt:?}");
     if let Some((early, late)) = early_kib.zip(resident_kib()) {
-        println!("after 2 h {early} KiB, after 24 h {late} KiB");
+        println!("after 2 h {early} KiB, after {hours} h {late} KiB");
         assert!(late < early + 2048, "{early} {late}");
     }
 }

@@ -39,7 +39,8 @@ const ANGLE_SET: u16 = 1486;
 
 /// The program in front of a hand.
 struct Bench {
-    app: App,
+    /// On the heap: a test keeps several programs, and a thread has 2 MB.
+    app: Box<App>,
     clock: Clock,
     hand: SharedHand,
     folder: TempDir,
@@ -72,7 +73,7 @@ impl Bench {
             ..env()
         };
         let clock = env.clock;
-        let app = start(env, Settings::default(), Some(endpoint));
+        let app = Box::new(start(env, Settings::default(), Some(endpoint)));
         let mut bench = Self {
             app,
             clock,

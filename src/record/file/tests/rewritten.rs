@@ -14,6 +14,7 @@ use crate::record::file::format::opening::METADATA;
 use crate::record::file::reader::{OpenError, RecordingFile, Stretch};
 use crate::record::file::walk::{self, ChunkKind, survey, whole};
 use crate::record::file::writer::RecordingWriter;
+use crate::soak;
 use mcap::records::{MessageHeader, Metadata, op};
 use mcap::{Compression, Message, MessageStream, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -448,7 +449,8 @@ fn no_flipped_bit_of_a_recording_makes_it_wrong_or_shorter_without_a_word() {
         let bits = bits(&bytes);
         assert!(bits.len() > 3000, "{}", bits.len());
         let disk = std::fs::File::options().write(true).open(&path).unwrap();
-        for bit in bits {
+        let each = if soak::is_full() { 1 } else { 13 };
+        for bit in bits.into_iter().step_by(each) {
             let (place, flipped) = (bit / 8, bytes[bit / 8] ^ 1 << (bit % 8));
             disk.write_all_at(&[flipped], place as u64).unwrap();
             check_flipped(
