@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::Command;
 
 const README: &str = include_str!("../../README.md");
-/// A README is read in one sitting; the rest is in the manual.
-const README_MAX_BYTES: usize = 8192;
+/// A README is read in one sitting, with all ways to install on its first screen; the rest is in the manual.
+const README_MAX_BYTES: usize = 8704;
 /// Columns of the narrowest common terminal, which shows the pages line by line.
 const COLUMNS: usize = 80;
 

@@ -1,6 +1,7 @@
 //! Grasp trials by script, on hands in other processes: over every wire, and what ends them.
 
 use crate::cli::refuses_unarmed;
+use crate::setup::busy::unless_stalled;
 use crate::setup::process::{Running, run, sim_on_all, sim_on_tcp, start};
 use handscope::hand::Dof;
 use handscope::sim::serve::modbus_tcp;
@@ -88,6 +89,10 @@ fn tried(line: &[&str]) -> (Vec<Value>, Value) {
 
 #[test]
 fn over_each_wire_a_trial_shows_the_published_overshoot() {
+    unless_stalled(check_overshoot_over_each_wire);
+}
+
+fn check_overshoot_over_each_wire() {
     let folder = tempfile::tempdir().unwrap();
     let (_sim, wires) = sim_on_all(folder.path(), &["--scenario", "rigid"]);
     for hand in wires.all() {

@@ -3,6 +3,7 @@
 
 pub(crate) mod between;
 pub(crate) mod body;
+pub(crate) mod busy;
 pub(crate) mod device;
 pub(crate) mod faulty;
 pub(crate) mod gateway;

@@ -32,7 +32,7 @@ fn the_state_of_a_grip_is_the_objects_own() {
 
 #[test]
 fn drift_friction_wrist_turns_and_slow_slips_of_unseen_hands_are_told_as_what_they_are() {
-    let table = grip_model::grasps(UNSEEN..UNSEEN + soak::times_at_least(4, 24));
+    let table = grip_model::grasps(UNSEEN..UNSEEN + soak::times_at_least(12, 24));
     let told = judged(&table);
     assert!(GripTable::wrong(&table.fingers) <= 0.01, "{told}");
     assert!(GripTable::wrong(&table.grasps) <= 0.01, "{told}");
