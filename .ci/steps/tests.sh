@@ -1,3 +1,3 @@
 [ ! -x "$out/dds/bin/python" ] || export HANDSCOPE_DDS_PYTHON=$out/dds/bin/python
 PATH="$out/python/bin:$PATH"
-cargo test --locked --no-fail-fast
+HANDSCOPE_SOAK=1 cargo test --locked --no-fail-fast
