@@ -48,8 +48,13 @@ def simulated():
 def script(hand, text):
     """A script that moves the index finger slowly, once it says so."""
     head = f"import handscope, time, sys, os, signal\nhand = handscope.open({hand!r})\n"
+    # Whoever runs these tests in the background may have Ctrl-C ignored.
     with subprocess.Popen(
-        [sys.executable, "-c", head + textwrap.dedent(text)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", head + textwrap.dedent(text)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:
         try:
             yield running
