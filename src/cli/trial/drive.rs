@@ -180,6 +180,8 @@ async fn make_ready(
     }
     let lease = link.grant(Owner::Task);
     if let Err(why) = link.arm(lease, limits)?.await {
+        // A lost link or a stop says more than that the arming was dropped.
+        link.check(lease)?;
         bail!("the hand cannot be armed: {why}");
     }
     while let Some(record) = records.try_next() {

@@ -150,7 +150,7 @@ async fn a_wait_moves_nothing_and_whatever_ends_a_sequence_ends_it() {
     for (break_off, want) in ENDINGS {
         let mut bench = Bench::live().await;
         waiting(&mut bench).await;
-        bench.run(10_000).await;
+        bench.run(60_000).await;
         assert_eq!(bench.addresses(), [0_u16; 0], "{want:?}");
         break_off(&mut bench);
         // What it waited for does not bring it back.
