@@ -7,6 +7,7 @@ pub(crate) mod running;
 
 use crate::app::env::choose::ChooseFile;
 use crate::app::env::reveal::Reveal;
+use crate::inputs::pad::device::OpenPads;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
 use std::path::PathBuf;
@@ -22,6 +23,8 @@ pub struct Env {
     pub clock: Clock,
     /// How wires are opened.
     pub dial: Arc<dyn Dial>,
+    /// How gamepads are read.
+    pub pads: OpenPads,
     /// Called when something new is there.
     pub wake: Wake,
     /// How the user is asked where a file should go.

@@ -10,6 +10,7 @@ use crate::app::notices::{Level, NoticeKind, Notices};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Faults, Group, Groups, HandSample, Moment, PerDof, Timed,
 };
+use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, LinkStatus, LinkTrouble};
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest};
 use crate::transport::SystemDial;
@@ -39,6 +40,7 @@ impl Bench {
                 runtime: runtime.handle().clone(),
                 clock: Clock::start(),
                 dial: Arc::new(SystemDial),
+                pads: system_pads(),
                 wake: Arc::new(|| ()),
                 files: Arc::new(NoChoice),
                 reveal: no_reveal(),

@@ -7,7 +7,6 @@ use crate::app::settings::Settings;
 use crate::hand::kinematics::Side;
 use crate::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
 use crate::inputs::pad::PadInput;
-use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::link::ArmRequest;
@@ -19,7 +18,6 @@ use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
 use crate::transport::dds::{DdsNode, DdsPlace};
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 impl HandInputs {
@@ -61,8 +59,7 @@ impl HandInputs {
             return;
         };
         let clock = env.clock;
-        let reader = PadReader::start(PathBuf::from(FOLDER), Arc::new(move || clock.now()));
-        match reader {
+        match (env.pads)(Arc::new(move || clock.now())) {
             Ok(reader) => {
                 let _entered = env.runtime.enter();
                 let source = PadSource::open(PadSourceConfig {

@@ -9,6 +9,7 @@ use crate::inputs::pad::reader;
 use crate::inputs::pad::report::PadNews;
 use crate::inputs::pad::report::{PadClock, PadReport, PadTrouble};
 use std::path::PathBuf;
+use std::sync::Arc;
 use tokio::sync::mpsc::{Receiver, channel};
 
 /// Where Linux keeps its input devices.
@@ -22,7 +23,20 @@ pub struct PadReader {
     reports: Receiver<PadReport>,
 }
 
+/// How gamepads are read, with the time that their reports bear.
+pub type OpenPads = Arc<dyn Fn(PadClock) -> Result<PadReader, PadTrouble> + Send + Sync>;
+
+/// The gamepads of this computer.
+pub fn system_pads() -> OpenPads {
+    Arc::new(|clock| PadReader::start(PathBuf::from(FOLDER), clock))
+}
+
 impl PadReader {
+    /// Of gamepads that something else reads.
+    pub const fn of(reports: Receiver<PadReport>) -> Self {
+        Self { reports }
+    }
+
     /// Looks for gamepads in a folder and reads them.
     ///
     /// # Errors

@@ -9,6 +9,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::program::App;
 use crate::app::recordings::RecordingAction;
 use crate::hand::Moment;
+use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, guard};
 use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::ending::{ENDS_WITHIN, Ending};
@@ -140,6 +141,7 @@ impl Program {
         });
         let env = Env {
             dial: Arc::new(SimDial::new(clock)),
+            pads: system_pads(),
             runtime,
             clock,
             wake,

@@ -15,6 +15,7 @@ use crate::app::state::State;
 use crate::app::trials::{SeriesKind, TrialAction};
 use crate::hand::Moment;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, LinkTrouble};
 use crate::shell::DesktopApp;
 use crate::shell::headless::canvas::{Canvas, Picture};
@@ -149,6 +150,7 @@ impl Driver {
             runtime: runtime.handle().clone(),
             clock,
             dial: Arc::new(dial),
+            pads: system_pads(),
             wake: Arc::new(|| ()),
             files: Arc::new(NoChoice),
             reveal: no_reveal(),

@@ -4,5 +4,5 @@ mod dds;
 mod follow;
 mod mirror;
 mod pad;
-mod stops;
+pub(crate) mod stops;
 mod stream;

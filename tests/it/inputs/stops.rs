@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const GOOD: &[u8] = b"{\"right\":[1,1,1,1,1,1]}";
 
 /// The table that the unit tests go by as well.
-fn odd_stops() -> Vec<Vec<u8>> {
+pub(crate) fn odd_stops() -> Vec<Vec<u8>> {
     let rows = include_str!("../../odd_stops.txt").lines();
     let bytes = |row: &str| {
         let text = row.replace("<LF>", "\n").replace("<NUL>", "\0");

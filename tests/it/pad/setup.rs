@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// Axes with their ends and rest, as `evtest` prints them for the driver xpad.
-pub(super) const XBOX: &[(&str, i32, i32, i32)] = &[
+pub(crate) const XBOX: &[(&str, i32, i32, i32)] = &[
     ("ABS_X", -32768, 32767, 128),
     ("ABS_Y", -32768, 32767, 128),
     ("ABS_Z", 0, 255, 0),
@@ -48,7 +48,7 @@ pub(super) const STEAM: &[(&str, i32, i32, i32)] = &[
     ("ABS_HAT2X", 0, 255, 0),
 ];
 
-pub(super) fn facts(axes: &[(&str, i32, i32, i32)]) -> PadFacts {
+pub(crate) fn facts(axes: &[(&str, i32, i32, i32)]) -> PadFacts {
     let range = |(name, min, max, flat): &(&str, i32, i32, i32)| {
         let (min, max, flat) = (*min, *max, *flat);
         (kernel_code(name).unwrap(), AxisRange { min, max, flat })
@@ -63,7 +63,7 @@ pub(super) fn facts(axes: &[(&str, i32, i32, i32)]) -> PadFacts {
     }
 }
 
-pub(super) fn event(name: &str, value: i32) -> KernelEvent {
+pub(crate) fn event(name: &str, value: i32) -> KernelEvent {
     KernelEvent::named(name, value).unwrap()
 }
 

@@ -4,7 +4,7 @@ use crate::seams::hand::SeamHand;
 use crate::seams::judge::{INDEX, Seen};
 use crate::seams::mover::Mover;
 use crate::seams::table::Column;
-use handscope::hand::{Fault, Moment, Span};
+use handscope::hand::{Dof, Fault, Moment, Span};
 use nix::sys::signal::Signal;
 use std::time::Duration;
 
@@ -187,6 +187,15 @@ impl<'a> Witness<'a> {
             Column::RepliesSlow => self.replies_are_slow(&hand),
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
+            Column::JointFrozen => {
+                hand.freeze_angle(Dof::Index);
+                self.pass(4000);
+            }
+            Column::OddStop => {
+                self.mover.stop_oddly();
+                self.pass(4000);
+            }
+            Column::GrantedAgain => self.control_is_given_again(),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
         }
     }
@@ -226,6 +235,17 @@ impl<'a> Witness<'a> {
         }
         self.mover.stop();
         self.pass(5000);
+    }
+
+    /// Twice within 100 ms; a second later control is taken for good.
+    fn control_is_given_again(&mut self) {
+        for may in [false, true, false, true] {
+            self.mover.grant(may);
+            self.pass(20);
+        }
+        self.pass(1000);
+        self.mover.grant(false);
+        self.pass(4000);
     }
 
     /// The program can open nothing more, and is ended.

@@ -5,7 +5,7 @@ use crate::setup::body::Protocol;
 use crate::setup::hand;
 use crate::setup::link;
 use handscope::codec::modbus_rtu::crc16;
-use handscope::hand::{Dof, Fault, Moment, Span};
+use handscope::hand::{Dof, Fault, Moment, PerDof, Span};
 use handscope::sim::{JournalEntry, Personality, Scenario, SharedHand, SimConfig, SimHand};
 use handscope::transport::{Dial, Endpoint, PtyLink, Wire, pair};
 use std::net::{SocketAddr, TcpListener};
@@ -385,6 +385,12 @@ impl SeamHand {
     /// What it tells stands still from now on; its joints do not.
     pub(super) fn freeze_feedback(&self) {
         self.with(|hand, now| hand.freeze_feedback(true, now));
+    }
+
+    /// The angle that it tells of one joint stands still from now on; all else lives on.
+    pub(super) fn freeze_angle(&self, joint: Dof) {
+        let frozen = PerDof::from_fn(|dof| dof == joint);
+        self.with(|hand, now| hand.freeze_angles(frozen, now));
     }
 
     /// From now on it takes and reads back what it is told, and its joints go on to where they were sent before.

@@ -16,6 +16,7 @@ use crate::seams::process::{Place, Process};
 use crate::seams::table::{Cell, Column, Row, cell, cell_on};
 use crate::seams::window::Window;
 use crate::setup::body::Protocol;
+use crate::setup::busy::unless_stalled;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Mutex;
@@ -24,8 +25,6 @@ use std::time::{Duration, Instant};
 
 /// Cells at a time, unless `HANDSCOPE_SEAMS_AT_A_TIME` says otherwise: nearly all of their time they wait, but a slow guest is late then.
 const AT_A_TIME: usize = 4;
-/// So often a hand is brought into motion, where that fails.
-const BEGINS: usize = 3;
 /// A hand that takes its time to answer, so that what is written in a row takes a second.
 const THINKS: Duration = Duration::from_millis(40);
 
@@ -57,6 +56,7 @@ impl Try {
             ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],
+            Row::Gamepad => &[Start::Window(Window::gamepad)],
             Row::Leading => match self.column {
                 Column::Signal
                 | Column::Killed
@@ -81,6 +81,9 @@ impl Try {
                 | Column::GatewayRefuses
                 | Column::StopThenLost
                 | Column::RepliesSlow
+                | Column::JointFrozen
+                | Column::OddStop
+                | Column::GrantedAgain
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
             Row::Trial => &[
@@ -134,20 +137,32 @@ impl Try {
         // One way suffices in an ordinary run; which one differs from cell to cell.
         let one = &all[self.number % all.len()..][..1];
         for start in if whole { all } else { one } {
-            // On a machine with other work a sender may fall silent before anything moves; what moves is judged.
-            let tried = || catch_unwind(AssertUnwindSafe(|| self.see(*start)));
-            let seen = (1..BEGINS)
-                .find_map(|_| tried().ok())
-                .map_or_else(tried, Ok);
-            let seen = seen.map_err(|panic| {
-                let words = panic.downcast_ref::<String>().cloned();
-                words.unwrap_or_else(|| "it did not come so far".into())
+            told(|| {
+                let seen = begun(|| self.see(*start));
+                let judged = seen.judge(verdict, words);
+                judged.unwrap_or_else(|why| panic!("{why}\n    {}", seen.summary()));
             })?;
-            let judged = seen.judge(verdict, words);
-            judged.map_err(|why| format!("{why}\n    {}", seen.summary()))?;
         }
         Ok(())
     }
+}
+
+/// So often a hand is brought into motion, where that fails.
+const BEGINS: usize = 3;
+
+/// On a machine with other work a sender may fall silent before anything moves, or a link be lost: only what moves is judged.
+fn begun(cell: impl Fn() -> Seen) -> Seen {
+    let tried = || catch_unwind(AssertUnwindSafe(&cell)).ok();
+    (1..BEGINS).find_map(|_| tried()).unwrap_or_else(&cell)
+}
+
+/// Tries a cell, again where this computer stalled meanwhile: what is wrong, if something is.
+fn told(cell: impl FnMut()) -> Result<(), String> {
+    let tried = catch_unwind(AssertUnwindSafe(|| unless_stalled(cell)));
+    tried.map_err(|panic| {
+        let words = panic.downcast_ref::<String>().cloned();
+        words.unwrap_or_else(|| "it did not come so far".into())
+    })
 }
 
 /// How a row is brought to move a hand.
@@ -280,6 +295,9 @@ events! {
     replies_are_slow RepliesSlow,
     the_computer_is_busy Busy,
     no_descriptor_is_left NoDescriptors,
+    one_joint_reads_the_same JointFrozen,
+    a_stop_is_oddly_spelled OddStop,
+    control_is_given_again GrantedAgain,
 }
 
 #[test]
@@ -440,21 +458,12 @@ fn is_held_hot((name, start, protocol, celsius, words): &HotCell) -> Result<(), 
             watch(&mut start(place))
         }
     };
-    let mut wrong = Err("it did not come so far".to_owned());
-    for _ in 0..BEGINS {
-        // As in the table: what does not come to move is tried again. On a machine with other work a link may be lost, too.
-        let Ok(seen) = catch_unwind(AssertUnwindSafe(tried)) else {
-            continue;
-        };
+    let held = told(|| {
+        let seen = begun(tried);
         let judged = seen.judge(Verdict::Held(3000), words);
-        let is_lost = ["lost:", "LinkLost", "grew old", "Stale"];
-        let is_lost = is_lost.iter().any(|words| seen.said.contains(words));
-        wrong = judged.map_err(|why| format!("{why} {}", seen.summary()));
-        if wrong.is_ok() || !is_lost {
-            break;
-        }
-    }
-    wrong.map_err(|why| format!("{name} at {celsius}: {why}"))
+        judged.unwrap_or_else(|why| panic!("{why} {}", seen.summary()));
+    });
+    held.map_err(|why| format!("{name} at {celsius}: {why}"))
 }
 
 /// All tests, as text.
@@ -469,6 +478,20 @@ fn sources(folder: &Path) -> String {
         }
     }
     text
+}
+
+/// A link measures its time by clocks that nobody sets, and so does whatever tells it where the hand shall go.
+#[test]
+fn the_clock_is_set() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    for folder in [
+        "hand", "link", "inputs", "trials", "checkup", "poses", "exhibit",
+    ] {
+        let text = sources(&source.join(folder));
+        for clock in ["SystemTime", "Utc::now", "Local::now", "CLOCK_REALTIME"] {
+            assert!(!text.contains(clock), "{folder} asks {clock}");
+        }
+    }
 }
 
 #[test]
@@ -503,7 +526,7 @@ fn each_row_of_the_table_of_the_manual_is_a_test_by_that_name() {
     let rows = rows.filter_map(|line| Some(line.split_once('|')?.0.trim()));
     let mut told: Vec<String> = rows.skip(1).map(|event| event.replace(' ', "_")).collect();
     let mut tests: Vec<&str> = EVENTS.iter().map(|(test, _)| *test).collect();
-    tests.extend(["the_window_is_closed", "a_drive_is_hot"]);
+    tests.extend(["the_window_is_closed", "a_drive_is_hot", "the_clock_is_set"]);
     told.sort();
     tests.sort_unstable();
     assert_eq!(told, tests);

@@ -18,6 +18,16 @@ pub(super) trait Mover {
     /// A person stops the hand: STOP, or Ctrl-C.
     fn stop(&mut self);
 
+    /// The same, in a message of which little else is right.
+    fn stop_oddly(&mut self) {
+        panic!("its stop has one spelling");
+    }
+
+    /// What moves the hand may not, or may again.
+    fn grant(&mut self, _may: bool) {
+        panic!("nobody grants it control");
+    }
+
     /// True once its process is over.
     fn has_ended(&mut self) -> bool {
         false

@@ -1,5 +1,6 @@
 //! Rows of the table that a command moves: the real program in a process of its own, in real time, at the hand of a cell on a real wire.
 
+use crate::inputs::stops::odd_stops;
 use crate::seams::hand::SeamHand;
 use crate::seams::mover::Mover;
 use crate::setup::body::Protocol;
@@ -79,6 +80,10 @@ pub(super) struct Process {
     folder: TempDir,
     /// Senders and clients end with it.
     ends: Arc<AtomicBool>,
+    /// What a sender says beside its targets.
+    beside: Arc<Mutex<Vec<u8>>>,
+    /// The number of the cell.
+    number: u8,
 }
 
 /// A place with a hand, before the command is started there.
@@ -138,6 +143,8 @@ impl Place {
             runtime: Some(self.runtime),
             folder: self.folder,
             ends: Arc::default(),
+            beside: Arc::default(),
+            number: self.number,
         }
     }
 
@@ -199,7 +206,7 @@ impl Place {
         let mut process = self.stdio();
         let mut input = process.input.take().unwrap();
         process.sends(move |line| {
-            let _sent = writeln!(input, "{line}");
+            let _sent = input.write_all(line);
         });
         process
     }
@@ -209,7 +216,7 @@ impl Place {
         let place = process.ready("ready udp ");
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         process.sends(move |line| {
-            let _sent = socket.send_to(line.as_bytes(), &place);
+            let _sent = socket.send_to(line, &place);
         });
         process
     }
@@ -219,7 +226,7 @@ impl Place {
         let place = process.ready("ready tcp ");
         let mut socket = TcpStream::connect(place).unwrap();
         process.sends(move |line| {
-            let _sent = writeln!(socket, "{line}");
+            let _sent = socket.write_all(line);
         });
         process
     }
@@ -388,15 +395,27 @@ impl Process {
         });
     }
 
-    fn sends(&self, mut send: impl FnMut(String) + Send + 'static) {
-        let mut seq = 0;
+    fn sends(&self, mut send: impl FnMut(&[u8]) + Send + 'static) {
+        let (mut seq, beside) = (0, Arc::clone(&self.beside));
         self.sends_angles(move |index| {
+            let said = std::mem::take(&mut *beside.lock().unwrap());
+            if !said.is_empty() {
+                send(&said);
+            }
             let index = f64::from(index) / 1000.0;
-            send(format!(
-                r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#
-            ));
+            let line =
+                format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#) + "\n";
+            send(line.as_bytes());
             seq += 1;
         });
+    }
+
+    /// Says it on the way of its targets.
+    fn say(&mut self, text: &[u8]) {
+        match &mut self.input {
+            Some(input) => input.write_all(text).unwrap(),
+            None => self.beside.lock().unwrap().extend(text),
+        }
     }
 }
 
@@ -415,6 +434,21 @@ impl Mover for Process {
 
     fn stop(&mut self) {
         self.signal(Signal::SIGINT);
+    }
+
+    fn stop_oddly(&mut self) {
+        let all = odd_stops();
+        let mut stop = all[usize::from(self.number) % all.len()].clone();
+        stop.push(b'\n');
+        self.say(&stop);
+    }
+
+    fn grant(&mut self, may: bool) {
+        let asked = match may {
+            true => r#"{"id":8,"do":"arm"}"#,
+            false => r#"{"id":9,"do":"disarm"}"#,
+        };
+        self.say(format!("{asked}\n").as_bytes());
     }
 
     fn has_ended(&mut self) -> bool {

@@ -19,6 +19,7 @@ pub(super) enum Row {
     Leading,
     Share,
     Stdio,
+    Gamepad,
     Exhibition,
     Params,
     Calibration,
@@ -51,10 +52,13 @@ pub(super) enum Column {
     RepliesSlow,
     Busy,
     NoDescriptors,
+    JointFrozen,
+    OddStop,
+    GrantedAgain,
 }
 
 impl Row {
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 13] = [
         Self::Slider,
         Self::Pose,
         Self::Series,
@@ -64,6 +68,7 @@ impl Row {
         Self::Leading,
         Self::Share,
         Self::Stdio,
+        Self::Gamepad,
         Self::Exhibition,
         Self::Params,
         Self::Calibration,
@@ -80,6 +85,7 @@ impl Row {
             Self::Leading => "another hand leading",
             Self::Share => "share --writers",
             Self::Stdio => "share --stdio",
+            Self::Gamepad => "gamepad in the window",
             Self::Exhibition => "exhibition",
             Self::Params => "params",
             Self::Calibration => "calibration",
@@ -88,7 +94,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 24] = [
+    pub(super) const ALL: [Self; 27] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -113,6 +119,9 @@ impl Column {
         Self::RepliesSlow,
         Self::Busy,
         Self::NoDescriptors,
+        Self::JointFrozen,
+        Self::OddStop,
+        Self::GrantedAgain,
     ];
 
     pub(super) const fn name(self) -> &'static str {
@@ -141,6 +150,9 @@ impl Column {
             Self::RepliesSlow => "slow replies",
             Self::Busy => "computer busy",
             Self::NoDescriptors => "no descriptor left",
+            Self::JointFrozen => "one joint's feedback frozen",
+            Self::OddStop => "stop in an odd spelling",
+            Self::GrantedAgain => "control taken and given twice",
         }
     }
 }
@@ -164,6 +176,7 @@ pub(super) const fn cell_on(row: Row, column: Column, protocol: Protocol) -> Cel
         | Row::Pose
         | Row::Series
         | Row::Leading
+        | Row::Gamepad
         | Row::Exhibition
         | Row::Calibration => true,
         Row::Trial | Row::Follow | Row::FollowDds | Row::Share | Row::Stdio | Row::Params => false,
@@ -201,6 +214,7 @@ pub(super) const fn cell(row: Row, column: Column) -> Cell {
         Row::Slider | Row::Pose => told_by_the_window(column),
         Row::Series => series(column),
         Row::Leading => leading(column),
+        Row::Gamepad => gamepad(column),
         Row::Exhibition => exhibition(column),
         Row::Calibration => calibration(column),
         Row::Trial => trial(column),
@@ -218,6 +232,8 @@ const VIRTUAL: Cell = CannotBe(
     "its time is virtual and does not stall: the rule for stalls is the link's, as in commands",
 );
 const NO_PROCESS: Cell = CannotBe("it is no process of its own here; its link is a command's");
+const ONE_SPELLING: Cell = CannotBe("a button or a signal stops it, which has one spelling");
+const NOT_GRANTED: Cell = CannotBe("it begins with control, and nobody grants it again");
 const NO_WINDOW: Cell = CannotBe("a command has no window");
 const LINK_IS_LOST: &str = "LinkLost";
 const NO_PANIC: Cell =
@@ -247,6 +263,9 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::RepliesSlow => Tried(Held(4500), ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
+        Column::JointFrozen => Tried(Held(1500), ""),
+        Column::OddStop => ONE_SPELLING,
+        Column::GrantedAgain => NOT_GRANTED,
     }
 }
 
@@ -275,7 +294,10 @@ const fn series(column: Column) -> Cell {
         | Column::StopThenLost
         | Column::RepliesSlow
         | Column::Busy
-        | Column::NoDescriptors => told_by_the_window(column),
+        | Column::NoDescriptors
+        | Column::JointFrozen
+        | Column::OddStop
+        | Column::GrantedAgain => told_by_the_window(column),
     }
 }
 
@@ -305,7 +327,43 @@ const fn leading(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::JointFrozen
+        | Column::OddStop
         | Column::FaultOrHeat => told_by_the_window(column),
+        Column::GrantedAgain => Tried(Held(2500), ""),
+    }
+}
+
+/// A gamepad of the window leads it.
+const fn gamepad(column: Column) -> Cell {
+    match column {
+        Column::OddStop => Tried(Held(1000), ""),
+        Column::Frozen
+        | Column::Signal
+        | Column::Killed
+        | Column::Panic
+        | Column::DisplayLost
+        | Column::ReaderGone
+        | Column::OutputUnread
+        | Column::HolderKilled
+        | Column::HolderFrozen
+        | Column::Busy
+        | Column::NoDescriptors => told_by_the_window(column),
+        Column::Disobeys
+        | Column::GrantedAgain
+        | Column::SecondHandscope
+        | Column::Asleep
+        | Column::LinkLost
+        | Column::Replugged
+        | Column::PowerCycled
+        | Column::FeedbackFrozen
+        | Column::JointFrozen
+        | Column::OddReplies
+        | Column::SecondMaster
+        | Column::GatewayRefuses
+        | Column::StopThenLost
+        | Column::RepliesSlow
+        | Column::FaultOrHeat => leading(column),
     }
 }
 
@@ -334,7 +392,10 @@ const fn exhibition(column: Column) -> Cell {
         | Column::StopThenLost
         | Column::RepliesSlow
         | Column::Busy
-        | Column::NoDescriptors => told_by_the_window(column),
+        | Column::NoDescriptors
+        | Column::JointFrozen
+        | Column::OddStop
+        | Column::GrantedAgain => told_by_the_window(column),
     }
 }
 
@@ -359,7 +420,10 @@ const fn calibration(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::JointFrozen
         | Column::FaultOrHeat => Tried(Still, ""),
+        Column::OddStop => ONE_SPELLING,
+        Column::GrantedAgain => NOT_GRANTED,
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
         Column::Disobeys => By("a_stop_passes_while_the_hand_calibrates"),
@@ -389,6 +453,9 @@ const fn trial(column: Column) -> Cell {
         Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
+        Column::JointFrozen => Tried(Held(1500), ""),
+        Column::OddStop => ONE_SPELLING,
+        Column::GrantedAgain => NOT_GRANTED,
     }
 }
 
@@ -415,6 +482,9 @@ const fn follow(column: Column) -> Cell {
         Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
+        Column::JointFrozen => Tried(Held(1500), ""),
+        Column::OddStop => Tried(Held(1000), ""),
+        Column::GrantedAgain => NOT_GRANTED,
     }
 }
 
@@ -438,7 +508,10 @@ const fn share(column: Column) -> Cell {
         | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
+        | Column::JointFrozen
+        | Column::GrantedAgain
         | Column::Disobeys => follow(column),
+        Column::OddStop => By("a_stop_is_obeyed_whatever_is_odd_about_its_request"),
         Column::LinkLost | Column::Replugged => Tried(NothingMore(0), "lost"),
         Column::PowerCycled => Tried(Rests, "lost"),
         Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
@@ -451,6 +524,8 @@ const fn share(column: Column) -> Cell {
 const fn stdio(column: Column) -> Cell {
     match column {
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
+        Column::OddStop => Tried(Held(1000), ""),
+        Column::GrantedAgain => Tried(Held(2500), ""),
         // A fault disarms: the other joints finish.
         Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
         // A process that stood still did not sleep: it holds the hand, and follows again what is sent then.
@@ -475,7 +550,8 @@ const fn stdio(column: Column) -> Cell {
         | Column::StopThenLost
         | Column::RepliesSlow
         | Column::Busy
-        | Column::NoDescriptors => share(column),
+        | Column::NoDescriptors
+        | Column::JointFrozen => share(column),
     }
 }
 
@@ -505,6 +581,9 @@ const fn params(column: Column) -> Cell {
         | Column::RepliesSlow
         | Column::Busy
         | Column::NoDescriptors
+        | Column::JointFrozen
         | Column::ReaderGone => Tried(Settled, ""),
+        Column::OddStop => ONE_SPELLING,
+        Column::GrantedAgain => NOT_GRANTED,
     }
 }

@@ -1,5 +1,6 @@
 //! Rows of the table that the window moves: the whole program without its display, in virtual time, in front of the hand of a cell.
 
+use crate::pad::setup::{self as pad, PAD};
 use crate::seams::hand::{InMemory, SeamHand};
 use crate::seams::mover::Mover;
 use crate::setup::body::Protocol;
@@ -23,6 +24,8 @@ use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
 use handscope::exhibit::run::ExhibitWish;
 use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
+use handscope::inputs::pad::device::{OpenPads, PadReader};
+use handscope::inputs::pad::{PadNews, PadReport};
 use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, PoseId};
@@ -31,8 +34,9 @@ use handscope::sim::SharedHand;
 use handscope::transport::Endpoint;
 use handscope::trials::search::SearchGoal;
 use handscope::trials::{Limits, TrialGrid, TrialPlan, TrialSetting};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use tokio::sync::mpsc;
 
 /// One frame of the window.
 const FRAME: Duration = Duration::from_millis(20);
@@ -41,6 +45,8 @@ fn slow() -> Speed {
     Speed::nearest(100)
 }
 
+/// Frames in which a person pulls the triggers of a gamepad from end to end.
+const TRIGGER_STEPS: u16 = 300;
 const LEADER: &str = "tcp:10.0.0.2:6000";
 
 /// The program with its window, in front of the hand of a cell.
@@ -52,19 +58,34 @@ pub(super) struct Window {
     closes: bool,
     /// Another program at the same hand.
     second: Option<Client>,
+    /// What its gamepad says.
+    pad: mpsc::Sender<PadReport>,
+    /// How far its triggers are pulled, once it is there.
+    pulled: Option<u16>,
 }
 
 impl Window {
     /// Connected, with nothing asked of it yet.
     pub(super) fn live(protocol: Protocol) -> Self {
         let mut hands = None;
+        let (pad, reports) = mpsc::channel(64);
+        let reports = Mutex::new(Some(reports));
         let program = Program::start(Time::Virtual, None, || {
             let (hand, leader) = (SeamHand::in_memory(protocol), hand::plain());
             hands = Some((Arc::clone(&hand), leader.clone()));
             let place: Endpoint = LEADER.parse().unwrap();
             let others = vec![(place, leader)];
             let dial = Arc::new(InMemory { hand, others });
-            (Env { dial, ..env() }, Settings::default())
+            let read = move |_| Ok(PadReader::of(reports.lock().unwrap().take().unwrap()));
+            let pads: OpenPads = Arc::new(read);
+            (
+                Env {
+                    dial,
+                    pads,
+                    ..env()
+                },
+                Settings::default(),
+            )
         });
         let (hand, leader) = hands.unwrap();
         let mut window = Self {
@@ -74,6 +95,8 @@ impl Window {
             is_frozen: false,
             closes: false,
             second: None,
+            pad,
+            pulled: None,
         };
         let place = window.hand.endpoint.parse().unwrap();
         window.act(Action::Connect(place));
@@ -233,6 +256,50 @@ impl Window {
         self
     }
 
+    /// A person pulls both triggers of a gamepad slowly, its dead-man held.
+    pub(super) fn gamepad(mut self) -> Self {
+        self.act(Action::Input(InputAction::ReadPad(true)));
+        let (facts, now) = (pad::facts(pad::XBOX), Vec::new());
+        self.tells(PadNews::Found {
+            pad: PAD,
+            facts,
+            now,
+        });
+        self.pulled = Some(0);
+        self.run(200);
+        self.grant(true);
+        self.run(200);
+        self.presses("BTN_TL", 1);
+        self.pulled = Some(1);
+        self
+    }
+
+    fn tells(&self, news: PadNews) {
+        let at = self.program.now();
+        // A gamepad that nobody reads any more says nothing.
+        let _unread = self.pad.try_send(PadReport { at, news });
+    }
+
+    fn presses(&self, control: &str, value: i32) {
+        let event = pad::event(control, value);
+        self.tells(PadNews::Moved { pad: PAD, event });
+    }
+
+    /// The triggers come a little closer: six seconds for the whole way.
+    fn pull(&mut self) {
+        let Some(pulled) = &mut self.pulled else {
+            return;
+        };
+        if *pulled > 0 {
+            *pulled = (*pulled + 1).min(TRIGGER_STEPS);
+        }
+        let raw = i32::from(*pulled) * 255 / i32::from(TRIGGER_STEPS);
+        self.tells(PadNews::Alive(PAD));
+        for trigger in ["ABS_Z", "ABS_RZ"] {
+            self.presses(trigger, raw);
+        }
+    }
+
     /// A visitor presses *Fist*, once staff armed.
     pub(super) fn exhibition(mut self) -> Self {
         let plan = ExhibitPlan {
@@ -276,6 +343,7 @@ impl Mover for Window {
     }
 
     fn pass(&mut self, step: Duration) {
+        self.pull();
         match self.is_frozen {
             true => self.program.pass_unseen(step),
             false => self.program.tick(step),
@@ -299,6 +367,22 @@ impl Mover for Window {
 
     fn stop(&mut self) {
         self.act(Action::Stop);
+    }
+
+    fn stop_oddly(&mut self) {
+        let event = pad::event("BTN_EAST", 1);
+        self.tells(PadNews::Doubtful { pad: PAD, event });
+    }
+
+    fn grant(&mut self, may: bool) {
+        let source = match self.program.state().hand().inputs.pad_view {
+            Some(_) => InputSource::Pad,
+            None => InputSource::Mirror,
+        };
+        self.act(Action::Input(match may {
+            true => InputAction::Grant(source),
+            false => InputAction::TakeBack,
+        }));
     }
 
     fn close(&mut self) {

@@ -12,6 +12,7 @@ use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
+use handscope::inputs::pad::device::system_pads;
 use handscope::link::Clock;
 use handscope::shell::DesktopApp;
 use std::path::PathBuf;
@@ -31,6 +32,7 @@ pub(crate) fn env() -> Env {
         runtime,
         clock,
         dial: Arc::new(SimDial::new(clock)),
+        pads: system_pads(),
         wake: Arc::new(|| ()),
         files: Arc::new(NoChoice),
         reveal: no_reveal(),
