@@ -136,23 +136,21 @@ async fn serve(
         done = served => done,
         () = tell(link, gateway.as_ref(), &args.hand) => Ok(()),
     };
-    let ended = match gateway {
-        Some(gateway) => end(link, gateway).await,
-        None => Ok(()),
-    };
-    done.and(ended)
+    let may_move = gateway.is_some_and(|gateway| close(link, gateway));
+    // A script was stopped, and waited for, before it left.
+    let is_waited_for = args.stdio || link.status().state != LinkState::Holding;
+    if !may_move && is_waited_for {
+        return done;
+    }
+    done.and(session::stopped(link).await)
 }
 
-/// Closes, and does not leave before a hand that a client could move is seen to rest.
-async fn end(link: &LinkHandle, gateway: Gateway) -> anyhow::Result<()> {
+/// Closes. True if a client could move the hand, which is to be stopped.
+fn close(link: &LinkHandle, gateway: Gateway) -> bool {
     let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
-    let moved = gateway.clients().iter().any(is_held);
+    let may_move = gateway.clients().iter().any(is_held);
     tell_movers(&gateway, link);
-    drop(gateway);
-    if !moved && link.status().state != LinkState::Holding {
-        return Ok(());
-    }
-    session::stopped(link).await
+    may_move
 }
 
 fn open(link: &LinkHandle, address: SocketAddr, args: &ShareArgs) -> anyhow::Result<Gateway> {

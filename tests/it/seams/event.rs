@@ -4,7 +4,7 @@ use crate::seams::hand::SeamHand;
 use crate::seams::judge::{INDEX, Seen};
 use crate::seams::mover::Mover;
 use crate::seams::table::Column;
-use handscope::hand::{Dof, Fault, Moment, Span};
+use handscope::hand::{Dof, Fault, Moment, PerDof, Span};
 use nix::sys::signal::Signal;
 use std::time::Duration;
 
@@ -14,22 +14,27 @@ const STEP: Duration = Duration::from_millis(20);
 /// What is on its way has come so far.
 const UNDER_WAY: i16 = 850;
 
-/// As over a VPN or a relay.
-const SLOW_REPLY: Duration = Duration::from_millis(150);
+/// As over a VPN or a relay, ms.
+const SLOW_REPLIES: [u64; 4] = [60, 100, 150, 300];
+/// Exceptions that mean: the gateway answers, the hand does not (Modbus application protocol 1.1b3, 7).
+const REFUSALS: [u8; 4] = [0x0A, 0x0B, 0x04, 0x06];
 
 /// Looks at the joints while time goes by.
 pub(super) struct Witness<'a> {
     mover: &'a mut dyn Mover,
+    /// The number of the cell: what comes in several kinds comes in another one in each.
+    number: usize,
     event: Moment,
     points: Vec<(Moment, [i16; 6])>,
 }
 
 impl<'a> Witness<'a> {
     /// Waits until the index is on its way, where joints move at all.
-    pub(super) fn of(mover: &'a mut dyn Mover, moves: bool) -> Self {
+    pub(super) fn of(mover: &'a mut dyn Mover, number: usize, moves: bool) -> Self {
         let mut witness = Self {
             event: Moment::ZERO,
             mover,
+            number,
             points: Vec::new(),
         };
         if moves {
@@ -188,7 +193,9 @@ impl<'a> Witness<'a> {
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::JointFrozen => {
-                hand.freeze_angle(Dof::Index);
+                // That joint alone, or all angles while everything else that it tells lives on.
+                let all = self.number.is_multiple_of(2);
+                hand.freeze_angles(PerDof::from_fn(|dof| all || dof == Dof::Index));
                 self.pass(4000);
             }
             Column::OddStop => {
@@ -202,7 +209,7 @@ impl<'a> Witness<'a> {
 
     /// For two seconds a gateway answers that the hand does not.
     fn gateway_refuses(&mut self, hand: &SeamHand) {
-        hand.refuse();
+        hand.refuse(REFUSALS[self.number % REFUSALS.len()]);
         self.pass(2000);
         hand.silence(false);
         self.pass(4000);
@@ -220,7 +227,8 @@ impl<'a> Witness<'a> {
 
     /// Replies come later from now on, as over a VPN or a relay, and a person presses STOP.
     fn replies_are_slow(&mut self, hand: &SeamHand) {
-        hand.delay_replies(SLOW_REPLY);
+        let ms = SLOW_REPLIES[self.number % SLOW_REPLIES.len()];
+        hand.delay_replies(Duration::from_millis(ms));
         self.pass(600);
         self.mover.stop();
         self.pass(5000);

@@ -41,8 +41,8 @@ enum Carries {
     OddReplies,
     /// Requests pass; each reply comes this much later.
     Late(Duration),
-    /// No request passes: a Modbus gateway answers that the hand does not.
-    Refusals,
+    /// No request passes: a Modbus gateway answers with this exception that the hand does not.
+    Refusals(u8),
 }
 
 /// The wire between a program and the hand, governed from outside.
@@ -75,10 +75,13 @@ impl Gate {
                 },
                 read = near.read(&mut asked) => match read {
                     Ok(1..) if self.carries() == Carries::Nothing => Ok(()),
-                    Ok(len @ 1..) if self.carries() == Carries::Refusals => {
-                        near.write_all(&refusal(self.protocol, &asked[..len])).await
-                    }
-                    Ok(len @ 1..) => far.write_all(&asked[..len]).await,
+                    Ok(len @ 1..) => match self.carries() {
+                        Carries::Refusals(code) => {
+                            let refused = refusal(self.protocol, &asked[..len], code);
+                            near.write_all(&refused).await
+                        }
+                        _ => far.write_all(&asked[..len]).await,
+                    },
                     _ => return,
                 },
             };
@@ -92,7 +95,7 @@ impl Gate {
         let (mut bytes, mut copies) = (bytes.to_vec(), 1);
         match self.carries() {
             Carries::All => {}
-            Carries::Nothing | Carries::Refusals => return Ok(()),
+            Carries::Nothing | Carries::Refusals(_) => return Ok(()),
             Carries::Late(by) => sleep(by).await,
             Carries::OddReplies => {
                 let (kind, late_ms) = {
@@ -133,17 +136,16 @@ impl Gate {
     }
 }
 
-/// Exception 0B to a request: the gateway target device failed to respond.
-fn refusal(protocol: Protocol, asked: &[u8]) -> Vec<u8> {
-    const NO_RESPONSE: u8 = 0x0B;
+/// An exception in answer to a request.
+fn refusal(protocol: Protocol, asked: &[u8], code: u8) -> Vec<u8> {
     match protocol {
         Protocol::Tcp => {
             let mut refused = vec![asked[0], asked[1], 0, 0, 0, 3];
-            refused.extend([asked[6], asked[7] | 0x80, NO_RESPONSE]);
+            refused.extend([asked[6], asked[7] | 0x80, code]);
             refused
         }
         Protocol::Rtu => {
-            let mut refused = vec![asked[0], asked[1] | 0x80, NO_RESPONSE];
+            let mut refused = vec![asked[0], asked[1] | 0x80, code];
             refused.extend(crc16(&refused).to_le_bytes());
             refused
         }
@@ -343,9 +345,9 @@ impl SeamHand {
         };
     }
 
-    /// A gateway answers in place of the hand.
-    pub(super) fn refuse(&self) {
-        *self.gate.carries.lock().unwrap() = Carries::Refusals;
+    /// A gateway answers with this exception in place of the hand.
+    pub(super) fn refuse(&self, code: u8) {
+        *self.gate.carries.lock().unwrap() = Carries::Refusals(code);
     }
 
     /// Each reply comes this much later.
@@ -387,9 +389,8 @@ impl SeamHand {
         self.with(|hand, now| hand.freeze_feedback(true, now));
     }
 
-    /// The angle that it tells of one joint stands still from now on; all else lives on.
-    pub(super) fn freeze_angle(&self, joint: Dof) {
-        let frozen = PerDof::from_fn(|dof| dof == joint);
+    /// The angles that it tells of these joints stand still from now on; all else lives on.
+    pub(super) fn freeze_angles(&self, frozen: PerDof<bool>) {
         self.with(|hand, now| hand.freeze_angles(frozen, now));
     }
 

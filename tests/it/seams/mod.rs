@@ -108,7 +108,7 @@ impl Try {
     fn see(&self, start: Start) -> Seen {
         let moves = !matches!(self.row, Row::Params | Row::Calibration);
         let watch = |mover: &mut dyn mover::Mover| {
-            let mut witness = Witness::of(mover, moves);
+            let mut witness = Witness::of(mover, self.number, moves);
             match self.row {
                 Row::Params => witness.happens_to_writes(self.column),
                 _ => witness.happens(self.column),
@@ -313,7 +313,7 @@ fn the_window_is_closed() {
     .enumerate()
     {
         let mut window = start(Window::live(protocol));
-        let mut witness = Witness::of(&mut window, true);
+        let mut witness = Witness::of(&mut window, number, true);
         witness.closes();
         let seen = witness.seen();
         let judged = seen.judge(Verdict::Held(300), "");
@@ -447,7 +447,7 @@ fn a_drive_is_hot() {
 
 fn is_held_hot((name, start, protocol, celsius, words): &HotCell) -> Result<(), String> {
     let watch = |mover: &mut dyn mover::Mover| {
-        let mut witness = Witness::of(mover, true);
+        let mut witness = Witness::of(mover, 0, true);
         witness.grows_hot(*celsius);
         witness.seen()
     };

@@ -218,6 +218,9 @@ pub(super) const fn cell(row: Row, column: Column) -> Cell {
         Row::Exhibition => exhibition(column),
         Row::Calibration => calibration(column),
         Row::Trial => trial(column),
+        Row::FollowDds if matches!(column, Column::OddStop) => {
+            By("speeds_of_zero_are_a_stop_whatever_else_is_in_the_message")
+        }
         Row::Follow | Row::FollowDds => follow(column),
         Row::Share => share(column),
         Row::Stdio => stdio(column),
