@@ -213,9 +213,11 @@ impl Seen {
                 self.stay_from(self.after(0).plus(BRAKES_WITHIN))?;
             }
             Verdict::GoesOn => {
-                let from = self.angles_at(self.event)[INDEX];
-                let went =
-                    |(_, angles): &(Moment, [i16; 6])| angles[INDEX] < (from - GOES_ON).max(FIST);
+                let from = self.angles_at(self.event);
+                let went = |(_, angles): &(Moment, [i16; 6])| {
+                    let mut joints = from.iter().zip(angles);
+                    joints.any(|(from, now)| *now < (from - GOES_ON).max(FIST))
+                };
                 if !self.points.iter().any(went) {
                     return Err(format!("it did not go on: {:?}", self.last()));
                 }

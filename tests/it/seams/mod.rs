@@ -86,6 +86,10 @@ impl Try {
                 | Column::GrantedAgain
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
+            // The index of a grip has no farther to go than a drive may rest beside its target: it may have arrived.
+            Row::Trial if self.column == Column::JointFrozen => {
+                &[Start::Process(Place::trial), Start::Process(Place::tune)]
+            }
             Row::Trial => &[
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),

@@ -282,8 +282,10 @@ impl FeedbackWatch {
         match status {
             Status::ForceReached => joint.estimate < f64::from(joint.seen),
             Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
+            // One in doubt was told to stay where it must be: that it arrived there says nothing of where it is seen.
             Status::PositionReached => target.is_some_and(|target| {
-                (f64::from(target) - f64::from(joint.seen)).abs() <= ARRIVED_WITHIN
+                let way = (f64::from(target) - f64::from(joint.seen)).abs();
+                !joint.doubted && way <= ARRIVED_WITHIN
             }),
             Status::Releasing | Status::Grasping | Status::Unknown(_) => false,
         }
@@ -731,6 +733,29 @@ mod tests {
             };
             assert!(is_right, "{}: {seen:?}", case.name);
         }
+    }
+
+    #[test]
+    fn a_frozen_angle_stays_in_doubt_where_the_drive_arrived_at_the_hold() {
+        let mut watch = watch(250, go(0));
+        let read = |watch: &mut FeedbackWatch, t: std::ops::Range<u64>, status| {
+            for t in t.step_by(10) {
+                let (sample, fresh) = sample(at(moving(t.min(300)), status), ms(t));
+                watch.take(&sample, fresh);
+            }
+        };
+        read(&mut watch, 10..420, 1);
+        watch.doubt();
+        let held = watch.hold_target(Dof::Index, ms(420)).unwrap();
+        let way = moving(300) - held.angle().unwrap().get();
+        assert!((30..=50).contains(&way), "{way}");
+        tell(
+            &mut watch,
+            &HandCommand::Angles(PerDof::splat(held)),
+            ms(420),
+        );
+        read(&mut watch, 430..1200, 2);
+        assert_eq!(watch.hold_target(Dof::Index, ms(1200)), Some(held));
     }
 
     #[test]
