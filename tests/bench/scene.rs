@@ -16,6 +16,7 @@ use handscope::app::settings::PlotWindow;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::hand::Moment;
+use handscope::inputs::pad::device::system_pads;
 use handscope::link::Clock;
 use handscope::shell::raster::Raster;
 use handscope::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
@@ -95,6 +96,7 @@ impl Scene {
             runtime: runtime.handle().clone(),
             clock,
             dial: Arc::new(SimDial::new(clock)),
+            pads: system_pads(),
             wake: Arc::new(move || wakes.notify_one()),
             files: Arc::new(NoChoice),
             reveal: no_reveal(),
