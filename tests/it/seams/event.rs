@@ -192,12 +192,7 @@ impl<'a> Witness<'a> {
             Column::RepliesSlow => self.replies_are_slow(&hand),
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
-            Column::JointFrozen => {
-                // That joint alone, or all angles while everything else that it tells lives on.
-                let all = self.number.is_multiple_of(2);
-                hand.freeze_angles(PerDof::from_fn(|dof| all || dof == Dof::Index));
-                self.pass(4000);
-            }
+            Column::JointFrozen => self.angles_freeze(&hand),
             Column::OddStop => {
                 self.mover.stop_oddly();
                 self.pass(4000);
@@ -205,6 +200,13 @@ impl<'a> Witness<'a> {
             Column::GrantedAgain => self.control_is_given_again(),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
         }
+    }
+
+    /// Of the index alone, or of all joints, while everything else that the hand tells lives on.
+    fn angles_freeze(&mut self, hand: &SeamHand) {
+        let all = self.number.is_multiple_of(2);
+        hand.freeze_angles(PerDof::from_fn(|dof| all || dof == Dof::Index));
+        self.pass(4000);
     }
 
     /// For two seconds a gateway answers that the hand does not.
