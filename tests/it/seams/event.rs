@@ -193,10 +193,7 @@ impl<'a> Witness<'a> {
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::JointFrozen => self.angles_freeze(&hand),
-            Column::OddStop => {
-                self.mover.stop_oddly();
-                self.pass(4000);
-            }
+            Column::OddStop => self.stop_is_odd(),
             Column::GrantedAgain => self.control_is_given_again(),
             Column::Panic | Column::DisplayLost => panic!("tried elsewhere"),
         }
@@ -206,6 +203,12 @@ impl<'a> Witness<'a> {
     fn angles_freeze(&mut self, hand: &SeamHand) {
         let all = self.number.is_multiple_of(2);
         hand.freeze_angles(PerDof::from_fn(|dof| all || dof == Dof::Index));
+        self.pass(4000);
+    }
+
+    /// A person or a program stops it, in a message of which little else is right.
+    fn stop_is_odd(&mut self) {
+        self.mover.stop_oddly();
         self.pass(4000);
     }
 
