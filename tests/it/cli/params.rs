@@ -330,38 +330,45 @@ fn a_reset_makes_a_backup_that_brings_everything_back() {
 
 #[test]
 fn a_new_id_is_followed_kept_if_saved_and_gone_with_the_power_if_not() {
-    for kind in ["rs485:", "rtu:", "slcan:"] {
-        let mut bench = Bench::new(&[]);
-        let hand = bench.wires.iter().find(|hand| hand.starts_with(kind));
-        let hand = hand.unwrap().clone();
-        let path = bench.file("hand_id = 9");
-        let args = ["apply", text(&path), "--only", "hand_id", "--yes"];
-        let moved = json(&bench.params(&hand, &args).ok());
-        assert_eq!(moved["rows"][0]["verdict"], "moved", "{moved}");
-        let place = moved["answers_at"].as_str().unwrap().to_owned();
-        assert!(place.contains("id=9"), "{place}");
-        let why = |bench: &Bench, place: &str| {
-            let listed = json(&bench.params(place, &["backups"]).ok());
-            let last = listed["backups"].as_array().unwrap().last().cloned();
-            last.map(|backup| backup["why"].clone())
-        };
-        let taken_along = Some(Value::from("before apply"));
-        assert_eq!(why(&bench, &place), taken_along, "{kind}");
-        bench.power_cycle();
-        bench.params(&hand, &["dump"]).ok();
-        bench.params(&hand, &args).ok();
-        bench.params(&place, &["save", "--yes"]).ok();
-        bench.power_cycle();
-        let kept = json(&bench.params(&place, &["dump"]).ok());
-        assert_eq!(kept["params"]["hand_id"], 9, "{kind}");
-        // The reset brings the factory's id back, and the hand is found there.
-        let reset = json(&bench.params(&place, &["reset", "--yes"]).ok());
-        assert_eq!(reset["params"]["hand_id"], 1, "{kind}");
-        let again = reset["answers_at"].as_str().unwrap();
-        assert!(!again.contains("id=9"), "{again}");
-        let taken_along = Some(Value::from("before reset"));
-        assert_eq!(why(&bench, again), taken_along, "{kind}");
-    }
+    // A hand takes its time to write its flash and to wake up.
+    std::thread::scope(|scope| {
+        for kind in ["rs485:", "rtu:", "slcan:"] {
+            scope.spawn(move || check_new_id(kind));
+        }
+    });
+}
+
+fn check_new_id(kind: &str) {
+    let mut bench = Bench::new(&[]);
+    let hand = bench.wires.iter().find(|hand| hand.starts_with(kind));
+    let hand = hand.unwrap().clone();
+    let path = bench.file("hand_id = 9");
+    let args = ["apply", text(&path), "--only", "hand_id", "--yes"];
+    let moved = json(&bench.params(&hand, &args).ok());
+    assert_eq!(moved["rows"][0]["verdict"], "moved", "{moved}");
+    let place = moved["answers_at"].as_str().unwrap().to_owned();
+    assert!(place.contains("id=9"), "{place}");
+    let why = |bench: &Bench, place: &str| {
+        let listed = json(&bench.params(place, &["backups"]).ok());
+        let last = listed["backups"].as_array().unwrap().last().cloned();
+        last.map(|backup| backup["why"].clone())
+    };
+    let taken_along = Some(Value::from("before apply"));
+    assert_eq!(why(&bench, &place), taken_along, "{kind}");
+    bench.power_cycle();
+    bench.params(&hand, &["dump"]).ok();
+    bench.params(&hand, &args).ok();
+    bench.params(&place, &["save", "--yes"]).ok();
+    bench.power_cycle();
+    let kept = json(&bench.params(&place, &["dump"]).ok());
+    assert_eq!(kept["params"]["hand_id"], 9, "{kind}");
+    // The reset brings the factory's id back, and the hand is found there.
+    let reset = json(&bench.params(&place, &["reset", "--yes"]).ok());
+    assert_eq!(reset["params"]["hand_id"], 1, "{kind}");
+    let again = reset["answers_at"].as_str().unwrap();
+    assert!(!again.contains("id=9"), "{again}");
+    let taken_along = Some(Value::from("before reset"));
+    assert_eq!(why(&bench, again), taken_along, "{kind}");
 }
 
 #[test]
