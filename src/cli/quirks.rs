@@ -1,12 +1,12 @@
 //! `quirks`: how a hand differs from others, printed or written to a file. Only reads from the hand.
 
 use crate::cli::out::Out;
+use crate::cli::out::file::{is_free, write_file};
 use crate::cli::session::{self, ONLY_WHAT_IS_ASKED};
 use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
 use crate::record::quirk_sheet::QuirkSheet;
 use crate::transport::Endpoint;
-use anyhow::Context as _;
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -26,12 +26,14 @@ pub(crate) struct QuirksArgs {
 
 /// Identifies the hand and prints what was found.
 pub(crate) async fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
+    if let Some(path) = &args.out {
+        is_free(path)?;
+    }
     let link = session::reach(&args.hand, ONLY_WHAT_IS_ASKED).await?;
     let quirks = link.status().quirks;
     let sheet = book::sheet(&args.hand, &quirks, "");
     if let Some(path) = &args.out {
-        std::fs::write(path, QuirkBook::of(sheet.clone()).to_toml())
-            .with_context(|| format!("cannot write {}", path.display()))?;
+        write_file(path, QuirkBook::of(sheet.clone()).to_toml().as_bytes())?;
     }
     let object = json!({
         "hand": args.hand.to_string(),

@@ -2,10 +2,11 @@
 //! stop is obeyed first, and what was odd about its message is reported afterwards. Pure.
 //!
 //! A message is a stop if a name `stop`, at any depth, has another value than `false`, `0`, `null` and their like, if a name `do`
-//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, bytes of zero, text
+//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, quotes too many, bytes of zero, text
 //! before or after it and a text that ends too early change nothing.
 
-use crate::inputs::scan::{Token, pieces, without_zeros};
+use crate::inputs::scan::{Token, pieces, unmarked, without_zeros};
+use serde::de::IgnoredAny;
 
 /// Values of `stop` that ask for none. Numbers that are zero are of these, too.
 const NO: [&str; 8] = ["false", "null", "none", "nil", "undefined", "no", "off", ""];
@@ -38,7 +39,23 @@ pub(crate) fn is_stop(text: &[u8], end: TextEnd) -> bool {
 /// The strongest word of a message that ends a motion.
 pub(crate) fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
     let text = without_zeros(text);
-    let all = pieces(&text);
+    let found = word_in(&text, end);
+    // A quote too many turns what is a name into part of a string. In JSON that is whole there is none.
+    if end == TextEnd::MayGoOn || serde_json::from_slice::<IgnoredAny>(unmarked(&text)).is_ok() {
+        return found;
+    }
+    found.max(word_in(&unquoted(&text), end))
+}
+
+/// A text of which no quote and no backslash is left.
+fn unquoted(text: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(text);
+    text.replace(['"', '\'', '\\', '\u{201c}', '\u{201d}'], " ")
+        .into_bytes()
+}
+
+fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
+    let all = pieces(text);
     if let [Token::Text(only)] = all.as_slice() {
         return (end == TextEnd::Whole && only.lower() == "stop").then_some(EndWord::Stop);
     }

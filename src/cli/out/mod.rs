@@ -2,6 +2,7 @@
 //! reader that goes away ends the command quietly.
 
 pub(crate) mod ending;
+pub(crate) mod file;
 mod messages;
 pub(crate) mod progress;
 mod writer;

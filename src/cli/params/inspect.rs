@@ -1,5 +1,6 @@
 //! The commands about parameters that only read: `params dump`, `params diff` and `params backups`.
 
+use crate::cli::out::file::{is_free, write_file};
 use crate::cli::out::{Out, end, say};
 use crate::cli::params::args::{Common, DiffArgs, DumpArgs};
 use crate::cli::params::reach;
@@ -10,36 +11,23 @@ use crate::params::file::ParamsFile;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::store::calendar::since_1970;
-use crate::store::write_new;
 use crate::tasks::read;
 use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// Prints all parameters, and writes them to a file. Fails if a row could not be read.
 pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     let common = &args.common;
     let files = common.backups()?;
-    let taken = |path: &Path| {
-        let path = path.display();
-        format!("{path} is already there and is not overwritten; name another file with --out")
-    };
     // Before the hand is asked for long.
-    if let Some(path) = args
-        .out
-        .as_deref()
-        .filter(|path| path.symlink_metadata().is_ok())
-    {
-        bail!("{}", taken(path));
+    if let Some(path) = &args.out {
+        is_free(path)?;
     }
     let (params, troubles) = read_rows(&common.hand).await?;
     let file = files.file(&params, "dump", since_1970());
     if let Some(path) = &args.out {
-        write_new(path, file.to_toml().as_bytes()).with_context(|| match path.exists() {
-            true => taken(path),
-            false => format!("cannot write {}", path.display()),
-        })?;
+        write_file(path, file.to_toml().as_bytes())?;
     }
     let rows = ParamId::all().into_iter();
     let rows = rows.map(|id| (id, [params.get(id), id.factory()]));

@@ -65,13 +65,14 @@ impl ArmedHand {
             () = interrupt.wished() => None,
             ready = make_ready(&link, &mut records, endpoint, limits) => Some(ready?),
         };
-        let (Some(epoch), Some((lease, seen))) = (link.status().armed, ready) else {
+        let status = link.status();
+        let (Some(epoch), Some((lease, seen))) = (status.armed, ready) else {
             // Arming may have been under way.
-            let stop = link.stop().await;
-            bail!(
-                "ended by a person before anything moved{}",
-                stop_words(Some(stop))
-            );
+            let stop = stop_words(Some(link.stop().await));
+            match (ready, status.disarmed) {
+                (Some(_), Some(why)) => bail!("ended before anything moved: {why}{stop}"),
+                _ => bail!("ended by a person before anything moved{stop}"),
+            }
         };
         Ok(Self {
             link,

@@ -73,6 +73,9 @@ fn a_sheet_is_printed_with_whose_reading_it_is_and_exported() {
         text.contains("115200 by the manual PRJ-02-TS-U-001 V1.0.0"),
         "{text}"
     );
+    let again = run(&["quirks", "--hand", &tcp, "--out", sheet.to_str().unwrap()]);
+    assert_eq!(again.code, Some(1));
+    assert!(again.err.contains("is not overwritten"), "{}", again.err);
     let sheet: toml::Table = std::fs::read_to_string(&sheet).unwrap().parse().unwrap();
     assert_eq!(sheet["version"].as_integer(), Some(1));
     assert_eq!(sheet["hand"][0]["packing"].as_str(), Some("low-first"));

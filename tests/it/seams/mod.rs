@@ -470,6 +470,20 @@ fn is_held_hot((name, start, protocol, celsius, words): &HotCell) -> Result<(), 
     held.map_err(|why| format!("{name} at {celsius}: {why}"))
 }
 
+#[test]
+fn a_drive_that_is_hot_before_anything_moves_is_named_as_the_cause() {
+    let place = Place::new(Protocol::Tcp, 251, Duration::ZERO).reads_temperature(80);
+    let mut process: Process = place.trial();
+    let begun = Instant::now();
+    while !mover::Mover::has_ended(&mut process) {
+        assert!(begun.elapsed() < Duration::from_secs(30));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let said = mover::Mover::said(&mut process);
+    assert!(said.contains("a drive is too hot"), "{said}");
+    assert!(!said.contains("person"), "{said}");
+}
+
 /// All tests, as text.
 fn sources(folder: &Path) -> String {
     let mut text = String::new();

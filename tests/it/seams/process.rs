@@ -109,6 +109,12 @@ impl Place {
         }
     }
 
+    /// The temperature of a drive reads this before anything is started, °C.
+    pub(super) fn reads_temperature(self, celsius: u8) -> Self {
+        self.hand.reads_temperature(celsius);
+        self
+    }
+
     /// Starts a command at the hand.
     fn start(self, command: &str, more: &[&str]) -> Process {
         let hand = self.hand.endpoint.clone();

@@ -235,7 +235,9 @@ impl FeedbackWatch {
         // Where it was told to stay it is seen.
         joint.doubted &= is_unsure || way.abs() >= VISIBLE;
         joint.unchanged = joint.unchanged.filter(|_| !paused);
-        if is_unsure || self.has_reason(dof, &joint) {
+        // One in doubt goes on by what it was told: an acknowledgement that is missing makes no old angle new.
+        let is_lost = is_unsure && !joint.doubted || self.is_led_by_gesture(dof);
+        if is_lost || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
             joint.back_at = joint.back_at.max(asked.plus(back));
             joint.estimate = f64::from(seen);
@@ -756,6 +758,32 @@ mod tests {
         );
         read(&mut watch, 430..1200, 2);
         assert_eq!(watch.hold_target(Dof::Index, ms(1200)), Some(held));
+    }
+
+    #[test]
+    fn a_frozen_angle_stays_in_doubt_where_a_hold_is_not_acknowledged() {
+        let mut watch = watch(250, go(0));
+        let read = |watch: &mut FeedbackWatch, t: std::ops::Range<u64>| {
+            for t in t.step_by(10) {
+                let (sample, fresh) = sample(at(moving(t.min(300)), 1), ms(t));
+                watch.take(&sample, fresh);
+            }
+        };
+        read(&mut watch, 10..600);
+        watch.doubt();
+        let held = watch.hold_target(Dof::Index, ms(600)).unwrap();
+        let hold = HandCommand::Angles(PerDof::splat(held));
+        watch.wrote(&hold.writes()[0], ms(600));
+        read(&mut watch, 610..700);
+        tell(&mut watch, &hold, ms(700));
+        read(&mut watch, 710..1500);
+        let kept = watch.hold_target(Dof::Index, ms(1500)).unwrap();
+        let [held, kept] = [held, kept].map(|target| target.angle().unwrap().get());
+        assert!(held.abs_diff(kept) <= 40, "{held} {kept}");
+        assert!(
+            kept < moving(300) - 80,
+            "{kept}: not back where it was seen"
+        );
     }
 
     #[test]
