@@ -2,8 +2,9 @@
 //! stop is obeyed first, and what was odd about its message is reported afterwards. Pure.
 //!
 //! A message is a stop if a name `stop`, at any depth, has another value than `false`, `0`, `null` and their like, if a name `do`
-//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, quotes too many, bytes of zero, text
-//! before or after it and a text that ends too early change nothing.
+//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, bytes of
+//! zero, text before or after it and a text that ends too early change nothing. In a text that is no JSON quotes count for nothing:
+//! one too many would hide a stop. A name `stop` within a string is one there, too.
 
 use crate::inputs::scan::{Token, pieces, unmarked, without_zeros};
 use serde::de::IgnoredAny;

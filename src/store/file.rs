@@ -63,13 +63,18 @@ pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Writes a file that only its person can read, where nothing is yet: no file, and no link.
 ///
 /// # Errors
-/// What the system says. Then there is no such file, or it is not whole.
+/// What the system says. Then there is no such file, or what was there before.
 pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
     #[cfg(unix)]
     options.mode(0o600);
-    options.open(path)?.write_all(bytes)
+    let written = options.open(path)?.write_all(bytes);
+    if written.is_err() {
+        // Half a file would keep the next try from its name.
+        let _gone = std::fs::remove_file(path);
+    }
+    written
 }
 
 /// Adds to the end of a file that only its person can read, all at once: others may add at the same time.

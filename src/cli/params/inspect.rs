@@ -1,6 +1,6 @@
 //! The commands about parameters that only read: `params dump`, `params diff` and `params backups`.
 
-use crate::cli::out::file::{is_free, write_file};
+use crate::cli::out::file::{nothing_at, write_file};
 use crate::cli::out::{Out, end, say};
 use crate::cli::params::args::{Common, DiffArgs, DumpArgs};
 use crate::cli::params::reach;
@@ -20,9 +20,8 @@ use serde_json::{Value, json};
 pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     let common = &args.common;
     let files = common.backups()?;
-    // Before the hand is asked for long.
     if let Some(path) = &args.out {
-        is_free(path)?;
+        nothing_at(path, "--out")?;
     }
     let (params, troubles) = read_rows(&common.hand).await?;
     let file = files.file(&params, "dump", since_1970());

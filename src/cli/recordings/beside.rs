@@ -1,6 +1,7 @@
 //! A recording beside what another command does: the same file as `record` makes. What goes wrong with it is told, and holds nothing
 //! up.
 
+use crate::cli::out::file::nothing_at;
 use crate::cli::out::say;
 use crate::cli::recordings::record::{FileTold, tell_parameters};
 use crate::hand::kinematics::Side;
@@ -42,12 +43,7 @@ impl SideRecording {
         let Some(path) = path else {
             return Ok(Self(None));
         };
-        if path.symlink_metadata().is_ok() {
-            bail!(
-                "{} is already there and is not overwritten; name another file with --record",
-                path.display()
-            );
-        }
+        nothing_at(path, "--record")?;
         let clock = link.clock();
         let moments = (clock.now(), calendar::since_1970());
         let recorder = Recorder::start(RecordingPlan {

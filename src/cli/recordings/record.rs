@@ -2,6 +2,7 @@
 //! hand.
 
 use crate::app::env::day_folder;
+use crate::cli::out::file::nothing_at;
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
 use crate::cli::recordings::recording_file::add_files;
@@ -115,12 +116,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
 /// The file, which must not be there.
 fn path(args: &RecordArgs, opening: &Opening) -> anyhow::Result<PathBuf> {
     if let Some(path) = &args.out {
-        if path.symlink_metadata().is_ok() {
-            bail!(
-                "{} is already there and is not overwritten; name another file with --out",
-                path.display()
-            );
-        }
+        nothing_at(path, "--out")?;
         return Ok(path.clone());
     }
     let documents = day_folder::documents().context(

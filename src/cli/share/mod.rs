@@ -138,11 +138,11 @@ async fn serve(
     };
     let may_move = gateway.is_some_and(|gateway| close(link, gateway));
     // A script was stopped, and waited for, before it left.
-    let is_waited_for = args.stdio || link.status().state != LinkState::Holding;
-    if !may_move && is_waited_for {
-        return done;
+    let is_stopping = !args.stdio && link.status().state == LinkState::Holding;
+    if may_move || is_stopping {
+        return done.and(session::stopped(link).await);
     }
-    done.and(session::stopped(link).await)
+    done
 }
 
 /// Closes. True if a client could move the hand, which is to be stopped.

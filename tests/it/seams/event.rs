@@ -22,7 +22,7 @@ const REFUSALS: [u8; 4] = [0x0A, 0x0B, 0x04, 0x06];
 /// Looks at the joints while time goes by.
 pub(super) struct Witness<'a> {
     mover: &'a mut dyn Mover,
-    /// The number of the cell: what comes in several kinds comes in another one in each.
+    /// The number of the cell: where an event has several kinds, it picks one.
     number: usize,
     event: Moment,
     points: Vec<(Moment, [i16; 6])>,

@@ -236,8 +236,8 @@ impl FeedbackWatch {
         joint.doubted &= is_unsure || way.abs() >= VISIBLE;
         joint.unchanged = joint.unchanged.filter(|_| !paused);
         // One in doubt goes on by what it was told: an acknowledgement that is missing makes no old angle new.
-        let is_lost = is_unsure && !joint.doubted || self.is_led_by_gesture(dof);
-        if is_lost || self.has_reason(dof, &joint) {
+        let goes_by_sight = is_unsure && !joint.doubted || self.is_led_by_gesture(dof);
+        if goes_by_sight || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
             joint.back_at = joint.back_at.max(asked.plus(back));
             joint.estimate = f64::from(seen);
