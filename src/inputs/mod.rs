@@ -7,6 +7,7 @@ pub mod follow;
 mod follow_tests;
 pub mod intake;
 pub mod line;
+pub(crate) mod lines;
 pub mod mirror;
 pub mod offer;
 pub mod pad;

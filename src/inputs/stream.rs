@@ -6,6 +6,7 @@ use crate::hand::kinematics::Side;
 use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
+use crate::inputs::lines::{Cut, LineCutter};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, TextEnd};
@@ -20,8 +21,10 @@ use tokio::task::JoinSet;
 use tokio::time::{interval, timeout};
 use tokio_util::task::AbortOnDropHandle;
 
-/// Connections at once; more are closed at once.
+/// Connections whose lines are looked at.
 const CONNECTIONS_MAX: usize = 8;
+/// Further ones, which may only stop the hand: the first other line closes them. More are closed at once.
+const STOPPERS_MAX: usize = 24;
 /// A connection that sends no whole line for so long is closed.
 const LINE_WITHIN: Duration = Duration::from_secs(10);
 /// How often it is told what came in.
@@ -203,13 +206,12 @@ impl Listening {
         loop {
             tokio::select! {
                 accepted = listener.accept() => match accepted {
-                    Ok((stream, from)) if readers.len() < CONNECTIONS_MAX => {
+                    Ok((stream, from)) if readers.len() < CONNECTIONS_MAX + STOPPERS_MAX => {
+                        let is_heard = readers.len() < CONNECTIONS_MAX;
                         let reader = LineReader {
                             from,
                             door: self.door(),
-                            lines: lines.clone(),
-                            has_stopped: false,
-                            skips: false,
+                            lines: is_heard.then(|| lines.clone()),
                         };
                         readers.spawn(reader.run(stream));
                     }
@@ -266,71 +268,62 @@ impl Listening {
 struct LineReader {
     from: SocketAddr,
     door: LineDoor,
-    lines: mpsc::Sender<(ReadLine, SocketAddr)>,
-    /// The line that is not whole yet has stopped the hand already.
-    has_stopped: bool,
-    /// The rest of a line that was too long is passed over.
-    skips: bool,
+    /// Where its lines go; `None` for one too many, which may only stop the hand.
+    lines: Option<mpsc::Sender<(ReadLine, SocketAddr)>>,
 }
 
 impl LineReader {
     /// Reads lines until the other side closes, is silent, or sends one that is no message. What it sent behind that one is not
     /// looked at: a page in a browser can send a form whose text has messages on further lines, but never one that begins with
     /// a message.
-    async fn run(mut self, mut stream: TcpStream) {
-        let mut rest = Vec::with_capacity(LINE_MAX);
+    async fn run(self, mut stream: TcpStream) {
+        let mut cutter = LineCutter::new(LINE_MAX);
         let mut piece = [0; LINE_MAX];
         loop {
             let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
                 break;
             };
-            rest.extend_from_slice(piece.get(..len).unwrap_or_default());
-            let mut parts = rest.split(|byte| *byte == b'\n');
-            let unfinished = parts.next_back().unwrap_or_default().to_vec();
-            let mut whole: Vec<Vec<u8>> = parts.map(<[u8]>::to_vec).collect();
-            if self.skips {
-                if whole.is_empty() {
-                    rest.clear();
-                    continue;
-                }
-                whole.remove(0);
-                self.skips = false;
-            }
-            for line in whole.iter().filter(|line| !scan::unmarked(line).is_empty()) {
-                if !self.takes(line).await {
+            for cut in cutter.push(piece.get(..len).unwrap_or_default()) {
+                if !self.takes(cut).await {
                     return;
                 }
             }
-            rest = unfinished;
-            if rest.len() > LINE_MAX || !begins_message(&rest) {
-                if !self.takes(&rest).await {
-                    return;
-                }
-                // It stopped the hand, and its rest says nothing more.
-                self.skips = true;
-                rest.clear();
-            } else if !self.has_stopped && stop::is_stop(&rest, TextEnd::MayGoOn) {
-                self.has_stopped = true;
-                (self.door.stop)();
+            if !begins_message(cutter.unfinished()) {
+                let text = cutter.unfinished().to_vec();
+                let has_stopped = false;
+                self.takes(Cut::Line { text, has_stopped }).await;
+                return;
             }
         }
-        // A stop counts without the end of its line.
-        if stop::is_stop(&rest, TextEnd::Whole) {
-            self.takes(&rest).await;
+        if let Some(cut) = cutter.end() {
+            self.takes(cut).await;
         }
     }
 
     /// Reads a line and hands it on; false if none is to follow.
-    async fn takes(&mut self, line: &[u8]) -> bool {
-        let read = if std::mem::take(&mut self.has_stopped) {
-            StreamLine::parse(line, self.door.side)
-        } else {
-            self.door.read(line)
+    async fn takes(&self, cut: Cut) -> bool {
+        let (text, read) = match cut {
+            Cut::Stop => {
+                (self.door.stop)();
+                return true;
+            }
+            Cut::Line { text, .. } if scan::unmarked(&text).is_empty() => return true,
+            Cut::Line { text, has_stopped } => {
+                let read = if has_stopped {
+                    StreamLine::parse(&text, self.door.side)
+                } else {
+                    self.door.read(&text)
+                };
+                (text, read)
+            }
         };
-        let is_message = match read {
-            Ok(_) => begins_message(line),
+        let is_message = match &read {
+            Ok(_) => begins_message(&text),
             Err(refusal) => !refusal.fault.is_no_message(),
         };
-        self.lines.send((read, self.from)).await.is_ok() && is_message
+        match &self.lines {
+            Some(lines) => lines.send((read, self.from)).await.is_ok() && is_message,
+            None => is_message && read.is_ok_and(|line| line.stop),
+        }
     }
 }

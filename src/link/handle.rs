@@ -457,6 +457,13 @@ impl IntoFuture for StopRequest {
 pub struct LinkStopper(Weak<LinkShared>);
 
 impl LinkStopper {
+    /// Stops the hand as [`LinkHandle::stop`] does, while its link is open.
+    pub(crate) fn stop(&self) {
+        if let Some(link) = self.0.upgrade().map(LinkHandle) {
+            link.stop();
+        }
+    }
+
     /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise. True if it
     /// was told to stop.
     pub fn stop_if_moved(&self) -> bool {

@@ -34,7 +34,7 @@ pub(crate) enum Seen {
     Offline,
 }
 
-/// The memory of one hand. Empty while there is no live one.
+/// The memory of one hand. While there is no live one only [`Self::newest`] knows what was read last.
 #[derive(Debug, Default)]
 pub(crate) struct RegisterImage {
     is_live: bool,
@@ -83,6 +83,20 @@ impl RegisterImage {
             blocks: all.map(block).take(BLOCKS).collect(),
             areas: ArrayVec::new(),
         }
+    }
+
+    /// There is no live hand any more.
+    pub(crate) fn lose(&mut self) {
+        self.is_live = false;
+        self.areas.clear();
+    }
+
+    /// What was read last of a stretch that the session reads by itself, however old it is.
+    pub(crate) fn newest(&self, span: Span) -> Option<Vec<u8>> {
+        let mut blocks = self.blocks.iter();
+        let block = blocks.find(|block| block.span.covers(span))?;
+        let came = block.came.as_ref()?;
+        block.span.slice(&came.bytes, span).map(<[u8]>::to_vec)
     }
 
     /// The parts are read at other rates from now on.

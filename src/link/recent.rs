@@ -64,6 +64,11 @@ impl RecentReads {
         })
     }
 
+    /// What was read last of a stretch that the session reads by itself, however old that is, also of a hand that is lost.
+    pub(crate) fn newest(&self, span: Span) -> Option<Vec<u8>> {
+        self.image.borrow().newest(span)
+    }
+
     async fn wait_for(&self, span: Span) -> Result<Vec<u8>, RequestError> {
         let since = self.clock.now();
         let mut image = self.image.clone();

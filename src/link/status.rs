@@ -22,6 +22,8 @@ pub struct LinkStatus {
     pub trouble: Option<LinkTrouble>,
     /// The arming in force, if the hand is armed.
     pub armed: Option<ArmEpoch>,
+    /// It was armed, and was not seen to rest since, also over a link that was lost.
+    pub may_move: bool,
     /// Who may move the hand, if anybody may.
     pub holder: Option<LeaseHolder>,
     /// What the hand answers in its own way, as found when the wire was opened.

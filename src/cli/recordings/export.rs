@@ -373,6 +373,7 @@ impl Done {
                 ));
             }
             all.rows += recording.rows;
+            all.readings = recording.readings;
             all.damage.add(&recording.damage);
         }
         let mut line = format!("{} {} in {}", all.rows, form.rows(), args.out.display());
@@ -393,6 +394,11 @@ impl Done {
         if all.rows == 0 {
             bail!(
                 "nothing was exported: there is nothing to export in this stretch; 'handscope info' shows what a recording holds"
+            );
+        }
+        if all.readings == Some(0) {
+            bail!(
+                "the hand was not read in this stretch, so what was exported has no readings; 'handscope info' shows where that is so"
             );
         }
         Ok(())

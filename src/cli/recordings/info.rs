@@ -4,7 +4,7 @@ use crate::cli::out::Out;
 use crate::cli::recordings::recording_file::{self, FileArgs, add_files, length, lost};
 use crate::hand::Moment;
 use crate::record::EventKind;
-use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, RecordingFile, Remark};
+use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, Gap, RecordingFile, Remark};
 use crate::store::calendar;
 use anyhow::Context as _;
 use serde_json::{Value, json};
@@ -106,6 +106,10 @@ impl Told<'_> {
                 "messages": gap.messages,
             })
         });
+        let not_read =
+            self.contents.unread.iter().map(
+                |gap| json!({ "from_s": self.seconds(gap.from), "to_s": self.seconds(gap.to) }),
+            );
         let mut object = json!({
             "file": self.file.path(),
             "start": self.start(),
@@ -125,6 +129,7 @@ impl Told<'_> {
             "missing_messages": damage.messages,
             "missing_s": damage.length().as_secs_f64(),
             "gap_list": gaps.collect::<Vec<_>>(),
+            "not_read": not_read.collect::<Vec<_>>(),
             "readable": {
                 "states": read.states,
                 "touch_sweeps": read.touch_sweeps(),
@@ -190,10 +195,22 @@ impl Told<'_> {
             self.said_missing()
                 .map(|(at, words)| format!("at {:.3} s: {words}", at.as_secs_f64())),
         );
+        let unread = &self.contents.unread;
+        lines.extend(unread.iter().take(GAPS_TOLD).map(|gap| {
+            let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
+            let length = to - from;
+            format!("no readings: {from:.3} s to {to:.3} s ({length:.3} s): the hand did not answer, or was not read")
+        }));
+        lines.extend(more_than_told(unread, "stretches without readings"));
         let is_whole = !self.file.remarks().iter().any(Remark::is_loss)
             && self.contents.damage == Damage::default();
         if self.file.is_closed() && self.gaps() == 0 && is_whole {
-            lines.push("nothing is missing".into());
+            let words = if unread.is_empty() {
+                "nothing is missing"
+            } else {
+                "nothing else is missing"
+            };
+            lines.push(words.into());
         }
         lines
     }
@@ -214,9 +231,13 @@ impl Told<'_> {
                 format!("gap: {from:.3} s to {to:.3} s ({length:.3} s{count})")
             })
             .collect();
-        if let Some(more) = gaps.len().checked_sub(GAPS_TOLD).filter(|more| *more > 0) {
-            lines.push(format!("and {more} more gaps; --json lists them"));
-        }
+        lines.extend(more_than_told(gaps, "gaps"));
         lines
     }
+}
+
+/// How many more there are than are printed.
+fn more_than_told(gaps: &[Gap], what: &str) -> Option<String> {
+    let more = gaps.len().checked_sub(GAPS_TOLD)?;
+    (more > 0).then(|| format!("and {more} more {what}; --json lists them"))
 }

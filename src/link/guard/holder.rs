@@ -16,8 +16,8 @@ pub const MOVES: u8 = b'm';
 /// Told through the pipe: it rests, and nothing is armed.
 pub const RESTS: u8 = b'r';
 
-/// So often in a row the process may fail to start, or end soon, before that is reported.
-const FAILURES_MAX: u32 = 2;
+/// So often in a row the process may fail to start, or end soon, before that is reported: more often than somebody kills it.
+const FAILURES_MAX: u32 = 6;
 /// Time between the end of a process and the start of the next: the hand is unguarded for no longer than that takes.
 const RESTART_DELAY: Duration = Duration::from_millis(20);
 /// A process that ran for this long did not fail to start.
@@ -186,7 +186,7 @@ impl Watcher {
             failures = if begun.elapsed() < LASTING {
                 failures + 1
             } else {
-                1
+                0
             };
             if failures >= FAILURES_MAX {
                 lock(&self.pipe).is_closed = true;
@@ -223,7 +223,7 @@ impl Watcher {
             return Gone::NotNeeded;
         }
         Gone::Failed(match ended {
-            Ok(status) => format!("it ended twice: {status}"),
+            Ok(status) => format!("it ended at once each time: {status}"),
             Err(error) => error.to_string(),
         })
     }
@@ -289,12 +289,26 @@ mod tests {
         // One that is not needed is not replaced.
         tie.rests();
         kill(Pid::from_raw(second), Signal::SIGKILL).unwrap();
-        waits_for(|| (!tie.moves(&endpoint())).then_some(()));
+        waits_for(|| lock(&tie.pipe).is_closed.then_some(()));
+        assert!(!tie.moves(&endpoint()));
         assert_eq!(pids(folder.path(), 2).len(), 2);
     }
 
     #[test]
-    fn a_holder_that_cannot_run_is_told_after_two_tries() {
+    fn a_holder_that_is_killed_again_and_again_is_replaced_each_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let tie = HolderTie::guarded(&endpoint(), noting(folder.path()), silent);
+        for nth in 0..4 {
+            let newest = pids(folder.path(), nth + 1)[nth];
+            kill(Pid::from_raw(newest), Signal::SIGKILL).unwrap();
+        }
+        assert_eq!(pids(folder.path(), 5).len(), 5);
+        assert_eq!(*tie.state().borrow(), HolderState::Ready);
+        assert!(tie.moves(&endpoint()));
+    }
+
+    #[test]
+    fn a_holder_that_cannot_run_is_told_after_some_tries() {
         static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
         let complain = |words: &str| TOLD.lock().unwrap().push(words.to_owned());
         for program in ["/nothing/there", "/bin/false"] {

@@ -291,7 +291,7 @@ impl Session {
         self.status.rest = Rest::Unknown;
         self.status.heat = None;
         self.go(LinkState::Offline);
-        self.ends.image.send_replace(RegisterImage::default());
+        self.ends.image.send_modify(RegisterImage::lose);
         if let Some(answer) = self.broken_off.take() {
             answer();
         }

@@ -121,6 +121,8 @@ impl Session {
             }
             self.send_hold(bus).await?;
             self.motion.waits_for_look = true;
+        } else if self.pose_is_due(now) {
+            self.poll_motion(bus).await?;
         } else if self.motion.begins_round(now)
             && let Some(question) = self.plan.before_write(now)
         {
@@ -150,8 +152,16 @@ impl Session {
         let is_left_alone = self.status.armed.is_none() && self.motion.hold.is_none();
         if is_left_alone && rest == Rest::Resting {
             self.end_late_alarm();
-            self.guard.rests();
+            if self.rests() {
+                self.publish();
+            }
         }
+    }
+
+    /// Feedback shows that the hand rests. True if that is news.
+    fn rests(&mut self) -> bool {
+        self.guard.rests();
+        std::mem::take(&mut self.status.may_move)
     }
 
     /// Waits until something is due or the window wants something.
@@ -280,6 +290,10 @@ impl Session {
             }
         }
         self.holder_started().await;
+        // The writes of the limits took longer than a pose lasts, on a slow way.
+        if self.slowness.slowest().is_some() {
+            self.poll_motion(bus).await?;
+        }
         self.status.unguarded = self.guard.unguarded();
         // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
         if self.arming_is_over(lease) {
@@ -288,6 +302,7 @@ impl Session {
         let epoch = ArmEpoch(self.motion.last_epoch.0 + 1);
         self.motion.last_epoch = epoch;
         self.status.armed = Some(epoch);
+        self.status.may_move = true;
         self.status.disarmed = None;
         self.others.foreign = None;
         self.others.not_taken = None;
@@ -354,6 +369,19 @@ impl Session {
     fn angle_lost(&self) -> Duration {
         let asked = self.sample.angle.map_or(Moment::ZERO, |angle| angle.asked);
         ANGLE_LOST + self.stalls.since(asked).min(STALL_FORGIVEN)
+    }
+
+    /// On a slow way every other exchange of an armed hand reads its pose: behind a round of writes it would be too old.
+    fn pose_is_due(&self, now: Moment) -> bool {
+        let slow = self.slowness.slowest();
+        let slow = slow.filter(|_| self.status.armed.is_some() && !self.leaves_line);
+        slow.is_some_and(|slow| self.pose_seen_before(now, slow / 2))
+    }
+
+    /// Whether nothing was heard of the pose for so long.
+    fn pose_seen_before(&self, now: Moment, age: Duration) -> bool {
+        let angle = self.sample.angle;
+        angle.is_none_or(|angle| now.since(angle.received) >= age)
     }
 
     /// An armed hand whose pose is not known any more is not armed.
@@ -531,7 +559,7 @@ impl Session {
             at: hold.at,
             rest: self.now(),
         };
-        self.guard.rests();
+        self.rests();
         self.go(if self.sample.has_fault() {
             LinkState::Fault
         } else {

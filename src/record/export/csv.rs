@@ -52,7 +52,11 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     let rows = lines.rows;
     output.sync(to)?;
     output.finish()?;
-    Ok(Exported { rows, damage })
+    Ok(Exported {
+        rows,
+        readings: None,
+        damage,
+    })
 }
 
 /// What was received at one moment.

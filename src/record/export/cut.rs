@@ -6,7 +6,7 @@ use crate::record::file::reader::Damage;
 use crate::record::file::writer::{Counted, RecordingWriter};
 use crate::record::file::{Opening, RecordingFile};
 use crate::record::grip::GripFollower;
-use crate::record::{Entry, Event, EventKind};
+use crate::record::{Entry, Event, EventKind, Record};
 use std::io::Write;
 
 /// Entries between two writes to the disk: some hundred kilobytes.
@@ -86,6 +86,7 @@ pub(crate) struct RecordingCopy<W> {
     writer: RecordingWriter,
     to: W,
     rows: u64,
+    readings: u64,
 }
 
 impl<W: Write> RecordingCopy<W> {
@@ -100,12 +101,14 @@ impl<W: Write> RecordingCopy<W> {
             writer: RecordingWriter::copy(opening, grip)?,
             to,
             rows: 0,
+            readings: 0,
         })
     }
 
     pub(crate) fn push(&mut self, entry: &Entry) -> Result<(), Broken> {
         self.writer.push(entry)?;
         self.rows += 1;
+        self.readings += u64::from(matches!(entry, Entry::Heard(Record::Reading { .. })));
         if self.rows.is_multiple_of(ENTRIES_AT_ONCE) {
             self.put()
         } else {
@@ -126,6 +129,7 @@ impl<W: Write> RecordingCopy<W> {
         Ok(Copied {
             exported: Exported {
                 rows: self.rows,
+                readings: Some(self.readings),
                 ..Exported::default()
             },
             counted,

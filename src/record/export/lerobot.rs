@@ -155,6 +155,7 @@ fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exp
     })?;
     Ok(Exported {
         rows: set.index - before,
+        readings: None,
         damage,
     })
 }

@@ -45,6 +45,8 @@ pub enum ExportError {
 pub struct Exported {
     /// Rows of a table, or messages.
     pub rows: u64,
+    /// Readings of the hand among the messages; `None` in a table, where each row is one.
+    pub readings: Option<u64>,
     /// What of the recording could not be read and is not in it.
     pub damage: Damage,
 }

@@ -50,7 +50,11 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     let (rows, to) = table.end().map_err(error)?;
     output.sync(to)?;
     output.finish()?;
-    Ok(Exported { rows, damage })
+    Ok(Exported {
+        rows,
+        readings: None,
+        damage,
+    })
 }
 
 struct ParquetTable {

@@ -3,7 +3,9 @@
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
-use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, Owner, RecentReads};
+use crate::link::{
+    ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, RecentReads, RequestError,
+};
 use crate::record::{ArmRefusal, Disarmed, LinkState};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{
@@ -72,17 +74,24 @@ impl ClientLeases {
                 return Ok(self.link.write(command).await?);
             }
             // Whoever may not move the hand may stop it, while another moves it.
-            ClientLease::Never | ClientLease::Ended(_) if self.is_stop(client, request).await => {
-                return Ok(());
-            }
-            ClientLease::Never => self.take(client, Claim::Wrote).await?,
-            ClientLease::Ended(_) => return Err(WriteRefusal::Over),
+            lease => match self.obey_stop(client, request).await {
+                Some(done) => return done,
+                None if lease == ClientLease::Never => self.take(client, Claim::Wrote).await?,
+                None => return Err(WriteRefusal::Over),
+            },
         };
         let turn = self
             .board
             .with(|board| board.turn(&command, Instant::now()));
         sleep_until(turn).await;
-        Ok(self.link.write_as(lease, command).await?)
+        let written = self.link.write_as(lease, command).await;
+        let is_taken =
+            |error: &RequestError| matches!(error, RequestError::NotOwner(LeaseRefusal::Taken(_)));
+        if written.as_ref().is_err_and(|error| !is_taken(error)) {
+            // A stop that did not reach the hand stays pending.
+            let _told = self.obey_stop(client, request).await;
+        }
+        Ok(written?)
     }
 
     /// The user grants the right to this client.
@@ -168,13 +177,20 @@ impl ClientLeases {
         self.writers == Writers::First && self.link.status().holder.is_none()
     }
 
-    /// Whether a request is a stop; then the hand is stopped. One that cannot be written as it stands may be one of the client that
-    /// moves the hand as well, which would go on to where it was sent before.
-    pub(crate) async fn is_stop(&self, client: ClientId, request: &[u8]) -> bool {
-        match allowed::all_angles(request) {
-            Some(angles) => self.stops(client, &angles).await,
-            None => false,
+    /// Stops the hand if a request is a stop, which may be one that cannot be written as it stands; `None` if it is none. Where there
+    /// is no live hand the stop waits for it, and the client is told so.
+    pub(crate) async fn obey_stop(
+        &self,
+        client: ClientId,
+        request: &[u8],
+    ) -> Option<Result<(), WriteRefusal>> {
+        let angles = allowed::all_angles(request)?;
+        if !self.stops(client, &angles).await {
+            return None;
         }
+        let is_live = self.link.status().state.is_live();
+        let lost = || Err(RequestError::NotConnected.into());
+        Some(if is_live { Ok(()) } else { lost() })
     }
 
     /// Whether this is a stop of what a client moves, or its repetition: joints are told to stay about where they are, and none to
@@ -184,23 +200,36 @@ impl ClientLeases {
         let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
         let stopped = self.board.with(stopped);
         let status = self.link.status();
-        let may_stop = status.holder.is_some()
+        let may_stop = goes_on(&status)
             || status.state == LinkState::Holding
             || stopped.is_some_and(|at| now.duration_since(at) < STOP_REPEATS);
-        let is_own = matches!(self.lease(client), ClientLease::Held(_));
+        let is_own = match self.lease(client) {
+            ClientLease::Held(_) => true,
+            ClientLease::Ended(LeaseRefusal::Ended(why)) => {
+                matches!(why, Disarmed::LinkLost | Disarmed::Resume)
+            }
+            ClientLease::Never | ClientLease::Ended(_) => false,
+        };
         if !is_own && self.writers != Writers::First || !may_stop {
             return false;
         }
-        let angles = self.values(&ANGLE_ACT, Ok::<i16, OutOfRange>).await;
-        let stops = angles.is_ok_and(|angles| stays(targets, &angles));
+        let stops = self.pose().await.is_some_and(|pose| stays(targets, &pose));
         if stops {
-            if self.link.status().holder.is_some() {
+            if goes_on(&self.link.status()) {
                 self.link.stop();
             }
             self.board
                 .with(|board| board.row(client).map(|row| row.stopped = Some(now)));
         }
         stops
+    }
+
+    /// The angles as they were read last: a client stops a hand that falls silent at those that it saw.
+    async fn pose(&self) -> Option<PerDof<i16>> {
+        match self.reads.newest(ANGLE_ACT.span()) {
+            Some(bytes) => values(&bytes, Ok::<i16, OutOfRange>).ok(),
+            None => self.values(&ANGLE_ACT, Ok::<i16, OutOfRange>).await.ok(),
+        }
     }
 
     /// Whether nobody can get the right now: a drive reports a fault, or the stop that it caused goes on.
@@ -282,14 +311,27 @@ impl ClientLeases {
         register: &Register,
         check: fn(i16) -> Result<T, OutOfRange>,
     ) -> Result<PerDof<T>, WriteRefusal> {
-        let bytes = self.reads.read(register.span()).await?;
-        let (pairs, _) = bytes.as_chunks::<2>();
-        let values = pairs.iter().map(|pair| check(i16::from_le_bytes(*pair)));
-        let values: Result<Vec<T>, OutOfRange> = values.collect();
-        let values = values.map_err(|_range| WriteRefusal::Limits)?;
-        let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
-        Ok(PerDof::new(values))
+        values(&self.reads.read(register.span()).await?, check)
     }
+}
+
+/// The values of six joints.
+fn values<T>(
+    bytes: &[u8],
+    check: fn(i16) -> Result<T, OutOfRange>,
+) -> Result<PerDof<T>, WriteRefusal> {
+    let (pairs, _) = bytes.as_chunks::<2>();
+    let values = pairs.iter().map(|pair| check(i16::from_le_bytes(*pair)));
+    let values: Result<Vec<T>, OutOfRange> = values.collect();
+    let values = values.map_err(|_range| WriteRefusal::Limits)?;
+    let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
+    Ok(PerDof::new(values))
+}
+
+/// Whether the hand may go on to where it was sent, and nothing stops it yet.
+fn goes_on(status: &LinkStatus) -> bool {
+    let is_left = status.may_move && status.state != LinkState::Holding;
+    status.holder.is_some() || is_left
 }
 
 /// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.

@@ -55,13 +55,14 @@ impl Service {
                 self.write(client, request, command).await?;
                 Ok([address, count].map(u16::to_be_bytes).concat())
             }
-            // A stop counts although its length is wrong.
-            _ if self.leases.is_stop(client, request).await => {
-                Ok(request.get(1..5).unwrap_or_default().to_vec())
-            }
-            // A known function of a wrong length.
-            _ if matches!(request, [3 | 6 | 16, ..]) => Err(ModbusException::IllegalValue),
-            _ => Err(ModbusException::IllegalFunction),
+            _ => match self.leases.obey_stop(client, request).await {
+                // A stop counts although its length is wrong.
+                Some(Ok(())) => Ok(request.get(1..5).unwrap_or_default().to_vec()),
+                Some(Err(refusal)) => Err(refusal.exception()),
+                // A known function of a wrong length.
+                None if matches!(request, [3 | 6 | 16, ..]) => Err(ModbusException::IllegalValue),
+                None => Err(ModbusException::IllegalFunction),
+            },
         }
     }
 
@@ -91,11 +92,14 @@ impl Service {
     ) -> Result<(), ModbusException> {
         let written = match command {
             Ok(command) => self.leases.write(client, command, request).await,
-            Err(odd) if self.leases.is_stop(client, request).await => {
-                self.note(client, |row| row.obeyed_odd(odd));
-                return Ok(());
-            }
-            Err(refusal) => Err(refusal),
+            Err(odd) => match self.leases.obey_stop(client, request).await {
+                Some(Ok(())) => {
+                    self.note(client, |row| row.obeyed_odd(odd));
+                    return Ok(());
+                }
+                Some(Err(lost)) => Err(lost),
+                None => Err(odd),
+            },
         };
         let told = written.as_ref().map_err(WriteRefusal::exception).copied();
         self.note(client, |row| row.wrote(written));

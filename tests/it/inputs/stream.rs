@@ -111,8 +111,31 @@ async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out()
         view.intake.taken == 3 && view.connections > 1
     })
     .await;
-    assert!(view.connections <= 8, "{}", view.connections);
+    assert!(view.connections <= 32, "{}", view.connections);
     drop(idle);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn a_connection_too_many_stops_the_hand_and_does_nothing_else() {
+    let stops = Arc::default();
+    let source = open(StreamPlace::Tcp(free()), &stops);
+    let connect = || TcpStream::connect(source.local()).unwrap();
+    let _idle: Vec<TcpStream> = (0..8).map(|_| connect()).collect();
+    until(&source, |view| view.connections == 8).await;
+    let mut button = connect();
+    let mut other = connect();
+    until(&source, |view| view.connections == 10).await;
+    other.write_all(b"{\"right\":[1,1,1,1,1,1]}\n").unwrap();
+    until(&source, |view| view.connections == 9).await;
+    for nth in 1..=2 {
+        button.write_all(b"{\n  \"stop\": true\n}\n").unwrap();
+        while stops.load(Ordering::Relaxed) < nth {
+            tokio::time::sleep(Duration::from_millis(2)).await;
+        }
+    }
+    let view = source.view();
+    assert_eq!((view.intake.taken, view.intake.refused.len()), (0, 0));
+    assert_eq!(view.connections, 9);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]

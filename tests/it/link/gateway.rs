@@ -3,7 +3,7 @@
 use crate::setup::gateway::Gateway;
 use crate::setup::hand;
 use crate::setup::link;
-use handscope::hand::ModbusException;
+use handscope::hand::{Angle, Dof, Force, ModbusException, Setpoints, Speed, Target};
 use handscope::link::{LinkStatus, LinkTrouble, TouchVariant};
 use handscope::record::{Hold, LinkState};
 use std::sync::Arc;
@@ -164,6 +164,39 @@ async fn a_hand_that_falls_silent_on_a_slow_way_is_lost_within_a_second() {
     let lost = |status: &LinkStatus| status.state == LinkState::Offline;
     let status = link::until(&mut link, LOST_WITHIN + Duration::from_millis(300), lost).await;
     assert!(matches!(status.trouble, Some(LinkTrouble::Silent { .. })));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_stays_armed_and_moves_on_a_slow_way() {
+    for ms in [60, 100, 130, 150, 180, 200] {
+        let hand = hand::plain();
+        let gateway = Gateway::to(hand.clone());
+        gateway.delays(Duration::from_millis(ms));
+        let mut link = link::connect(PLACE, gateway.dial());
+        link::live(&mut link).await;
+        states(&mut link, Duration::from_secs(4)).await;
+        for angle in [200, 900, 400] {
+            link.arm(link::gentle());
+            let armed = |status: &LinkStatus| status.armed.is_some();
+            let epoch = link::until(&mut link, Duration::from_secs(4), armed).await;
+            let mut wish = Setpoints::none(epoch.armed.unwrap());
+            wish.angle[Dof::Index] = Some(Target::Go(Angle::nearest(angle)));
+            wish.speed[Dof::Index] = Some(Speed::GENTLE);
+            wish.force[Dof::Index] = Some(Force::GENTLE);
+            for _ in 0..60 {
+                link.set(&wish);
+                link::pass(&mut link, Duration::from_millis(50)).await;
+                let status = link.status();
+                assert!(status.armed.is_some(), "{ms} ms: {:?}", status.disarmed);
+            }
+        }
+        let told = hand.with(|hand, _| {
+            let mut all = hand.journal().iter().rev();
+            let angles = all.find(|write| write.address == 1486);
+            angles.map(|write| i16::from_le_bytes([write.bytes[6], write.bytes[7]]))
+        });
+        assert_eq!(told, Some(400), "{ms} ms");
+    }
 }
 
 #[tokio::test(start_paused = true)]

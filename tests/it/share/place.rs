@@ -32,6 +32,7 @@ pub(crate) struct Wires {
     writes: Mutex<Vec<u16>>,
     newest: Mutex<Option<JoinHandle<()>>>,
     is_cut: AtomicBool,
+    is_silent: AtomicBool,
 }
 
 impl Wires {
@@ -62,6 +63,11 @@ impl Wires {
         self.is_cut.store(false, Ordering::Relaxed);
     }
 
+    /// From now on nothing passes, or all does again; the wire is there.
+    pub(crate) fn silent(&self, is_silent: bool) {
+        self.is_silent.store(is_silent, Ordering::Relaxed);
+    }
+
     fn note(&self, request: &[u8]) {
         match pdu::parse(ModbusRole::Client, request) {
             Pdu::Read { address, count } => {
@@ -83,6 +89,7 @@ impl Wires {
             tokio::select! {
                 read = ours.read(&mut asked) => {
                     let Ok(len @ 1..) = read else { return };
+                    if self.is_silent.load(Ordering::Relaxed) { continue; }
                     splitter.push(&asked[..len]);
                     while let Some(adu) = splitter.next().unwrap() {
                         self.note(adu.pdu());

@@ -216,6 +216,41 @@ fn the_end_of_the_script_stops_the_hand_at_once() {
 }
 
 #[test]
+fn a_stop_needs_no_line_feed_and_a_line_that_is_too_long_ends_nothing() {
+    let long = "y".repeat(200_000);
+    for text in [
+        "{\"do\":\"stop\"".to_owned(),
+        "{\"do\":\"stop\"}".to_owned(),
+        "{\n  \"do\": \"stop\"\n".to_owned(),
+        format!("{{\"x\":\"{long}\",\"do\":\"stop\"}}"),
+    ] {
+        let (_sim, hand) = sim_on_tcp(&[]);
+        let mut script = Script::moving(&hand);
+        let asks = script.asks.as_mut().unwrap();
+        asks.write_all(text.as_bytes()).unwrap();
+        let told = script.until("disarmed");
+        assert_eq!(told["kind"], "stop", "{}", &text[..10]);
+        // It is served on.
+        let asks = script.asks.as_mut().unwrap();
+        asks.write_all(b"\n").unwrap();
+        let told = script.ask(json!({"do": "arm"}));
+        assert!(told.get("ok").is_some(), "{told}");
+        assert_eq!(script.end(), Some(0));
+    }
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let mut script = Script::start(&hand);
+    let told = script.ask(json!({"do": "arm", "why": long}));
+    let why = told["error"].as_str().unwrap();
+    assert!(why.contains("65536"), "{why}");
+    script.done(json!({"do": "arm"}));
+    // At the end of the input, too, and with a status of success.
+    let mut asks = script.asks.take().unwrap();
+    asks.write_all(b"{\"do\":\"stop\"").unwrap();
+    drop(asks);
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
 fn a_script_that_does_not_read_may_not_move_the_hand() {
     let (_sim, hand) = sim_on_tcp(&[]);
     let mut client = Client::of(&hand);

@@ -424,6 +424,42 @@ async fn a_lost_link_ends_the_right_and_nothing_goes_on_when_it_is_back() {
     assert!(!targets(&place).contains(&900));
 }
 
+/// A mover's stop while the hand falls silent: at once, once the link is known to be lost, and once it is back and goes on.
+#[tokio::test]
+async fn a_stop_of_a_mover_whose_hand_fell_silent_reaches_it_when_it_answers_again() {
+    for when in 0..3 {
+        let place = first_may().await;
+        let mut client = mover(&place).await;
+        // It is on its way for longer than the link is lost.
+        assert_eq!(put(&mut client, 1522, &[50; 6]).await, Ok(()));
+        let mut onlooker = place.client().await;
+        sleep(MOVES_AFTER).await;
+        let seen = read(&mut client, 1546, 6).await;
+        let is_live = || place.link.status().state.is_live();
+        place.wires.silent(true);
+        if when > 0 {
+            until(|| !is_live()).await;
+        }
+        if when < 2 {
+            let told = put(&mut client, 1486, &seen).await;
+            assert!(told.is_err(), "{when}: nothing was stopped yet");
+        }
+        if when == 1 {
+            let told = put(&mut onlooker, 1486, &seen).await;
+            assert!(told.is_err(), "nothing was stopped yet");
+        }
+        assert_eq!(targets(&place), [0], "{when}");
+        place.wires.silent(false);
+        until(is_live).await;
+        if when == 2 {
+            let seen = read(&mut client, 1546, 6).await;
+            assert_eq!(put(&mut client, 1486, &seen).await, Ok(()));
+        }
+        is_stopped(&place).await;
+        assert_eq!(put(&mut client, INDEX, &[900]).await, BUSY, "{when}");
+    }
+}
+
 #[tokio::test]
 async fn a_stop_by_a_person_ends_the_right() {
     let place = first_may().await;

@@ -2,6 +2,7 @@
 //! (`handscope help share`).
 
 use crate::cli::parse::{moving, rated};
+use crate::cli::share::stdio::pipe::LINE_MAX;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::inputs::fields::{self, FieldFault, Fields};
@@ -85,6 +86,10 @@ impl Asked {
 }
 
 fn read(line: &[u8], side: Side) -> (Value, Result<Ask, String>) {
+    if line.len() > LINE_MAX {
+        let why = format!("a line has at most {LINE_MAX} bytes");
+        return (value_at(line, "id"), Err(why));
+    }
     let mut fields = match Fields::parse(unmarked(line)) {
         Ok(fields) => fields,
         Err(error) => {

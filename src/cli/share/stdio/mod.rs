@@ -121,7 +121,10 @@ pub(crate) async fn serve<'a>(
     hand: StdioHand<'a>,
     interrupted: impl Future<Output = ()>,
 ) -> anyhow::Result<()> {
-    let mut lines = pipe::lines();
+    let stopper = hand.link.stopper();
+    let mut lines = pipe::lines(move || {
+        stopper.stop();
+    });
     let mut records = hand.link.records();
     let mut script = Script {
         told: Told::to(out),

@@ -2,34 +2,50 @@
 //! in time is left out and counted.
 
 use crate::cli::out::Out;
+use crate::inputs::lines::{Cut, LineCutter};
 use serde_json::Value;
-use std::io::{self, BufRead as _, Read as _};
+use std::io::{self, BufRead as _};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 /// Longest line that is taken, bytes.
-const LINE_MAX: u64 = 64 * 1024;
+pub(super) const LINE_MAX: usize = 64 * 1024;
 /// Lines that may wait to be obeyed.
 const ASKED_MAX: usize = 64;
 /// A program that takes nothing for so long does not look at what the hand does.
 const TAKES_WITHIN: Duration = Duration::from_secs(1);
 
-/// Lines of standard input. The channel ends with it.
-pub(crate) fn lines() -> mpsc::Receiver<Vec<u8>> {
+/// Lines of standard input. The channel ends with it. `stop` is called for a stop in a line that is not whole yet, or too long.
+pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>> {
     let (asked, lines) = mpsc::channel(ASKED_MAX);
     std::thread::spawn(move || {
         let mut input = io::stdin().lock();
+        let mut cutter = LineCutter::new(LINE_MAX);
+        let hand_on = |cut: Cut| match cut {
+            Cut::Stop => {
+                stop();
+                true
+            }
+            Cut::Line { text, .. } => asked.blocking_send(text).is_ok(),
+        };
         loop {
-            let mut line = Vec::new();
-            let read = (&mut input).take(LINE_MAX).read_until(b'\n', &mut line);
-            // What is no whole line is not obeyed.
-            if read.is_err() || line.pop() != Some(b'\n') {
+            let bytes = match input.fill_buf() {
+                Ok(bytes) => bytes,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(_closed) => &[],
+            };
+            let len = bytes.len();
+            let cuts = cutter.push(bytes);
+            if !cuts.into_iter().all(hand_on) {
                 return;
             }
-            if asked.blocking_send(line).is_err() {
+            if len == 0 {
+                // What else is no whole line is not obeyed.
+                cutter.end().into_iter().all(hand_on);
                 return;
             }
+            input.consume(len);
         }
     });
     lines

@@ -10,6 +10,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, Dof, Group, Groups, HandSample, Moment, PerDof, Reply, Span, Target, register,
 };
+use crate::record::file::Contents;
 use crate::record::file::format::opening::Opening;
 use crate::record::file::reader::{Damage, RecordingFile, Stretch};
 use crate::record::file::writer::RecordingWriter;
@@ -300,6 +301,36 @@ fn what_is_no_session_is_refused_in_words() {
     writer.finish().unwrap();
     let bytes = writer.into_inner().into_inner();
     assert!(words(&bytes).contains("another program"));
+}
+
+#[test]
+fn times_in_which_the_hand_was_not_read_are_told_and_nothing_is_missing_there() {
+    let second = |s| Moment::from_micros(2_000_000 + s * 1_000_000);
+    let all = entries(17, 5000);
+    let is_reading = |entry: &Entry| matches!(entry, Entry::Heard(Record::Reading { .. }));
+    let without = |from: u64, to: u64| -> Vec<Entry> {
+        let is_in = |entry: &Entry| (second(from)..second(to)).contains(&entry.at());
+        let kept = all
+            .iter()
+            .filter(|entry| !(is_reading(entry) && is_in(entry)));
+        kept.cloned().collect()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lost.mcap");
+    for (from, to) in [(0, 4), (3, 7), (6, 20), (0, 20)] {
+        std::fs::write(&path, bytes_of(&without(from, to))).unwrap();
+        let contents = Contents::of(&RecordingFile::open(&path).unwrap()).unwrap();
+        assert_eq!(contents.damage, Damage::default());
+        let [gap] = contents.unread.as_slice() else {
+            panic!("{from} to {to}: {:?}", contents.unread);
+        };
+        let apart = |a: Moment, b: Moment| a.since(b).max(b.since(a)).as_millis();
+        assert!(apart(gap.from, second(from)) < 50, "{gap:?}");
+        assert!(apart(gap.to, second(to.min(10))) < 50, "{gap:?}");
+    }
+    std::fs::write(&path, bytes_of(&without(3, 5))).unwrap();
+    let contents = Contents::of(&RecordingFile::open(&path).unwrap()).unwrap();
+    assert_eq!(contents.unread, []);
 }
 
 #[test]

@@ -1,0 +1,220 @@
+//! Lines out of a stream of bytes. A stop is told before the line feed came, and in a line that is too long. Pure.
+
+use crate::inputs::line::begins_message;
+use crate::inputs::scan::{Token, pieces, unmarked};
+use crate::inputs::stop::{TextEnd, is_stop};
+
+/// So many bytes of a line that is too long are kept, to find a stop that comes in two pieces.
+const KEPT: usize = 256;
+
+/// What came in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Cut {
+    /// A line without its line feed, or the beginning of one that is longer than they may be. An object whose first line is `{` alone
+    /// is one line, however many it is written on.
+    Line {
+        text: Vec<u8>,
+        /// It was told as [`Self::Stop`] before.
+        has_stopped: bool,
+    },
+    /// The line that is not whole yet, or was too long, asks for a stop.
+    Stop,
+}
+
+/// Cuts bytes into lines.
+#[derive(Debug)]
+pub(crate) struct LineCutter {
+    longest: usize,
+    rest: Vec<u8>,
+    has_stopped: bool,
+    /// The rest of a line that was too long is passed over.
+    skips: bool,
+}
+
+impl LineCutter {
+    /// For lines of at most so many bytes.
+    pub(crate) const fn new(longest: usize) -> Self {
+        Self {
+            longest,
+            rest: Vec::new(),
+            has_stopped: false,
+            skips: false,
+        }
+    }
+
+    /// What these bytes complete, in order.
+    pub(crate) fn push(&mut self, bytes: &[u8]) -> Vec<Cut> {
+        let mut cuts = Vec::new();
+        for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
+            let is_whole = piece.ends_with(b"\n");
+            if self.rest.ends_with(b"\n") && piece.starts_with(b"{") {
+                cuts.push(self.cut());
+            }
+            self.rest.extend_from_slice(piece);
+            if self.skips {
+                // Where it begins in the middle of a text, no quote tells anything.
+                self.find_stop(TextEnd::Whole, &mut cuts);
+                let old = self.rest.len().saturating_sub(KEPT);
+                self.rest.drain(..old);
+                if is_whole {
+                    self.skips = false;
+                    self.has_stopped = false;
+                    self.rest.clear();
+                }
+            } else if self.rest.len() > self.longest {
+                cuts.push(self.cut());
+                self.skips = !is_whole;
+            } else if is_whole && !self.is_open_object() {
+                cuts.push(self.cut());
+            }
+        }
+        if !self.skips && begins_message(&self.rest) {
+            self.find_stop(TextEnd::MayGoOn, &mut cuts);
+        }
+        cuts
+    }
+
+    /// The line that is not whole yet.
+    pub(crate) fn unfinished(&self) -> &[u8] {
+        if self.skips { &[] } else { &self.rest }
+    }
+
+    /// Nothing more comes: a stop counts without the end of its line.
+    pub(crate) fn end(mut self) -> Option<Cut> {
+        is_stop(self.unfinished(), TextEnd::Whole).then(|| self.cut())
+    }
+
+    fn find_stop(&mut self, end: TextEnd, cuts: &mut Vec<Cut>) {
+        if !self.has_stopped && is_stop(&self.rest, end) {
+            self.has_stopped = true;
+            cuts.push(Cut::Stop);
+        }
+    }
+
+    fn cut(&mut self) -> Cut {
+        let mut text = std::mem::take(&mut self.rest);
+        if text.ends_with(b"\n") {
+            text.pop();
+        }
+        Cut::Line {
+            text,
+            has_stopped: std::mem::take(&mut self.has_stopped),
+        }
+    }
+
+    /// Whether this is the beginning of an object as programs write it for people: its first line is a brace, and others follow.
+    fn is_open_object(&self) -> bool {
+        let first = self.rest.split(|byte| *byte == b'\n').next();
+        if first.map(unmarked) != Some(b"{") {
+            return false;
+        }
+        let depth = |depth: usize, token: &Token<'_>| match token {
+            Token::Mark(b'{' | b'[') => depth + 1,
+            Token::Mark(b'}' | b']') => depth.saturating_sub(1),
+            _ => depth,
+        };
+        pieces(&self.rest).iter().fold(0, depth) > 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inputs::stop::tests::odd_stops;
+
+    fn line(text: &str) -> Cut {
+        Cut::Line {
+            text: text.into(),
+            has_stopped: false,
+        }
+    }
+
+    fn stopped(text: &str) -> Cut {
+        Cut::Line {
+            text: text.into(),
+            has_stopped: true,
+        }
+    }
+
+    fn cuts(text: &str) -> Vec<Cut> {
+        let mut cutter = LineCutter::new(100);
+        let mut cuts = cutter.push(text.as_bytes());
+        cuts.extend(cutter.end());
+        cuts
+    }
+
+    #[test]
+    fn lines_are_cut_wherever_their_bytes_come_apart() {
+        let text = "{\"a\":1}\n\nno\n{\n \"b\": [\n  1\n ]\n}\n{\"c\":2}\n";
+        let expected = [
+            line("{\"a\":1}"),
+            line(""),
+            line("no"),
+            line("{\n \"b\": [\n  1\n ]\n}"),
+            line("{\"c\":2}"),
+        ];
+        for at in 0..=text.len() {
+            let mut cutter = LineCutter::new(100);
+            let (before, behind) = text.split_at(at);
+            let mut all = cutter.push(before.as_bytes());
+            all.extend(cutter.push(behind.as_bytes()));
+            assert_eq!(all, expected, "{at}");
+            assert_eq!(cutter.unfinished(), b"");
+        }
+    }
+
+    #[test]
+    fn a_stop_is_told_before_its_line_is_whole() {
+        let pretty = "{\n  \"v\": 1,\n  \"stop\": true\n";
+        let whole = format!("{pretty}}}");
+        let mut cutter = LineCutter::new(100);
+        assert_eq!(cutter.push(pretty.as_bytes()), [Cut::Stop]);
+        assert_eq!(cutter.push(b"}\n"), [stopped(&whole)]);
+        assert_eq!(cutter.push(b"{\"stop\":true"), [Cut::Stop]);
+        assert_eq!(cutter.push(b",\"seq\":1"), []);
+        assert_eq!(
+            cutter.push(b"}\n{\"seq\":2}\n"),
+            [stopped("{\"stop\":true,\"seq\":1}"), line("{\"seq\":2}")]
+        );
+        // At the end of all a value need not be whole.
+        assert_eq!(cuts("stop"), [line("stop")]);
+        assert_eq!(cuts("{\"stop\":t"), [line("{\"stop\":t")]);
+        assert_eq!(cuts("{\"stop\":f"), []);
+    }
+
+    #[test]
+    fn an_object_that_is_never_closed_ends_with_the_next_one() {
+        let text = "{\n\"seq\": 1,\n{\"seq\":2}\n";
+        assert_eq!(cuts(text), [line("{\n\"seq\": 1,"), line("{\"seq\":2}")]);
+        // A line that ends too early is not waited for.
+        assert_eq!(cuts("{\"seq\":1,\n"), [line("{\"seq\":1,")]);
+    }
+
+    #[test]
+    fn a_line_that_is_too_long_is_told_once_and_may_still_stop() {
+        let long = format!("{{\"x\":\"{}", "y".repeat(100));
+        let behind = format!("{}\",\"stop\":true}}\n{{\"seq\":1}}\n", "y".repeat(3000));
+        let mut cutter = LineCutter::new(100);
+        assert_eq!(cutter.push(long.as_bytes()), [line(&long)]);
+        let mut all = Vec::new();
+        for piece in behind.as_bytes().chunks(7) {
+            all.extend(cutter.push(piece));
+        }
+        assert_eq!(all, [Cut::Stop, line("{\"seq\":1}")]);
+    }
+
+    #[test]
+    fn every_odd_stop_is_told_without_the_end_of_its_line() {
+        for text in odd_stops() {
+            let mut cutter = LineCutter::new(64 * 1024);
+            let mut told = cutter.push(&text);
+            told.extend(cutter.end());
+            let is_told = |cut: &Cut| match cut {
+                Cut::Stop => true,
+                Cut::Line { text, .. } => is_stop(text, TextEnd::Whole),
+            };
+            let shown = String::from_utf8_lossy(&text).into_owned();
+            assert!(told.iter().any(is_told), "{shown}: {told:?}");
+        }
+    }
+}
