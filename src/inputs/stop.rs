@@ -130,26 +130,7 @@ pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Everything odd that stood beside a stop, or in it. Each text door has to obey each.
-    pub(crate) fn odd_stops() -> Vec<Vec<u8>> {
-        let rows = include_str!("../../tests/odd_stops.txt").lines();
-        let rows = rows.filter(|row| !row.starts_with('#'));
-        let mut all: Vec<Vec<u8>> = rows.map(bytes).collect();
-        let plain = bytes(r#"{"stop":true}"#);
-        let utf16 = plain.iter().flat_map(|byte| [*byte, 0]);
-        all.push([0xff, 0xfe].into_iter().chain(utf16).collect());
-        let long = format!(r#"{{"stop":true,"x":"{}"}}"#, "y".repeat(3000));
-        all.push(long.into_bytes());
-        assert!(all.len() > 60);
-        all
-    }
-
-    fn bytes(row: &str) -> Vec<u8> {
-        let text = row.replace("<LF>", "\n").replace("<NUL>", "\0");
-        let text = text.replace("<BOM>", "\u{feff}");
-        let parts = text.split("<FF>").map(str::as_bytes);
-        parts.collect::<Vec<_>>().join(&0xff)
-    }
+    include!("../../tests/odd_stops.rs");
 
     #[test]
     fn a_stop_is_recognised_whatever_is_odd_about_it() {

@@ -10,22 +10,7 @@ use std::time::{Duration, Instant};
 
 const GOOD: &[u8] = b"{\"right\":[1,1,1,1,1,1]}";
 
-/// The table that the unit tests go by as well.
-pub(crate) fn odd_stops() -> Vec<Vec<u8>> {
-    let rows = include_str!("../../odd_stops.txt").lines();
-    let bytes = |row: &str| {
-        let text = row.replace("<LF>", "\n").replace("<NUL>", "\0");
-        let text = text.replace("<BOM>", "\u{feff}");
-        let parts: Vec<&[u8]> = text.split("<FF>").map(str::as_bytes).collect();
-        parts.join(&0xff)
-    };
-    let rows = rows.filter(|row| !row.starts_with('#'));
-    let mut all: Vec<Vec<u8>> = rows.map(bytes).collect();
-    let long = format!(r#"{{"stop":true,"x":"{}"}}"#, "y".repeat(3000));
-    all.push(long.into_bytes());
-    assert!(all.len() > 60);
-    all
-}
+include!("../../odd_stops.rs");
 
 /// Waits until the hand was stopped so often.
 async fn stopped(stops: &Arc<AtomicU64>, times: u64, by: &[u8]) {

@@ -510,6 +510,10 @@ fn the_clock_is_set() {
             assert!(!text.contains(clock), "{folder} asks {clock}");
         }
     }
+    // A backup is as old as its file.
+    let tasks = sources(&source.join("tasks"));
+    let save = std::fs::read_to_string(source.join("tasks/save.rs")).unwrap();
+    assert!(!tasks.replace(&save, "").contains("SystemTime"));
 }
 
 #[test]
