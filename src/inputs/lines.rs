@@ -4,6 +4,8 @@ use crate::inputs::line::begins_message;
 use crate::inputs::scan::{Token, pieces, unmarked};
 use crate::inputs::stop::{TextEnd, is_stop};
 
+/// Longest line that is kept whole: a stop may be anywhere in it.
+pub(crate) const LONGEST: usize = 64 * 1024;
 /// So many bytes of a line that is too long are kept, to find a stop that comes in two pieces.
 const KEPT: usize = 256;
 
@@ -48,7 +50,10 @@ impl LineCutter {
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
             let is_whole = piece.ends_with(b"\n");
             if self.rest.ends_with(b"\n") && piece.starts_with(b"{") {
-                cuts.push(self.cut());
+                let cut = self.cut();
+                // A brace alone says nothing that could be wrong.
+                let is_brace = matches!(&cut, Cut::Line { text, .. } if unmarked(text) == b"{");
+                cuts.extend((!is_brace).then_some(cut));
             }
             self.rest.extend_from_slice(piece);
             if self.skips {
@@ -186,6 +191,7 @@ mod tests {
     fn an_object_that_is_never_closed_ends_with_the_next_one() {
         let text = "{\n\"seq\": 1,\n{\"seq\":2}\n";
         assert_eq!(cuts(text), [line("{\n\"seq\": 1,"), line("{\"seq\":2}")]);
+        assert_eq!(cuts("{\n{\"seq\":2}\n"), [line("{\"seq\":2}")]);
         // A line that ends too early is not waited for.
         assert_eq!(cuts("{\"seq\":1,\n"), [line("{\"seq\":1,")]);
     }

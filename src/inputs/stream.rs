@@ -6,7 +6,7 @@ use crate::hand::kinematics::Side;
 use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
-use crate::inputs::lines::{Cut, LineCutter};
+use crate::inputs::lines::{Cut, LONGEST, LineCutter};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, TextEnd};
@@ -277,7 +277,7 @@ impl LineReader {
     /// looked at: a page in a browser can send a form whose text has messages on further lines, but never one that begins with
     /// a message.
     async fn run(self, mut stream: TcpStream) {
-        let mut cutter = LineCutter::new(LINE_MAX);
+        let mut cutter = LineCutter::new(LONGEST);
         let mut piece = [0; LINE_MAX];
         loop {
             let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {

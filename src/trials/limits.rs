@@ -130,7 +130,7 @@ fn not_read(age: Option<Duration>, stall: Option<Duration>) -> String {
     match (age, stall) {
         (None, _) => "none came yet".into(),
         (Some(age), None) => format!(
-            "the last is {:.1} s old, and no newer one comes from the hand",
+            "the last is {:.1} s old, and the hand sends no newer one in time",
             age.as_secs_f64()
         ),
         (Some(age), Some(stall)) => format!(

@@ -354,7 +354,7 @@ fn every_early_end_names_its_cause() {
                 age,
                 stall: None,
             },
-            "the last is 0.7 s old, and no newer one comes from the hand",
+            "the last is 0.7 s old, and the hand sends no newer one in time",
         ),
         (
             Abort::NotRead {

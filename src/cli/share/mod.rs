@@ -241,7 +241,7 @@ fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
         say(&match change {
             MoverChange::Began => format!("{client} may move the hand"),
             MoverChange::Left => {
-                format!("{client}, which could move the hand, is gone: the hand is stopped")
+                format!("{client}, which could move the hand, is gone: the hand is told to stop")
             }
             MoverChange::Ended(end) => {
                 let by_other = end == LeaseRefusal::Ended(Disarmed::OtherController);
@@ -249,7 +249,7 @@ fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
                 let why = foreign.map_or_else(
                     || ended(end),
                     |foreign| {
-                        format!("another controller wrote {foreign}, and the hand is stopped")
+                        format!("another controller wrote {foreign}, and the hand is told to stop")
                     },
                 );
                 format!("{client} may no longer move the hand: {why}")
@@ -264,7 +264,7 @@ fn ended(end: LeaseRefusal) -> String {
         LeaseRefusal::Ended(why @ (Disarmed::LinkLost | Disarmed::Resume)) => {
             format!("{why}, and the hand may still finish its move")
         }
-        LeaseRefusal::Ended(why) => format!("{why}, and the hand is stopped"),
+        LeaseRefusal::Ended(why) => format!("{why}, and the hand is told to stop"),
     }
 }
 

@@ -16,10 +16,12 @@ pub const MOVES: u8 = b'm';
 /// Told through the pipe: it rests, and nothing is armed.
 pub const RESTS: u8 = b'r';
 
-/// So often in a row the process may fail to start, or end soon, before that is reported: more often than somebody kills it.
-const FAILURES_MAX: u32 = 6;
-/// Time between the end of a process and the start of the next: the hand is unguarded for no longer than that takes.
+/// So often in a row the process may fail to start, or end by itself soon, before that is reported.
+const FAILURES_MAX: u32 = 3;
+/// Time between the end of a process and the start of the next, and the most of it where it ends soon again and again: the hand is
+/// unguarded for no longer than that takes.
 const RESTART_DELAY: Duration = Duration::from_millis(20);
+const RESTART_DELAY_MAX: Duration = Duration::from_millis(200);
 /// A process that ran for this long did not fail to start.
 const LASTING: Duration = Duration::from_secs(1);
 
@@ -171,30 +173,35 @@ struct Watcher {
 /// Why there is no holder now.
 enum Gone {
     NotNeeded,
+    /// By somebody, and not for a reason of its own: another may live.
+    Killed,
     Failed(String),
 }
 
 impl Watcher {
     fn run(mut self) {
-        let mut failures = 0;
+        let (mut failures, mut delay) = (0, RESTART_DELAY);
         loop {
             let begun = Instant::now();
-            let why = match self.one() {
-                Gone::NotNeeded => return,
-                Gone::Failed(why) => why,
-            };
-            failures = if begun.elapsed() < LASTING {
-                failures + 1
-            } else {
-                0
-            };
-            if failures >= FAILURES_MAX {
-                lock(&self.pipe).is_closed = true;
-                (self.complain)(&unguarded(&why));
-                self.tell.send_replace(HolderState::Missing(why));
-                return;
+            let gone = self.one();
+            if begun.elapsed() >= LASTING {
+                (failures, delay) = (0, RESTART_DELAY);
             }
-            std::thread::sleep(RESTART_DELAY);
+            match gone {
+                Gone::NotNeeded => return,
+                Gone::Killed => {}
+                Gone::Failed(why) => {
+                    failures += u32::from(begun.elapsed() < LASTING);
+                    if failures >= FAILURES_MAX {
+                        lock(&self.pipe).is_closed = true;
+                        (self.complain)(&unguarded(&why));
+                        self.tell.send_replace(HolderState::Missing(why));
+                        return;
+                    }
+                }
+            }
+            std::thread::sleep(delay);
+            delay = (2 * delay).min(RESTART_DELAY_MAX);
         }
     }
 
@@ -221,6 +228,12 @@ impl Watcher {
         }
         if pipe.is_closed {
             return Gone::NotNeeded;
+        }
+        #[cfg(unix)]
+        if let Ok(status) = &ended
+            && std::os::unix::process::ExitStatusExt::signal(status).is_some()
+        {
+            return Gone::Killed;
         }
         Gone::Failed(match ended {
             Ok(status) => format!("it ended at once each time: {status}"),
@@ -298,11 +311,11 @@ mod tests {
     fn a_holder_that_is_killed_again_and_again_is_replaced_each_time() {
         let folder = tempfile::tempdir().unwrap();
         let tie = HolderTie::guarded(&endpoint(), noting(folder.path()), silent);
-        for nth in 0..4 {
+        for nth in 0..8 {
             let newest = pids(folder.path(), nth + 1)[nth];
             kill(Pid::from_raw(newest), Signal::SIGKILL).unwrap();
         }
-        assert_eq!(pids(folder.path(), 5).len(), 5);
+        assert_eq!(pids(folder.path(), 9).len(), 9);
         assert_eq!(*tie.state().borrow(), HolderState::Ready);
         assert!(tie.moves(&endpoint()));
     }

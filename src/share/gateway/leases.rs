@@ -4,16 +4,17 @@
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
 use crate::link::{
-    ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, RecentReads, RequestError,
+    ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, RecentReads, Records,
+    RequestError,
 };
-use crate::record::{ArmRefusal, Disarmed, LinkState};
+use crate::record::{ArmRefusal, Disarmed, LinkState, Record, WriteCause, WriteFate};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{
     Board, ClientId, ClientLease, Holder, MoverChange, SharedBoard,
 };
 use crate::share::gateway::refusal::WriteRefusal;
 use std::time::Duration;
-use tokio::time::{Instant, sleep_until};
+use tokio::time::{Instant, sleep_until, timeout};
 
 /// The manual's "no action" (2.6.11).
 const NO_ACTION: i16 = -1;
@@ -21,6 +22,9 @@ const NO_ACTION: i16 = -1;
 const STAYS_WITHIN: u16 = 150;
 /// A client that stopped the hand repeats that until it sees it rest.
 const STOP_REPEATS: Duration = Duration::from_secs(2);
+/// A client is told within this whether the hand took its stop, and it is looked so often.
+const STOP_TAKES: Duration = Duration::from_secs(1);
+const LOOK_EACH: Duration = Duration::from_millis(20);
 
 /// Which clients may move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -185,12 +189,45 @@ impl ClientLeases {
         request: &[u8],
     ) -> Option<Result<(), WriteRefusal>> {
         let angles = allowed::all_angles(request)?;
+        let mut records = self.link.records();
         if !self.stops(client, &angles).await {
             return None;
         }
-        let is_live = self.link.status().state.is_live();
-        let lost = || Err(RequestError::NotConnected.into());
-        Some(if is_live { Ok(()) } else { lost() })
+        let has_none = !self.link.status().state.is_live();
+        let stop = self.stop_acknowledged(&mut records);
+        Some(match timeout(STOP_TAKES, stop).await {
+            _ if has_none => Err(RequestError::NotConnected.into()),
+            Ok(true) => Ok(()),
+            Ok(false) | Err(_) => Err(RequestError::LinkLost.into()),
+        })
+    }
+
+    /// Whether the hand acknowledged what stops it, or is known to rest by it.
+    async fn stop_acknowledged(&self, records: &mut Records) -> bool {
+        let mut sent = None;
+        loop {
+            let status = self.link.status();
+            if !status.state.is_live() {
+                return false;
+            }
+            if !status.may_move {
+                return true;
+            }
+            match timeout(LOOK_EACH, records.next()).await {
+                Ok(Some(Record::Sent {
+                    cause: WriteCause::Hold,
+                    number,
+                    ..
+                })) => sent = Some(number),
+                Ok(Some(Record::Answered { number, fate, .. })) if sent == Some(number) => {
+                    if fate == WriteFate::Acknowledged {
+                        return true;
+                    }
+                }
+                Ok(None) => return false,
+                Ok(Some(_)) | Err(_) => {}
+            }
+        }
     }
 
     /// Whether this is a stop of what a client moves, or its repetition: joints are told to stay about where they are, and none to

@@ -233,6 +233,30 @@ fn of_claims_on_hands_whose_stops_are_sometimes_late_few_are_false() {
     assert!(20 * falses <= claims + 20, "{falses} of {claims}");
 }
 
+/// Shares of late stops, and seeds.
+const SEEDS: [(f64, &[u64]); 3] = [
+    (0.05, &[5, 13, 16, 17]),
+    (0.1, &[12, 18]),
+    (0.15, &[1, 5, 8, 15]),
+];
+
+/// Hands of which a search without a reserve for later stops had a close over 1.15 of the limit.
+#[test]
+fn a_stop_later_than_all_before_seldom_goes_far_over_the_limit() {
+    let goal = SearchGoal::new(&[Dof::Index], LIMIT_G);
+    let far = 1.15 * f64::from(LIMIT_G);
+    for (tail, seeds) in SEEDS {
+        for seed in seeds {
+            let rng = fastrand::Rng::with_seed(*seed);
+            let stops = stops(2.0, (tail, 40.0));
+            let mut hand = Hand { stops, rng };
+            let (claim, peaks) = hand.search(&goal).unwrap();
+            let highest = peaks.iter().copied().fold(0.0, f64::max);
+            assert!(highest < far, "{tail} {seed}: {highest} of {claim}");
+        }
+    }
+}
+
 #[test]
 fn a_claim_of_few_closes_says_what_it_takes_for_granted_unless_a_stop_was_late() {
     let quick = SearchGoal {

@@ -55,7 +55,9 @@ const RISING_UNTIL: usize = 40;
 const HERE_LEAST: usize = 10;
 /// Until so many closes are left, a stop is taken to be possible that runs on this many times as far as they usually do: most closes
 /// are run slower than the last, so that a late stop is met where it does little.
-const LATE: f64 = 3.0;
+const LATE: f64 = 4.0;
+/// Where some stops came late, the next may be later than all: the largest overshoot is taken for so many times as much.
+const LATER: f64 = 1.3;
 /// What the largest of many closes is taken to be above what is likely, as a multiple of their standard deviation.
 const LARGEST_SIGMAS: f64 = 2.7;
 /// What is aimed at of the room under the limit: bounds of few closes scatter themselves.
@@ -570,7 +572,9 @@ impl SettingsSearch {
         };
         let usual = joint.growth.likely(at)? + factor * joint.growth.scatter(at);
         // What was over the limit once counts for all settings to come.
-        Some(usual.max(largest_g(joint, at)))
+        let stops_at = joint.growth.stops_at(at.threshold_g);
+        let reserve = if self.has_tail { LATER } else { 1.0 };
+        Some(usual.max(stops_at + reserve * (largest_g(joint, at) - stops_at)))
     }
 
     /// Whether the bound is the largest of all closes: it was asked for, so many were, or their peaks are not normal.

@@ -91,7 +91,7 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
 async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out() {
     let source = open(StreamPlace::Tcp(free()), &Arc::default());
     let mut bad = TcpStream::connect(source.local()).unwrap();
-    bad.write_all(&[b'{'; 6000]).unwrap();
+    bad.write_all(&[b'{'; 70_000]).unwrap();
     until(&source, |view| {
         view.intake.refused.contains_key(&LineFault::TooLong)
     })

@@ -127,7 +127,11 @@ fn the_end_of_a_client_is_told_and_the_next_may() {
     }
     assert!(share.complaint().contains("may move the hand"));
     drop(next);
-    assert!(share.complaint().contains("is gone: the hand is stopped"));
+    assert!(
+        share
+            .complaint()
+            .contains("is gone: the hand is told to stop")
+    );
 }
 
 #[test]
@@ -151,7 +155,8 @@ fn clients_that_come_write_and_leave_between_two_looks_are_told_too() {
             "{began}"
         );
         let left = share.complaint();
-        let gone = format!("{client}, which could move the hand, is gone: the hand is stopped");
+        let gone =
+            format!("{client}, which could move the hand, is gone: the hand is told to stop");
         assert!(left.contains(&gone), "{left}");
     }
     share.signal(Signal::SIGINT);

@@ -5,8 +5,10 @@ use handscope::record::file::reader::RecordingFile;
 use nix::sys::signal::Signal;
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
+use std::net::{TcpListener, TcpStream};
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
@@ -351,6 +353,55 @@ fn what_was_moved_before_a_link_was_lost_is_stopped_once_it_is_back_and_let_go()
             "{ends} {before} {first}"
         );
     }
+}
+
+/// A way to a hand on which its angles can be kept from being read: the way, and whether they are.
+fn way_without_angles(hand: &str) -> (String, Arc<AtomicBool>) {
+    let far = hand.strip_prefix("tcp:").unwrap();
+    let far = far.split('?').next().unwrap().to_owned();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let way = format!("tcp:{}", listener.local_addr().unwrap());
+    let is_blind = Arc::new(AtomicBool::new(false));
+    let blind = Arc::clone(&is_blind);
+    spawn(move || {
+        for near in listener.incoming() {
+            let (mut near, mut hand) = (near.unwrap(), TcpStream::connect(&far).unwrap());
+            let (mut back, mut answers) = (near.try_clone().unwrap(), hand.try_clone().unwrap());
+            spawn(move || std::io::copy(&mut answers, &mut back));
+            let blind = Arc::clone(&blind);
+            spawn(move || {
+                let mut head = [0; 6];
+                while near.read_exact(&mut head).is_ok() {
+                    let mut rest = vec![0; usize::from(head[5])];
+                    near.read_exact(&mut rest).unwrap();
+                    let word = |at: usize| u16::from_be_bytes([rest[at], rest[at + 1]]);
+                    let reads = rest[1] == 3 && (word(2)..word(2) + 2 * word(4)).contains(&1546);
+                    if !(reads && blind.load(Ordering::Relaxed)) {
+                        hand.write_all(&[&head[..], &rest].concat()).unwrap();
+                    }
+                }
+            });
+        }
+    });
+    (way, is_blind)
+}
+
+#[test]
+fn what_was_moved_before_feedback_grew_old_is_stopped_as_soon_as_it_is_read_again() {
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let (way, is_blind) = way_without_angles(&hand);
+    let mut script = Script::moving(&way);
+    is_blind.store(true, Ordering::Relaxed);
+    assert_eq!(script.until("disarmed")["kind"], "stale");
+    is_blind.store(false, Ordering::Relaxed);
+    let begun = Instant::now();
+    let mut angle = 0;
+    while begun.elapsed() < Duration::from_secs(3) {
+        angle = script.until("state")["angle"][3].as_i64().unwrap();
+    }
+    assert!(angle > 500, "it went on to {angle}");
+    script.done(json!({"do": "arm"}));
+    assert_eq!(script.end(), Some(0));
 }
 
 #[test]

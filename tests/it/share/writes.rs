@@ -443,10 +443,8 @@ async fn a_stop_of_a_mover_whose_hand_fell_silent_reaches_it_when_it_answers_aga
         if when < 2 {
             let told = put(&mut client, 1486, &seen).await;
             assert!(told.is_err(), "{when}: nothing was stopped yet");
-        }
-        if when == 1 {
             let told = put(&mut onlooker, 1486, &seen).await;
-            assert!(told.is_err(), "nothing was stopped yet");
+            assert!(told.is_err(), "{when}: nothing was stopped yet");
         }
         assert_eq!(targets(&place), [0], "{when}");
         place.wires.silent(false);

@@ -2,13 +2,13 @@
 //! (`handscope help share`).
 
 use crate::cli::parse::{moving, rated};
-use crate::cli::share::stdio::pipe::LINE_MAX;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::inputs::fields::{self, FieldFault, Fields};
 use crate::inputs::line::{LINE_VERSION, StreamLine};
+use crate::inputs::lines::LONGEST;
 use crate::inputs::scan::{unmarked, value_at};
-use crate::inputs::stop::{EndWord, TextEnd, end_word};
+use crate::inputs::stop::{EndWord, TextEnd, end_word, lets_go};
 use crate::link::{ArmRequest, PollRates};
 use crate::poses::way::Targets;
 use serde_json::Value;
@@ -56,17 +56,28 @@ pub(crate) struct MoveAsk {
 }
 
 impl Asked {
+    /// What ends no motion by a word of its own; a dead-man that is let go counts whatever is wrong beside it.
+    fn of(id: Value, read: Result<Ask, String>, line: &[u8], side: Side) -> Self {
+        let let_go = StreamLine::parse(line, side).ok().filter(|_| lets_go(line));
+        match (read, let_go) {
+            (Err(odd), Some(let_go)) => Self {
+                id,
+                what: Ok(Ask::Follow(let_go)),
+                odd: Some(odd),
+            },
+            (what, _) => Self {
+                id,
+                what,
+                odd: None,
+            },
+        }
+    }
+
     /// Reads one line for the hand of this side. One that ends a motion is obeyed, whatever else is in it.
     pub(crate) fn parse(line: &[u8], side: Side) -> Self {
         let (id, read) = read(line, side);
         let ask = match end_word(line, TextEnd::Whole) {
-            None => {
-                return Self {
-                    id,
-                    what: read,
-                    odd: None,
-                };
-            }
+            None => return Self::of(id, read, line, side),
             Some(EndWord::Stop) => Ask::Stop,
             Some(EndWord::Release) => Ask::Release,
             Some(EndWord::Disarm) => Ask::Disarm,
@@ -86,8 +97,8 @@ impl Asked {
 }
 
 fn read(line: &[u8], side: Side) -> (Value, Result<Ask, String>) {
-    if line.len() > LINE_MAX {
-        let why = format!("a line has at most {LINE_MAX} bytes");
+    if line.len() > LONGEST {
+        let why = format!("a line has at most {LONGEST} bytes");
         return (value_at(line, "id"), Err(why));
     }
     let mut fields = match Fields::parse(unmarked(line)) {
@@ -308,6 +319,26 @@ mod tests {
             assert!(told.contains(why), "{line}: {told}");
         }
         assert!(parse("[1]").unwrap_err().contains("not a JSON object"));
+    }
+
+    #[test]
+    fn a_dead_man_that_is_let_go_counts_whatever_is_wrong_beside_it() {
+        for line in [
+            r#"{"id":1,"held":false}"#,
+            r#"{"id":1,"held":false,"right":[NaN]}"#,
+            r#"{"id":1,"held":false,"x":}"#,
+            r#"{"id":1,"do":"move","held":false}"#,
+        ] {
+            let asked = Asked::parse(line.as_bytes(), Side::Right);
+            let Ok(Ask::Follow(follow)) = asked.what else {
+                panic!("{line}: {asked:?}");
+            };
+            assert_eq!(
+                (follow.held, asked.id),
+                (Some(false), Value::from(1)),
+                "{line}"
+            );
+        }
     }
 
     #[test]

@@ -106,7 +106,7 @@ struct Script<'a> {
     /// Records that were missed, as far as that was told.
     missed: u64,
     right: Option<Right>,
-    /// Its right ended with a link that was lost, or the sleep of the computer: nothing stopped the hand.
+    /// Its right ended with something that stops no hand: a link that was lost, the sleep of the computer, old feedback, a fault.
     owes_stop: bool,
     task: Option<Task>,
     recording: Option<SideRecording>,
@@ -216,8 +216,8 @@ impl Script<'_> {
     /// Whether the hand may go on to where the program sent it, also after a link that was lost and is back; unless another moves it.
     fn is_to_stop(&self) -> bool {
         let status = self.hand.link.status();
-        let goes_on = self.owes_stop && status.state.is_live() && status.holder.is_none();
-        goes_on || self.holds().is_some()
+        let goes_on = self.owes_stop && status.may_move && status.state.is_live();
+        goes_on && status.holder.is_none() || self.holds().is_some()
     }
 
     /// Whether the hand is known to have nothing left to do for the program.
@@ -283,10 +283,12 @@ impl Script<'_> {
         self.right = None;
         self.owes_stop = matches!(
             why.kind,
-            RefusalKind::Ended(Disarmed::LinkLost | Disarmed::Resume)
+            RefusalKind::Ended(
+                Disarmed::LinkLost | Disarmed::Resume | Disarmed::Stale | Disarmed::Fault
+            )
         );
         if self.owes_stop {
-            // The hand goes on to where it was sent. The stop waits for its link.
+            // The hand goes on to where it was sent. Where its link is lost, the stop waits for it.
             drop(self.hand.link.stop());
         }
         self.told

@@ -2,15 +2,14 @@
 //! in time is left out and counted.
 
 use crate::cli::out::Out;
-use crate::inputs::lines::{Cut, LineCutter};
+use crate::inputs::lines::{Cut, LONGEST, LineCutter};
+use crate::inputs::scan::unmarked;
 use serde_json::Value;
 use std::io::{self, BufRead as _};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
-/// Longest line that is taken, bytes.
-pub(super) const LINE_MAX: usize = 64 * 1024;
 /// Lines that may wait to be obeyed.
 const ASKED_MAX: usize = 64;
 /// A program that takes nothing for so long does not look at what the hand does.
@@ -21,12 +20,13 @@ pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>>
     let (asked, lines) = mpsc::channel(ASKED_MAX);
     std::thread::spawn(move || {
         let mut input = io::stdin().lock();
-        let mut cutter = LineCutter::new(LINE_MAX);
+        let mut cutter = LineCutter::new(LONGEST);
         let hand_on = |cut: Cut| match cut {
             Cut::Stop => {
                 stop();
                 true
             }
+            Cut::Line { text, .. } if unmarked(&text).is_empty() => true,
             Cut::Line { text, .. } => asked.blocking_send(text).is_ok(),
         };
         loop {
