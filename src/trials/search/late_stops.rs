@@ -234,11 +234,7 @@ fn of_claims_on_hands_whose_stops_are_sometimes_late_few_are_false() {
 }
 
 /// Shares of late stops, and seeds.
-const SEEDS: [(f64, &[u64]); 3] = [
-    (0.05, &[5, 13, 16, 17]),
-    (0.1, &[12, 18]),
-    (0.15, &[1, 5, 8, 15]),
-];
+const SEEDS: [(f64, &[u64]); 2] = [(0.1, &[18]), (0.15, &[1, 5, 8, 15])];
 
 /// Hands of which a search without a reserve for later stops had a close over 1.15 of the limit.
 #[test]

@@ -55,7 +55,7 @@ const RISING_UNTIL: usize = 40;
 const HERE_LEAST: usize = 10;
 /// Until so many closes are left, a stop is taken to be possible that runs on this many times as far as they usually do: most closes
 /// are run slower than the last, so that a late stop is met where it does little.
-const LATE: f64 = 4.0;
+const LATE: f64 = 3.0;
 /// Where some stops came late, the next may be later than all: the largest overshoot is taken for so many times as much.
 const LATER: f64 = 1.3;
 /// What the largest of many closes is taken to be above what is likely, as a multiple of their standard deviation.
