@@ -292,6 +292,11 @@ impl Session {
         self.holder_started().await;
         // The writes of the limits took longer than a pose lasts, on a slow way.
         if self.slowness.slowest().is_some() {
+            self.turn(bus).await?;
+            // A stop that came meanwhile goes first.
+            if self.arming_is_over(lease) {
+                return Ok(());
+            }
             self.poll_motion(bus).await?;
         }
         self.status.unguarded = self.guard.unguarded();
