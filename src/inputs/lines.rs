@@ -6,7 +6,10 @@ use crate::inputs::stop::{TextEnd, is_stop};
 
 /// Longest line that is kept whole: a stop may be anywhere in it.
 pub(crate) const LONGEST: usize = 64 * 1024;
-/// So many bytes of a line that is too long are kept, to find a stop that comes in two pieces.
+/// Up to here a line that is not whole yet is looked through whenever more of it came, and an object may go over several lines.
+/// Of longer ones this would cost more than they are worth: whoever sends them byte by byte must not keep the hand waiting.
+const SHORT: usize = 2048;
+/// So many new bytes a longer line is looked through again for, and so many of one that is too long are kept, to find a stop that comes in two pieces.
 const KEPT: usize = 256;
 
 /// What came in.
@@ -29,6 +32,8 @@ pub(crate) struct LineCutter {
     longest: usize,
     rest: Vec<u8>,
     has_stopped: bool,
+    /// So many bytes of it were looked through.
+    looked: usize,
     /// The rest of a line that was too long is passed over.
     skips: bool,
 }
@@ -40,6 +45,7 @@ impl LineCutter {
             longest,
             rest: Vec::new(),
             has_stopped: false,
+            looked: 0,
             skips: false,
         }
     }
@@ -73,7 +79,10 @@ impl LineCutter {
                 cuts.push(self.cut());
             }
         }
-        if !self.skips && begins_message(&self.rest) {
+        let is_short = self.rest.len() <= SHORT;
+        let is_due = is_short || self.rest.len() >= self.looked + KEPT;
+        if !self.skips && is_due && begins_message(&self.rest) {
+            self.looked = self.rest.len();
             self.find_stop(TextEnd::MayGoOn, &mut cuts);
         }
         cuts
@@ -98,6 +107,7 @@ impl LineCutter {
 
     fn cut(&mut self) -> Cut {
         let mut text = std::mem::take(&mut self.rest);
+        self.looked = 0;
         if text.ends_with(b"\n") {
             text.pop();
         }
@@ -110,7 +120,7 @@ impl LineCutter {
     /// Whether this is the beginning of an object as programs write it for people: its first line is a brace, and others follow.
     fn is_open_object(&self) -> bool {
         let first = self.rest.split(|byte| *byte == b'\n').next();
-        if first.map(unmarked) != Some(b"{") {
+        if self.rest.len() > SHORT || first.map(unmarked) != Some(b"{") {
             return false;
         }
         let depth = |depth: usize, token: &Token<'_>| match token {
@@ -207,6 +217,25 @@ mod tests {
             all.extend(cutter.push(piece));
         }
         assert_eq!(all, [Cut::Stop, line("{\"seq\":1}")]);
+    }
+
+    #[test]
+    fn a_long_line_that_comes_byte_by_byte_is_seldom_looked_through_again() {
+        let mut cutter = LineCutter::new(LONGEST);
+        let (mut looks, mut looked) = (0, 0);
+        let text = format!("{{\"x\":\"{}", "y".repeat(LONGEST - 1000));
+        for byte in text.bytes() {
+            assert_eq!(cutter.push(&[byte]), []);
+            looks += usize::from(cutter.looked != looked);
+            looked = cutter.looked;
+        }
+        assert!(looks <= SHORT + LONGEST / KEPT, "{looks}");
+        assert_eq!(cutter.push(b"\",\"stop\":true"), []);
+        assert_eq!(cutter.push(&[b' '; KEPT]), [Cut::Stop]);
+        // An object on several lines is not waited for without end.
+        let mut cutter = LineCutter::new(LONGEST);
+        let cuts = cutter.push(format!("{{{}", "\n".repeat(SHORT + 1)).as_bytes());
+        assert_eq!(cuts.len(), 2);
     }
 
     #[test]
