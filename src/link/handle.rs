@@ -457,18 +457,11 @@ impl IntoFuture for StopRequest {
 pub struct LinkStopper(Weak<LinkShared>);
 
 impl LinkStopper {
-    /// Stops the hand as [`LinkHandle::stop`] does, while its link is open.
-    pub(crate) fn stop(&self) {
-        if let Some(link) = self.0.upgrade().map(LinkHandle) {
-            link.stop();
-        }
-    }
-
-    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, and writes nothing otherwise. True if it
-    /// was told to stop.
+    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, or it may still go on, and writes nothing
+    /// otherwise. True if it was told to stop.
     pub fn stop_if_moved(&self) -> bool {
         let link = self.0.upgrade().map(LinkHandle);
-        let moved = link.filter(|link| link.status().holder.is_some());
+        let moved = link.filter(|link| link.status().goes_on());
         let stop = moved.map(|link| link.stop());
         stop.is_some()
     }

@@ -67,6 +67,12 @@ pub struct LinkStatus {
 }
 
 impl LinkStatus {
+    /// Whether the hand may go on to where it was sent, or be sent somewhere, and nothing stops it yet.
+    pub fn goes_on(&self) -> bool {
+        let is_left = self.may_move && self.state != LinkState::Holding;
+        self.holder.is_some() || is_left
+    }
+
     /// True if what the hand tells counts: it answers, and what it tells follows what it was told.
     pub fn is_believed(&self) -> bool {
         self.state.is_live() && !self.feedback_in_doubt

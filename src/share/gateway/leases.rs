@@ -4,8 +4,7 @@
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
 use crate::link::{
-    ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, RecentReads, Records,
-    RequestError,
+    ArmRequest, Lease, LeaseRefusal, LinkHandle, Owner, RecentReads, Records, RequestError,
 };
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record, WriteCause, WriteFate};
 use crate::share::gateway::allowed;
@@ -237,7 +236,7 @@ impl ClientLeases {
         let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
         let stopped = self.board.with(stopped);
         let status = self.link.status();
-        let may_stop = goes_on(&status)
+        let may_stop = status.goes_on()
             || status.state == LinkState::Holding
             || stopped.is_some_and(|at| now.duration_since(at) < STOP_REPEATS);
         let is_own = match self.lease(client) {
@@ -252,7 +251,7 @@ impl ClientLeases {
         }
         let stops = self.pose().await.is_some_and(|pose| stays(targets, &pose));
         if stops {
-            if goes_on(&self.link.status()) {
+            if self.link.status().goes_on() {
                 self.link.stop();
             }
             self.board
@@ -363,12 +362,6 @@ fn values<T>(
     let values = values.map_err(|_range| WriteRefusal::Limits)?;
     let values: [T; 6] = values.try_into().map_err(|_few| WriteRefusal::Limits)?;
     Ok(PerDof::new(values))
-}
-
-/// Whether the hand may go on to where it was sent, and nothing stops it yet.
-fn goes_on(status: &LinkStatus) -> bool {
-    let is_left = status.may_move && status.state != LinkState::Holding;
-    status.holder.is_some() || is_left
 }
 
 /// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.

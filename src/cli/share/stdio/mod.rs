@@ -123,7 +123,7 @@ pub(crate) async fn serve<'a>(
 ) -> anyhow::Result<()> {
     let stopper = hand.link.stopper();
     let mut lines = pipe::lines(move || {
-        stopper.stop();
+        stopper.stop_if_moved();
     });
     let mut records = hand.link.records();
     let mut script = Script {
