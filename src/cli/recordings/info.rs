@@ -197,9 +197,8 @@ impl Told<'_> {
         );
         let unread = &self.contents.unread;
         lines.extend(unread.iter().take(GAPS_TOLD).map(|gap| {
-            let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
-            let length = to - from;
-            format!("no readings: {from:.3} s to {to:.3} s ({length:.3} s): the hand did not answer, or was not read")
+            let when = self.stretch(gap);
+            format!("no readings: {when}): the hand did not answer, or was not read")
         }));
         lines.extend(more_than_told(unread, "stretches without readings"));
         let is_whole = !self.file.remarks().iter().any(Remark::is_loss)
@@ -215,6 +214,13 @@ impl Told<'_> {
         lines
     }
 
+    /// When, and for how long; the bracket is left open.
+    fn stretch(&self, gap: &Gap) -> String {
+        let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
+        let length = to - from;
+        format!("{from:.3} s to {to:.3} s ({length:.3} s")
+    }
+
     /// When something is missing, and for how long.
     fn gap_lines(&self) -> Vec<String> {
         let gaps = &self.contents.damage.gaps;
@@ -222,13 +228,12 @@ impl Told<'_> {
             .iter()
             .take(GAPS_TOLD)
             .map(|gap| {
-                let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
-                let length = to - from;
+                let when = self.stretch(gap);
                 let count = match gap.messages {
                     0 => String::new(),
                     count => format!(", {count} messages"),
                 };
-                format!("gap: {from:.3} s to {to:.3} s ({length:.3} s{count})")
+                format!("gap: {when}{count})")
             })
             .collect();
         lines.extend(more_than_told(gaps, "gaps"));
