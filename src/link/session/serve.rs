@@ -2,7 +2,7 @@
 //! requests at once, and the wishes of the window are looked at before each.
 
 use crate::hand::{
-    ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target,
+    ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target, Timed,
 };
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
@@ -380,13 +380,8 @@ impl Session {
     fn pose_is_due(&self, now: Moment) -> bool {
         let slow = self.slowness.slowest();
         let slow = slow.filter(|_| self.status.armed.is_some() && !self.leaves_line);
-        slow.is_some_and(|slow| self.pose_seen_before(now, slow / 2))
-    }
-
-    /// Whether nothing was heard of the pose for so long.
-    fn pose_seen_before(&self, now: Moment, age: Duration) -> bool {
-        let angle = self.sample.angle;
-        angle.is_none_or(|angle| now.since(angle.received) >= age)
+        let is_due = |angle: Timed<_>, slow: Duration| now.since(angle.received) >= slow / 2;
+        slow.is_some_and(|slow| self.sample.angle.is_none_or(|angle| is_due(angle, slow)))
     }
 
     /// An armed hand whose pose is not known any more is not armed.

@@ -33,7 +33,7 @@ texts! {
     UNREACHED: "{} did not reach {} in time.", "{}未按时到达 {}。";
     LIMITS_REFUSED: "{} does not show the speed and force threshold that were set.", "{}没有显示已设置的速度与力阈值。";
     NOT_READ: "The hand cannot be watched: its {} was not read yet.", "无法监视灵巧手：{}读数尚未获取。";
-    GREW_OLD: "The hand cannot be watched: its last {} is {} s old, and no newer one comes.", "无法监视灵巧手：最近的{}读数已是 {} 秒前，此后没有新读数。";
+    GREW_OLD: "The hand cannot be watched: its last {} is {} s old, and it sends no newer one in time.", "无法监视灵巧手：最近的{}读数已是 {} 秒前，未能及时收到新读数。";
     STALLED: "The hand could not be watched: this computer was busy, and the program did not run for {} s; the last {} is {} s old.", "无法监视灵巧手：本机繁忙，程序停滞 {} 秒；最近的{}读数已是 {} 秒前。";
     BLIND: "{} cannot be watched: its {} makes no sense.", "无法监视{}：{}读数不合理。";
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
