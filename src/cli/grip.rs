@@ -194,7 +194,8 @@ const fn end_name(end: GripEnd) -> &'static str {
 
 /// The result: `{"grip": {…}}`. What is not known is null.
 fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
-    let size = report.gap.map(|gap| match blocks.size(gap) {
+    let held = report.gap.filter(|_| report.end == GripEnd::Held);
+    let size = held.map(|gap| match blocks.size(gap) {
         HeldSize::Block(mm) => (Some(mm), "blocks", Some("block")),
         HeldSize::Ball(mm) => (Some(mm), "model", Some("ball")),
         HeldSize::Pads(_) => (None, "model", None),

@@ -73,6 +73,13 @@ impl LinkStatus {
         self.holder.is_some() || is_left
     }
 
+    /// Whether it may go on though its right to be moved is over, and nothing showed rest: it owes a stop, unless another controller
+    /// moves it.
+    pub fn owes_stop(&self) -> bool {
+        let is_left = self.may_move && self.holder.is_none();
+        is_left && self.disarmed != Some(Disarmed::OtherController)
+    }
+
     /// True if what the hand tells counts: it answers, and what it tells follows what it was told.
     pub fn is_believed(&self) -> bool {
         self.state.is_live() && !self.feedback_in_doubt

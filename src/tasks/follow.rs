@@ -248,14 +248,9 @@ impl<H: TaskHand> FollowRun<'_, H> {
         let _done = self.hand.give_back(self.start.lease, why);
     }
 
-    /// What ended the lease has disarmed the hand, which goes on to its last target. It is stopped, unless that was done or somebody
-    /// else moves it. Where nothing reaches it, the stop waits for it.
+    /// Over a lost link the hand goes on to its last target: a stop waits for it.
     fn lease_ended(&self, refused: LeaseRefusal) {
-        let is_over = match refused {
-            LeaseRefusal::Taken(_) => true,
-            LeaseRefusal::Ended(why) => why.is_asked_for() || why == Disarmed::OtherController,
-        };
-        if !is_over {
+        if refused == LeaseRefusal::Ended(Disarmed::LinkLost) {
             self.hand.stop();
         }
     }

@@ -283,9 +283,11 @@ impl Work<'_> {
                 (Form::Rosbag, Destination::Path(path)) => rosbag::write(source, path),
                 _ => cut::write(source, to),
             };
-            if let Some(exported) = self.watched(number, export) {
-                recordings.push(exported?);
-            }
+            recordings.extend(match self.watched(number, export) {
+                // Others may have what this one lacks.
+                Some(Err(ExportError::Empty)) if places.len() > 1 => Some(Exported::default()),
+                exported => exported.transpose()?,
+            });
         }
         Ok(Done {
             recordings,
@@ -318,7 +320,7 @@ impl Work<'_> {
             );
         }
         let done = self.one_by_one(&places)?;
-        folder.finish()?;
+        folder.finish(done.recordings.iter().map(|one| one.rows).sum())?;
         Ok(done)
     }
 
@@ -390,11 +392,6 @@ impl Done {
             say(&format!("{} {}", all.rows, form.rows()));
         } else {
             out.result(args.json, &object, [line])?;
-        }
-        if all.rows == 0 {
-            bail!(
-                "nothing was exported: there is nothing to export in this stretch; 'handscope info' shows what a recording holds"
-            );
         }
         if all.readings == Some(0) {
             bail!(
@@ -496,7 +493,9 @@ pub(crate) fn told(error: ExportError) -> anyhow::Error {
         ExportError::Unreadable { .. } | ExportError::Interrupted => {
             anyhow!("{error}; nothing was written")
         }
-        ExportError::Empty => anyhow!("{error}; choose another with --from and --to"),
+        ExportError::Empty => anyhow!(
+            "{error}, so nothing was written; 'handscope info' shows what a recording holds, --from and --to choose of it"
+        ),
         ExportError::NoNotes => anyhow!("{error}; leave out --episode notes"),
         ExportError::BothSides => anyhow!("{error}; make a set of each"),
         ExportError::ReaderGone => ReaderGone.into(),

@@ -6,11 +6,13 @@ use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::Stretch;
+use crate::record::{Entry, Record};
 use crate::shell::headless::driver::{Driver, Scene};
 use crate::shell::headless::png;
 use crate::transport::Endpoint;
 use crate::ui::View;
 use anyhow::bail;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// The window as it first opens.
@@ -29,6 +31,24 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
     if out.symlink_metadata().is_ok() {
         let path = out.to_owned();
         return Err(ExportError::Exists { path }.into());
+    }
+    let mut is_read = false;
+    let _damage = file.entries(
+        Stretch {
+            from,
+            to,
+            ..stretch
+        },
+        |entry| {
+            is_read = matches!(entry, Entry::Heard(Record::Reading { .. }));
+            match is_read {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        },
+    )?;
+    if !is_read {
+        return Err(ExportError::Empty.into());
     }
     let scene = Scene {
         // Behind a replay nothing else is to be connected.

@@ -166,7 +166,8 @@ impl Session {
 
     fn watch_faults(&mut self) {
         match (self.sample.has_fault(), self.status.state) {
-            (true, LinkState::Armed | LinkState::Monitoring) => {
+            (true, LinkState::Armed) => self.begin_hold(Disarmed::Fault),
+            (true, LinkState::Monitoring) => {
                 self.disarm(Disarmed::Fault);
                 self.go(LinkState::Fault);
             }

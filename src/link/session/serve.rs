@@ -384,11 +384,11 @@ impl Session {
         slow.is_some_and(|slow| self.sample.angle.is_none_or(|angle| is_due(angle, slow)))
     }
 
-    /// An armed hand whose pose is not known any more is not armed.
+    /// An armed hand whose pose is not known any more is stopped.
     fn watch_age(&mut self) {
         let now = self.now();
         if self.status.armed.is_some() && !self.sample.angles_fresh(now, self.angle_lost()) {
-            self.disarm(Disarmed::Stale);
+            self.begin_hold(Disarmed::Stale);
         }
         if self.status.armed.is_some() && self.ends.wanted.borrow().is_let_go(now) {
             self.begin_hold(Disarmed::Released);
@@ -439,7 +439,9 @@ impl Session {
         }
     }
 
-    fn begin_hold(&mut self, why: Disarmed) {
+    /// Disarms and stops the hand. So ends every arming over a live link, but one that another controller or a person ends without a
+    /// stop.
+    pub(crate) fn begin_hold(&mut self, why: Disarmed) {
         let now = self.now();
         self.disarm(why);
         if let Some(job) = self.job.take_if(|job| job.is_motion()) {

@@ -51,7 +51,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     lines.end().map_err(broken)?;
     let rows = lines.rows;
     output.sync(to)?;
-    output.finish()?;
+    output.finish(rows)?;
     Ok(Exported {
         rows,
         readings: None,

@@ -38,7 +38,7 @@ fn put(
     let output = Unfinished::new(to)?;
     let copied = copy(source, output.file()?, said).map_err(|error| error.of(&output))?;
     output.sync(copied.to)?;
-    output.finish()?;
+    output.finish(copied.exported.rows)?;
     Ok(copied.exported)
 }
 

@@ -126,7 +126,7 @@ pub fn write(
         read_back: ended.episodes.iter().map(|episode| episode.read_back).sum(),
     };
     output.sync(ended.data)?;
-    output.finish()?;
+    output.finish(ended.index)?;
     Ok(made)
 }
 

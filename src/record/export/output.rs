@@ -23,7 +23,7 @@ pub enum ExportError {
     #[error("cannot read the recording to its end: {error}")]
     Unreadable { error: SystemError },
     /// There is nothing of this kind in the stretch.
-    #[error("there is no reading of the joints in this stretch")]
+    #[error("there is nothing to export in this stretch")]
     Empty,
     /// Episodes begin at notes, and there is none.
     #[error("there is no note of a person in this stretch, at which an episode could begin")]
@@ -176,8 +176,11 @@ impl Unfinished {
         synced.map_err(|error| self.error(&error))
     }
 
-    /// Takes the place.
-    pub(crate) fn finish(self) -> Result<(), ExportError> {
+    /// Takes the place, unless it has no rows.
+    pub(crate) fn finish(self, rows: u64) -> Result<(), ExportError> {
+        if rows == 0 {
+            return Err(ExportError::Empty);
+        }
         let Destination::Path(path) = &self.wanted else {
             return Ok(());
         };
@@ -226,7 +229,7 @@ impl Folder {
     ///
     /// # Errors
     /// [`ExportError`]; then there is no folder.
-    pub fn finish(self) -> Result<(), ExportError> {
-        self.0.finish()
+    pub fn finish(self, rows: u64) -> Result<(), ExportError> {
+        self.0.finish(rows)
     }
 }

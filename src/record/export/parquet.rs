@@ -49,7 +49,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     let damage = damage.map_err(|error| error.of(&output))?;
     let (rows, to) = table.end().map_err(error)?;
     output.sync(to)?;
-    output.finish()?;
+    output.finish(rows)?;
     Ok(Exported {
         rows,
         readings: None,

@@ -32,11 +32,9 @@ pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
     } = copied.map_err(|error| error.of(&output))?;
     output.sync(to)?;
     fs::write(folder.join("metadata.yaml"), metadata(&counted, &name)).map_err(error)?;
-    output.finish()?;
-    Ok(Exported {
-        rows: counted.all(),
-        ..exported
-    })
+    let rows = counted.all();
+    output.finish(rows)?;
+    Ok(Exported { rows, ..exported })
 }
 
 /// What rosbag2 wants to know of the file of this name.

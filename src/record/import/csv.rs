@@ -147,7 +147,7 @@ pub fn import(
     }
     let copied = copy.end().map_err(written)?;
     output.sync(copied.to)?;
-    output.finish()?;
+    output.finish(copied.exported.rows)?;
     Ok(values.imported)
 }
 

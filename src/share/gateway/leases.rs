@@ -116,8 +116,7 @@ impl ClientLeases {
         }
     }
 
-    /// Ends a lease for this reason, unless it ended before for another. The hand is stopped, but not one that another moves
-    /// now, nor one that was stopped already.
+    /// Ends a lease for this reason, which stops the hand, unless it ended before for another.
     fn end(&self, holder: Holder, why: Disarmed) {
         let end = self.end_lease(holder, why);
         self.board
@@ -129,13 +128,6 @@ impl ClientLeases {
             Ok(()) => LeaseRefusal::Ended(why),
             Err(end) => end,
         };
-        // A link that was lost writes nothing by itself once it is back.
-        let is_over = [why, Disarmed::Stop, Disarmed::LinkLost, Disarmed::Resume]
-            .map(LeaseRefusal::Ended)
-            .contains(&end);
-        if !is_over && matches!(end, LeaseRefusal::Ended(_)) {
-            self.link.stop();
-        }
         self.mark(holder.client, ClientLease::Ended(end));
         end
     }

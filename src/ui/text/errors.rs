@@ -158,7 +158,7 @@ chinese! {
         ExportError::Exists { path } => "{} 已存在，不会覆盖。", path.display();
         ExportError::Unwritable { path, error } => "无法写入 {}：{}。", path.display(), system_error_zh(error);
         ExportError::Unreadable { error } => "无法读完此录制：{}。", system_error_zh(error);
-        ExportError::Empty => "这一段中没有自由度的读数。";
+        ExportError::Empty => "这一段中没有可导出的内容。";
         ExportError::NoNotes => "这一段中没有可作为片段起点的备注。";
         ExportError::BothSides => "左手与右手的自由度名称不同，不能放入同一数据集。";
         ExportError::Interrupted => "已中断。";

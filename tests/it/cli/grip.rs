@@ -56,6 +56,10 @@ fn it_closes_to_the_gap_opens_again_and_says_that_nothing_is_held() {
         assert_eq!(told["end"], "reached", "{told}");
         let off = told["gap_mm"].as_f64().unwrap() - gap.parse::<f64>().unwrap();
         assert!(off.abs() < 4.0, "{told}");
+        assert!(
+            told["size_mm"].is_null() && told["size_by"].is_null(),
+            "{told}"
+        );
         let now = angles(&hand);
         assert!((now[3] - index).abs() <= 20 && (now[4] - bend).abs() <= 20);
         assert!(now[5] <= 20 && now[0] >= 980, "{now:?}");
@@ -104,18 +108,22 @@ fn ctrl_c_holds_the_hand() {
 
 #[test]
 fn blocks_that_were_measured_in_the_window_make_its_sizes_true() {
-    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
     let folder = tempfile::tempdir().unwrap();
+    let body = folder.path().join("near.toml");
+    let near =
+        "[joint.index]\ncontact_offset = -150.0\n[joint.thumb_bend]\ncontact_offset = -200.0\n";
+    std::fs::write(&body, near).unwrap();
+    let (_sim, hand) = sim_on_tcp(&["--body", body.to_str().unwrap()]);
     let home = folder.path().join("handscope");
     std::fs::create_dir(&home).unwrap();
     let known: Endpoint = hand.parse().unwrap();
     let settings = format!(
-        "[hands.\"{known}\"]\nsize_blocks = [{{ size_mm = 10.0, gap_mm = 24.0 }}, {{ size_mm = 50.0, gap_mm = 64.0 }}]\n"
+        "[hands.\"{known}\"]\nsize_blocks = [{{ size_mm = 10.0, gap_mm = 4.0 }}, {{ size_mm = 50.0, gap_mm = 44.0 }}]\n"
     );
     std::fs::write(home.join("settings.toml"), settings).unwrap();
     let grip = |folder: &std::path::Path| {
         let line = [
-            "grip", "--hand", &hand, "--gap", "60", "--speed", "900", "--arm",
+            "grip", "--hand", &hand, "--gap", "5", "--speed", "400", "--arm",
         ];
         let mut command = handscope();
         command.args([&line[..], &["--json"]].concat());
@@ -124,17 +132,21 @@ fn blocks_that_were_measured_in_the_window_make_its_sizes_true() {
         ended.lines().pop().unwrap()["grip"].take()
     };
     let told = grip(folder.path());
+    assert_eq!(told["end"], "held", "{told}");
     let (gap, size) = (told["gap_mm"].as_f64(), told["size_mm"].as_f64());
-    assert!((gap.unwrap() - 14.0 - size.unwrap()).abs() < 0.1, "{told}");
+    assert!((gap.unwrap() + 6.0 - size.unwrap()).abs() < 0.1, "{told}");
     assert_eq!(
         (&told["size_by"], &told["size_of"]),
         (&"blocks".into(), &"block".into())
     );
+    // Below what a ball could have between the pads.
     let told = grip(&folder.path().join("empty"));
     assert_eq!(
-        (&told["size_by"], &told["size_of"]),
-        (&"model".into(), &"ball".into())
+        (&told["end"], &told["size_by"]),
+        (&"held".into(), &"model".into())
     );
-    let more = told["size_mm"].as_f64().unwrap() - told["gap_mm"].as_f64().unwrap();
-    assert!((0.5..3.0).contains(&more), "the pads are tilted: {told}");
+    assert!(
+        told["size_mm"].is_null() && told["size_of"].is_null(),
+        "{told}"
+    );
 }

@@ -90,6 +90,19 @@ fn an_export_of_nothing_is_no_success() {
             "{}",
             ended.err
         );
+        assert!(!to.exists(), "{name} is left behind");
+        let all = folder.path().join("all");
+        let two = [
+            "export",
+            text(&file),
+            text(&file),
+            form,
+            "--out",
+            text(&all),
+        ];
+        let ended = run(&[&two[..], &stretch[..]].concat());
+        assert_eq!(ended.code, Some(1), "{}{}", ended.out, ended.err);
+        assert!(!all.exists(), "{}", ended.err);
     }
 }
 

@@ -424,7 +424,11 @@ fn a_data_set_for_learners_says_how_it_was_made() {
     assert_eq!(state["count"][0], frames);
     assert!(state["q99"][3].as_f64().unwrap() <= 1.0, "{state}");
     let short = recorded.export(&["--lerobot", "--from", "0", "--to", "0"], "none");
-    refused(&short, 1, &["no reading of the joints", "--from"]);
+    refused(
+        &short,
+        1,
+        &["there is nothing to export in this stretch", "--from"],
+    );
     refused(
         &recorded.export(&["--lerobot", "--fps", "0"], "none"),
         2,

@@ -4,6 +4,7 @@ mod back;
 mod can;
 #[cfg(target_os = "linux")]
 mod can_vm;
+mod ends;
 mod faults;
 mod frozen;
 mod gateway;

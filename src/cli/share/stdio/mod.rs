@@ -17,7 +17,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Lease, LinkHandle, LinkStatus, Owner, Records};
+use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
 use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
@@ -106,8 +106,6 @@ struct Script<'a> {
     /// Records that were missed, as far as that was told.
     missed: u64,
     right: Option<Right>,
-    /// Its right ended with something that stops no hand: a link that was lost, the sleep of the computer, old feedback, a fault.
-    owes_stop: bool,
     task: Option<Task>,
     recording: Option<SideRecording>,
     /// The recording that is being ended, and whom that is told to.
@@ -132,7 +130,6 @@ pub(crate) async fn serve<'a>(
         grip: session::grip_estimator(hand.endpoint),
         missed: 0,
         right: None,
-        owes_stop: false,
         task: None,
         recording: None,
         ending: None,
@@ -187,7 +184,7 @@ impl Script<'_> {
         self.task = None;
         // Nobody reads any more what it tells.
         let _told = self.look();
-        if self.owes_stop {
+        if link.status().owes_stop() {
             let back = async {
                 while !link.status().state.is_live() {
                     sleep(LOOK_EACH).await;
@@ -196,7 +193,7 @@ impl Script<'_> {
             let _back = timeout(BACK_WITHIN, back).await;
         }
         let status = link.status();
-        let is_lost = self.owes_stop && !status.state.is_live();
+        let is_lost = status.owes_stop() && !status.state.is_live();
         let may_move = is_lost || self.is_to_stop() || status.state == LinkState::Holding;
         let done = if may_move {
             session::stopped(link).await
@@ -216,15 +213,15 @@ impl Script<'_> {
     /// Whether the hand may go on to where the program sent it, also after a link that was lost and is back; unless another moves it.
     fn is_to_stop(&self) -> bool {
         let status = self.hand.link.status();
-        let goes_on = self.owes_stop && status.may_move && status.state.is_live();
-        goes_on && status.holder.is_none() || self.holds().is_some()
+        status.owes_stop() && status.state.is_live() || self.holds().is_some()
     }
 
     /// Whether the hand is known to have nothing left to do for the program.
     fn is_at_rest(&self) -> bool {
         let is_motion = |task: &Task| matches!(task.kind, TaskKind::Follows(_) | TaskKind::Moves);
-        let goes_on = self.owes_stop || self.task.as_ref().is_some_and(is_motion);
-        !goes_on && self.hand.link.status().rest == Rest::Resting
+        let status = self.hand.link.status();
+        let goes_on = status.owes_stop() || self.task.as_ref().is_some_and(is_motion);
+        !goes_on && status.rest == Rest::Resting
     }
 
     /// The right to move the hand, if it still holds.
@@ -281,14 +278,8 @@ impl Script<'_> {
     /// The right to move the hand is over, which was not asked for.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
         self.right = None;
-        self.owes_stop = matches!(
-            why.kind,
-            RefusalKind::Ended(
-                Disarmed::LinkLost | Disarmed::Resume | Disarmed::Stale | Disarmed::Fault
-            )
-        );
-        if self.owes_stop {
-            // The hand goes on to where it was sent. Where its link is lost, the stop waits for it.
+        if why.kind == LINK_LOST {
+            // The hand goes on to where it was sent: a stop waits for it.
             drop(self.hand.link.stop());
         }
         self.told
@@ -331,15 +322,17 @@ impl Script<'_> {
             Ok(Ask::Stop) => return self.stop(id),
             Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
             Ok(Ask::Disarm) if self.is_to_stop() && !self.is_at_rest() => return self.stop(id),
-            Ok(Ask::Release | Ask::Disarm) if self.owes_stop && !self.is_live => {
+            Ok(Ask::Release | Ask::Disarm)
+                if self.hand.link.status().owes_stop() && !self.is_live =>
+            {
                 Err(Refused::new(LINK_LOST, STOP_LOST))
             }
             Ok(Ask::Release | Ask::Disarm) => {
-                self.end_task()?;
+                self.end_task(Refused::replaced())?;
                 if self.holds().is_some() {
                     self.hand.link.disarm();
                 }
-                (self.right, self.owes_stop) = (None, false);
+                self.right = None;
                 Ok(())
             }
             Ok(Ask::Arm(limits)) => return self.arm(id, limits),
@@ -378,7 +371,7 @@ impl Script<'_> {
     }
 
     /// Ends what goes on; the hand is told nothing by that.
-    fn end_task(&mut self) -> Result<(), NobodyReads> {
+    fn end_task(&mut self, why: Refused) -> Result<(), NobodyReads> {
         let Some(task) = self.task.take() else {
             return Ok(());
         };
@@ -390,18 +383,12 @@ impl Script<'_> {
         if matches!(task.kind, TaskKind::Arms) && is_own && self.holds().is_none() {
             self.hand.link.disarm();
         }
-        self.reply(
-            &task.id,
-            Err(Refused::new(
-                RefusalKind::Replaced,
-                "something else was asked for",
-            )),
-        )
+        self.reply(&task.id, Err(why))
     }
 
     /// Begins a task in place of what goes on.
     fn begin(&mut self, task: Task) -> Result<(), NobodyReads> {
-        self.end_task()?;
+        self.end_task(Refused::replaced())?;
         self.task = Some(task);
         Ok(())
     }
@@ -409,10 +396,10 @@ impl Script<'_> {
     /// Stops the hand, whoever moves it, and waits for what feedback says of it.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
         self.hand.link.stop();
-        // Until it is confirmed.
-        (self.right, self.owes_stop) = (None, true);
+        self.right = None;
         let link = self.hand.link.clone();
         let stopping = async move { Done::Stopped(session::stopped(&link).await) };
+        self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into())?;
         self.begin(Task::of(id, stopping))
     }
 
@@ -460,7 +447,7 @@ impl Script<'_> {
     fn follow(&mut self, id: Value, right: Right, line: StreamLine) -> Result<(), NobodyReads> {
         if line.held == Some(false) && self.followed_by().is_none() {
             // Nothing is followed; what moves the hand is ended all the same.
-            self.end_task()?;
+            self.end_task(Refused::replaced())?;
             let done = self.hand.link.halt(right.lease);
             return self.reply(&id, done.map(|()| json!({})).map_err(Refused::from));
         }
@@ -566,7 +553,7 @@ impl Script<'_> {
         };
         match done {
             Done::Armed(Ok(right)) => {
-                (self.right, self.owes_stop) = (Some(right), false);
+                self.right = Some(right);
                 self.reply(&id, Ok(json!({})))
             }
             // What it had before may hold, or have ended meanwhile.
@@ -583,7 +570,6 @@ impl Script<'_> {
             }
             Done::Followed(followed) => self.followed(followed),
             Done::Stopped(stopped) => {
-                self.owes_stop = stopped.is_err();
                 let done =
                     stopped.map_err(|not| Refused::new(RefusalKind::NotConfirmed, not.to_string()));
                 self.reply(&id, done.map(|()| json!({})))

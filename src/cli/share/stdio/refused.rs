@@ -33,6 +33,11 @@ impl Refused {
         let why = why.into();
         Self { kind, why }
     }
+
+    /// Of what went on when something else was asked for.
+    pub(crate) fn replaced() -> Self {
+        Self::new(RefusalKind::Replaced, "something else was asked for")
+    }
 }
 
 impl From<LeaseRefusal> for Refused {

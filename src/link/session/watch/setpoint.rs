@@ -263,7 +263,9 @@ impl SetpointWatch {
         let is_this = |(_, value): &&(u64, Wrote)| self.may_be(*value, read, angle);
         if let Some((number, value)) = open.iter().find(is_this).copied() {
             self.clamps_leave &= !(value == Wrote::Leave && read == LEAVE);
-            self.settle(dof, read, number);
+            // A value near ours may be one from before it, which acts yet.
+            let is_rounded = matches!(value, Wrote::Value(value) if value != read);
+            self.settle(dof, read, number + u64::from(!is_rounded));
             if let Wrote::Value(value) = value {
                 let joint = &mut self.joints[dof];
                 let (least, most) = joint.taken.unwrap_or((value, value));
@@ -283,7 +285,7 @@ impl SetpointWatch {
         let is_limit = |(_, wrote): &&(u64, Wrote)| is_limit(joint, *wrote, read);
         match open.iter().find(is_limit).copied() {
             Some((number, _)) => {
-                self.settle(dof, read, number);
+                self.settle(dof, read, number + 1);
                 Verdict::NotTaken
             }
             None if open.is_empty() => Verdict::Changed,
@@ -301,12 +303,12 @@ impl SetpointWatch {
         all.filter(|(_, value)| *value != Wrote::Nothing).collect()
     }
 
-    /// The write of this number acted.
-    fn settle(&mut self, dof: Dof, read: i16, number: u64) {
+    /// Writes before this number acted, or cannot any more.
+    fn settle(&mut self, dof: Dof, read: i16, open_from: u64) {
         let joint = &mut self.joints[dof];
         joint.held = Some(read);
-        joint.open_from = number + 1;
-        joint.due = joint.due.filter(|(due, _)| *due > number);
+        joint.open_from = open_from;
+        joint.due = joint.due.filter(|(due, _)| *due >= open_from);
         joint.stale = None;
     }
 
@@ -443,6 +445,21 @@ mod tests {
                 }
             };
             assert_eq!(streamed(takes, tells, 20), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn a_value_from_before_a_write_that_is_near_to_it_is_not_taken_for_it() {
+        for (held, told) in [(800, 810), (810, 800), (800, 800)] {
+            let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
+            watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
+            for (value, t) in [(held, 101), (told, 150), (told, 200), (told, 5000)] {
+                let seen = watch.read(&PerDof::splat(value), None, ms(t));
+                assert_eq!(seen, Seen::Usual, "{held}, {told}: {value} at {t}");
+            }
+            watch.read(&PerDof::splat(held + 100), None, ms(5050));
+            let foreign = watch.read(&PerDof::splat(held + 100), None, ms(5100));
+            assert!(matches!(foreign, Seen::Foreign(_)), "{held}, {told}");
         }
     }
 
