@@ -8,6 +8,9 @@ use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 use std::time::Duration;
 
+/// A reading of a quick hand is younger.
+const FRESH_FOR: Duration = Duration::from_millis(250);
+
 /// Everything the window shows of the link.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
@@ -71,6 +74,16 @@ impl LinkStatus {
     pub fn goes_on(&self) -> bool {
         let is_left = self.may_move && self.state != LinkState::Holding;
         self.holder.is_some() || is_left
+    }
+
+    /// How much later than from a quick hand a reading may come: a slow way brings one three delays after the one before was asked for.
+    pub fn late(&self) -> Duration {
+        Duration::from_millis(self.slow_ms.unwrap_or(0).into()) * 3
+    }
+
+    /// How old a reading may be by which it is judged where a motion stands.
+    pub fn fresh_for(&self) -> Duration {
+        FRESH_FOR + self.late()
     }
 
     /// Whether it may go on though its right to be moved is over, and nothing showed rest: it owes a stop, unless another controller

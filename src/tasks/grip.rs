@@ -21,8 +21,6 @@ use tokio::time::timeout;
 
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(5);
-/// Angles older than this are not gone by.
-const FRESH_FOR: Duration = Duration::from_millis(250);
 /// A part of the way is not judged before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
 /// Setpoints that are read back sooner after they were written may be those of before.
@@ -178,7 +176,8 @@ impl<H: TaskHand> GripRun<'_, H> {
     fn angles(&self) -> Option<PerDof<i16>> {
         let now = self.start.clock.now();
         let angle = self.sample.angle;
-        let angle = angle.filter(|angle| angle.age(now) <= FRESH_FOR)?;
+        let fresh_for = self.hand.status().fresh_for();
+        let angle = angle.filter(|angle| angle.age(now) <= fresh_for)?;
         angle.value.map(AngleReading::documented).all()
     }
 
@@ -215,7 +214,8 @@ impl<H: TaskHand> GripRun<'_, H> {
             }
             return (since > limit(&leg)).then_some(GripEnd::Late);
         }
-        let rests = since >= BEGINS_WITHIN && self.hand.status().rest == Rest::Resting;
+        let status = self.hand.status();
+        let rests = since >= BEGINS_WITHIN + status.late() && status.rest == Rest::Resting;
         if rests && !self.setpoints.others.is_doubted() {
             return Some(self.at_rest(leg, arrived));
         }

@@ -15,8 +15,6 @@ use tokio::time::timeout;
 
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(5);
-/// Angles older than this are not gone by.
-const FRESH_FOR: Duration = Duration::from_millis(250);
 /// A part of the way is not judged at rest before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
 /// A part of the way may take so much longer than its speed says.
@@ -122,7 +120,7 @@ impl<H: TaskHand> Moving<'_, H> {
         let now = self.start.clock.now();
         let since = now.since(self.sent);
         let angle = self.sample.angle;
-        let Some(angle) = angle.filter(|angle| angle.age(now) <= FRESH_FOR) else {
+        let Some(angle) = angle.filter(|angle| angle.age(now) <= status.fresh_for()) else {
             return (since > SPARE).then_some(MoveEnd::Late);
         };
         let angles = angle.value.map(|at| at.hold().map(Angle::get));
@@ -144,7 +142,7 @@ impl<H: TaskHand> Moving<'_, H> {
         if arrived && is_known && !self.start.settles {
             return Some(MoveEnd::Reached);
         }
-        if since >= BEGINS_WITHIN && status.rest == Rest::Resting {
+        if since >= BEGINS_WITHIN + status.late() && status.rest == Rest::Resting {
             return Some(if arrived {
                 MoveEnd::Reached
             } else {

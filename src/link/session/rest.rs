@@ -58,12 +58,14 @@ impl RestWatch {
 
     /// Whether the hand rests. A status code that the manual does not list says nothing: 255 was seen on joints that rest
     /// since power-up. Then angles that stood still for as long as motion counts have to do.
-    pub(crate) fn rest(&self, sample: &HandSample, now: Moment) -> Rest {
+    /// Readings may be older by `late` than on a quick way.
+    pub(crate) fn rest(&self, sample: &HandSample, now: Moment, late: Duration) -> Rest {
         if self.moves(now) {
             return Rest::Moving;
         }
-        let (Some(status), Some(angle)) = (fresh(sample.status, now), fresh(sample.angle, now))
-        else {
+        let within = FRESH_FOR + late;
+        let status = fresh(sample.status, now, within);
+        let (Some(status), Some(angle)) = (status, fresh(sample.angle, now, within)) else {
             return Rest::Unknown;
         };
         let says_so = status.iter().all(|(_, status)| status.is_stopped());
@@ -79,9 +81,9 @@ impl RestWatch {
     }
 }
 
-fn fresh<T>(group: Option<Timed<T>>, now: Moment) -> Option<T> {
+fn fresh<T>(group: Option<Timed<T>>, now: Moment, within: Duration) -> Option<T> {
     group
-        .filter(|group| group.age(now) <= FRESH_FOR)
+        .filter(|group| group.age(now) <= within)
         .map(|group| group.value)
 }
 
@@ -127,17 +129,23 @@ mod tests {
     #[test]
     fn what_was_never_read_or_is_old_is_unknown() {
         let watch = RestWatch::default();
-        assert_eq!(watch.rest(&HandSample::default(), ms(0)), Rest::Unknown);
+        assert_eq!(
+            watch.rest(&HandSample::default(), ms(0), Duration::ZERO),
+            Rest::Unknown
+        );
         let mut watch = RestWatch::default();
         let seen = sample(2, 500, ms(0));
         watch.take(&seen, all(), ms(0));
-        assert_eq!(watch.rest(&seen, ms(500)), Rest::Resting);
-        assert_eq!(watch.rest(&seen, ms(501)), Rest::Unknown);
+        assert_eq!(watch.rest(&seen, ms(500), Duration::ZERO), Rest::Resting);
+        assert_eq!(watch.rest(&seen, ms(501), Duration::ZERO), Rest::Unknown);
         let without_status = HandSample {
             status: None,
             ..seen
         };
-        assert_eq!(watch.rest(&without_status, ms(10)), Rest::Unknown);
+        assert_eq!(
+            watch.rest(&without_status, ms(10), Duration::ZERO),
+            Rest::Unknown
+        );
     }
 
     #[test]
@@ -149,10 +157,10 @@ mod tests {
         told.commanded(ms(0));
         let now = sample(2, 503, ms(999));
         for mut watch in [said, seen, told] {
-            assert_eq!(watch.rest(&now, ms(999)), Rest::Moving);
+            assert_eq!(watch.rest(&now, ms(999), Duration::ZERO), Rest::Moving);
             watch.take(&sample(2, 503, ms(1000)), all(), ms(1000));
         }
-        assert_eq!(seen.rest(&now, ms(1001)), Rest::Resting);
+        assert_eq!(seen.rest(&now, ms(1001), Duration::ZERO), Rest::Resting);
     }
 
     #[test]
@@ -160,15 +168,15 @@ mod tests {
         let mut watch = RestWatch::default();
         watch.take(&sample(255, 500, ms(0)), all(), ms(0));
         assert_eq!(
-            watch.rest(&sample(255, 500, ms(990)), ms(999)),
+            watch.rest(&sample(255, 500, ms(990)), ms(999), Duration::ZERO),
             Rest::Unknown
         );
         assert_eq!(
-            watch.rest(&sample(255, 500, ms(990)), ms(1000)),
+            watch.rest(&sample(255, 500, ms(990)), ms(1000), Duration::ZERO),
             Rest::Resting
         );
         assert_eq!(
-            watch.rest(&sample(255, 30_000, ms(990)), ms(1000)),
+            watch.rest(&sample(255, 30_000, ms(990)), ms(1000), Duration::ZERO),
             Rest::Unknown
         );
     }

@@ -142,7 +142,7 @@ impl Session {
         let rest = if self.feedback.is_doubted() || self.feedback.is_frozen() {
             Rest::Unknown
         } else {
-            self.moving.rest(&self.sample, self.now())
+            self.rest_now(self.now())
         };
         if (self.status.line_left, self.status.rest) != (self.leaves_line, rest) {
             self.status.line_left = self.leaves_line;
@@ -156,6 +156,11 @@ impl Session {
                 self.publish();
             }
         }
+    }
+
+    /// Whether the hand rests, by what is read of it.
+    pub(crate) fn rest_now(&self, now: Moment) -> Rest {
+        self.moving.rest(&self.sample, now, self.status.late())
     }
 
     /// Feedback shows that the hand rests. True if that is news.

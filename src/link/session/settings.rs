@@ -137,7 +137,7 @@ impl Session {
         loop {
             self.give_way(bus).await?;
             let now = self.now();
-            let why = match (self.status.state, self.moving.rest(&self.sample, now)) {
+            let why = match (self.status.state, self.rest_now(now)) {
                 (LinkState::Armed, _) => NotSent::Armed,
                 (LinkState::Holding, _) => NotSent::Holding,
                 (_, Rest::Resting) => return Ok(None),

@@ -3,9 +3,17 @@
 use crate::setup::gateway::Gateway;
 use crate::setup::hand;
 use crate::setup::link;
-use handscope::hand::{Angle, Dof, Force, ModbusException, Setpoints, Speed, Target};
+use handscope::hand::gap::Gap;
+use handscope::hand::grip::GripEstimator;
+use handscope::hand::{
+    Angle, Dof, Force, HandSample, ModbusException, PerDof, Setpoints, Speed, Target,
+};
 use handscope::link::{LinkStatus, LinkTrouble, TouchVariant};
 use handscope::record::{Hold, LinkState};
+use handscope::sim::{Scenario, SimConfig};
+use handscope::tasks::grip::{GripEnd, GripStart, grip};
+use handscope::tasks::move_to::{MoveEnd, MoveStart, move_to};
+use std::future::pending;
 use std::sync::Arc;
 use tokio::time::{Duration, Instant, sleep};
 
@@ -196,6 +204,54 @@ async fn a_hand_stays_armed_and_moves_on_a_slow_way() {
             angles.map(|write| i16::from_le_bytes([write.bytes[6], write.bytes[7]]))
         });
         assert_eq!(told, Some(400), "{ms} ms");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
+    for ms in [0, 60, 100, 150, 200] {
+        let gateway = Gateway::to(hand::shared(SimConfig {
+            scenario: Scenario::Free,
+            ..SimConfig::default()
+        }));
+        gateway.delays(Duration::from_millis(ms));
+        let config = link::config(PLACE, gateway.dial());
+        let clock = config.clock;
+        let mut link = link::open(config);
+        link::live(&mut link).await;
+        states(&mut link, Duration::from_secs(4)).await;
+        let armed = |status: &LinkStatus| status.armed.is_some();
+        link.arm(link::gentle());
+        let epoch = link::until(&mut link, Duration::from_secs(4), armed).await;
+        for angle in [300, 800] {
+            let start = MoveStart {
+                targets: PerDof::from_fn(|dof| {
+                    (dof == Dof::Index).then_some(Angle::nearest(angle))
+                }),
+                speed: Speed::nearest(500),
+                force: Force::GENTLE,
+                settles: true,
+                epoch: epoch.armed.unwrap(),
+                lease: link.lease(),
+                seen: HandSample::default(),
+                grip: GripEstimator::default(),
+                clock,
+            };
+            let moved = move_to(&*link, start).await;
+            assert_eq!(moved.end, MoveEnd::Reached, "{angle} at {ms} ms");
+        }
+        let start = GripStart {
+            gap: Gap::new(30.0).unwrap(),
+            speed: Speed::nearest(500),
+            force: Force::GENTLE,
+            epoch: epoch.armed.unwrap(),
+            lease: link.lease(),
+            seen: HandSample::default(),
+            grip: GripEstimator::default(),
+            clock,
+        };
+        let gripped = grip(&*link, start, pending()).await;
+        assert_eq!(gripped.end, GripEnd::Reached, "{ms} ms");
     }
 }
 

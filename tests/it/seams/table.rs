@@ -258,7 +258,7 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::Disobeys => Tried(Insists, "Hold"),
         Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
-        Column::FaultOrHeat => Tried(NothingMore(500), "Fault"),
+        Column::FaultOrHeat => Tried(Held(1000), "Fault"),
         Column::ReaderGone | Column::OutputUnread => NO_STDOUT,
         Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
         Column::GatewayRefuses => Tried(NothingMore(0), LINK_IS_LOST),
@@ -476,7 +476,7 @@ const fn follow(column: Column) -> Cell {
         Column::Disobeys => Tried(Insists, ""),
         Column::SecondMaster => Tried(NothingMore(3000), "ontroller"),
         Column::SecondHandscope => Tried(NothingMore(6000), ""),
-        Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
+        Column::FaultOrHeat => Tried(Held(1000), "fault"),
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
         Column::OutputUnread => Tried(HeldAtTheEnd(4000), ""),
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
@@ -529,8 +529,7 @@ const fn stdio(column: Column) -> Cell {
         Column::ReaderGone => Tried(HeldAtTheEnd(3000), ""),
         Column::OddStop => Tried(Held(1000), ""),
         Column::GrantedAgain => Tried(Held(2500), ""),
-        // A fault disarms: the other joints finish.
-        Column::FaultOrHeat => Tried(NothingMore(1000), "fault"),
+        Column::FaultOrHeat => Tried(Held(1000), "fault"),
         // A process that stood still did not sleep: it holds the hand, and follows again what is sent then.
         Column::Asleep => Tried(NothingWrong, ""),
         Column::Signal
