@@ -494,7 +494,7 @@ pub(crate) fn told(error: ExportError) -> anyhow::Error {
             anyhow!("{error}; nothing was written")
         }
         ExportError::Empty => anyhow!(
-            "{error}, so nothing was written; 'handscope info' shows what a recording holds, --from and --to choose of it"
+            "{error}; 'handscope info' shows what a recording holds, --from and --to choose of it"
         ),
         ExportError::NoNotes => anyhow!("{error}; leave out --episode notes"),
         ExportError::BothSides => anyhow!("{error}; make a set of each"),

@@ -32,7 +32,8 @@ pub(crate) struct HoldWatch {
     pose: PerDof<Target>,
     /// The pose was read; until then it is where the joints must be by what they were told.
     is_read: bool,
-    first_sent: Option<Moment>,
+    /// The first frame that told a joint where to stay; one without a target holds nothing.
+    first_held: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
     /// No rest is believed before this has passed since the first frame.
@@ -69,7 +70,7 @@ impl HoldWatch {
             follows_from: at,
             pose: PerDof::splat(Target::Leave),
             is_read: false,
-            first_sent: None,
+            first_held: None,
             last_sent: None,
             still_since: None,
             rest_after,
@@ -130,11 +131,12 @@ impl HoldWatch {
     }
 
     /// The targets of the hold frame that leaves at `now`, given where the joints are, and whether that was read or is expected. A pose
-    /// that was expected is replaced by the first that is read, however late.
+    /// that was expected is replaced by the first that is read, however late. `way_back` as for [`Self::new`], by now.
     pub(crate) fn frame(
         &mut self,
         newest: &PerDof<Target>,
         is_read: bool,
+        way_back: Duration,
         now: Moment,
     ) -> PerDof<Target> {
         let is_first_read = is_read && !self.is_read;
@@ -146,7 +148,10 @@ impl HoldWatch {
             }
         }
         self.sent = self.sent.saturating_add(1);
-        self.first_sent.get_or_insert(now);
+        if self.first_held.is_none() && self.pose != PerDof::splat(Target::Leave) {
+            self.first_held = Some(now);
+            self.rest_after = self.rest_after.max(way_back);
+        }
         self.last_sent = Some(now);
         self.pose
     }
@@ -157,17 +162,17 @@ impl HoldWatch {
     }
 
     /// Applies a sample; true if it shows that all joints but those in doubt rest. Only angles that were asked for
-    /// after the first hold frame count, and an angle that makes no sense is not at rest.
+    /// after the first frame that holds count, and an angle that makes no sense is not at rest.
     pub(crate) fn rests(
         &mut self,
         sample: &HandSample,
         fresh: Groups,
         doubted: &PerDof<bool>,
     ) -> bool {
-        let (Some(first_sent), Some(angle)) = (self.first_sent, sample.angle) else {
+        let (Some(first_held), Some(angle)) = (self.first_held, sample.angle) else {
             return false;
         };
-        if !fresh.contains(Group::Angle) || angle.asked < first_sent {
+        if !fresh.contains(Group::Angle) || angle.asked < first_held {
             return false;
         }
         if Dof::ALL
@@ -179,7 +184,7 @@ impl HoldWatch {
         }
         match self.still_since {
             Some((since, from)) if near(&from, &angle.value, doubted) => {
-                let is_back = angle.asked.since(first_sent) >= self.rest_after;
+                let is_back = angle.asked.since(first_held) >= self.rest_after;
                 angle.asked.since(since) >= REST_OVER && is_back
             }
             _ => {
@@ -232,7 +237,8 @@ mod tests {
     fn rest_of(mut watch: HoldWatch, angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
         (0..200).map(|n| n * 10).find(|t| {
             if *t == sent {
-                watch.frame(&PerDof::splat(Target::Leave), true, ms(*t));
+                let pose = PerDof::splat(Target::Go(Angle::nearest(500)));
+                watch.frame(&pose, true, Duration::ZERO, ms(*t));
             }
             let (sample, fresh) = sample(ms(*t), angle_at(*t));
             watch.rests(&sample, fresh, &PerDof::splat(false))
@@ -262,6 +268,22 @@ mod tests {
     }
 
     #[test]
+    fn rest_counts_from_the_first_frame_that_holds_and_by_the_way_back_of_then() {
+        let mut watch = HoldWatch::new(ms(0), true, Duration::ZERO);
+        let pose = PerDof::splat(Target::Go(Angle::nearest(500)));
+        let rests = (0..200).map(|n| n * 10).find(|t| {
+            match *t {
+                0 => watch.frame(&PerDof::splat(Target::Leave), false, Duration::ZERO, ms(*t)),
+                300 => watch.frame(&pose, true, Duration::from_millis(400), ms(*t)),
+                _ => pose,
+            };
+            let (sample, fresh) = sample(ms(*t), 500);
+            watch.rests(&sample, fresh, &PerDof::splat(false))
+        });
+        assert_eq!(rests, Some(700));
+    }
+
+    #[test]
     fn a_slow_creep_is_not_rest() {
         // Three counts each 100 ms.
         assert_eq!(
@@ -286,7 +308,7 @@ mod tests {
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
         let mut watch = HoldWatch::new(ms(7), false, Duration::ZERO);
         assert_eq!(watch.next_frame(ms(7)), Some(ms(7)));
-        watch.frame(&PerDof::splat(Target::Leave), true, ms(9));
+        watch.frame(&PerDof::splat(Target::Leave), true, Duration::ZERO, ms(9));
         assert_eq!(watch.next_frame(ms(10)), Some(ms(49)));
     }
 
@@ -294,7 +316,7 @@ mod tests {
     fn frames_for_joints_in_doubt_cease_once_the_hand_had_time_to_obey_and_the_others_rest() {
         let mut watch = HoldWatch::new(ms(0), true, Duration::ZERO);
         for t in (0..=240).step_by(40) {
-            watch.frame(&PerDof::splat(Target::Leave), true, ms(t));
+            watch.frame(&PerDof::splat(Target::Leave), true, Duration::ZERO, ms(t));
             watch.doubted_acknowledged(ms(t));
             watch.trusted_rest();
         }
@@ -320,12 +342,24 @@ mod tests {
     fn hold_follows_the_hand_first_and_then_keeps_its_pose() {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
         let mut watch = HoldWatch::new(ms(0), false, Duration::ZERO);
-        assert_eq!(watch.frame(&pose(500), true, ms(0)), pose(500));
-        assert_eq!(watch.frame(&pose(480), true, ms(40)), pose(480));
-        assert_eq!(watch.frame(&pose(470), true, ms(160)), pose(480));
+        assert_eq!(
+            watch.frame(&pose(500), true, Duration::ZERO, ms(0)),
+            pose(500)
+        );
+        assert_eq!(
+            watch.frame(&pose(480), true, Duration::ZERO, ms(40)),
+            pose(480)
+        );
+        assert_eq!(
+            watch.frame(&pose(470), true, Duration::ZERO, ms(160)),
+            pose(480)
+        );
         let mut blind = HoldWatch::new(ms(0), false, Duration::ZERO);
         let unknown = PerDof::splat(Target::Leave);
-        assert_eq!(blind.frame(&unknown, true, ms(0)), unknown);
-        assert_eq!(blind.frame(&pose(300), true, ms(200)), pose(300));
+        assert_eq!(blind.frame(&unknown, true, Duration::ZERO, ms(0)), unknown);
+        assert_eq!(
+            blind.frame(&pose(300), true, Duration::ZERO, ms(200)),
+            pose(300)
+        );
     }
 }

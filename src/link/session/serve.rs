@@ -531,10 +531,11 @@ impl Session {
         let now = self.now();
         let newest = self.hold_targets(now);
         let is_read = self.sample.angles_fresh(now, ANGLE_FRESH);
+        let way_back = self.feedback.way_back(now);
         let Some(hold) = &mut self.motion.hold else {
             return Ok(());
         };
-        let command = HandCommand::Angles(hold.frame(&newest, is_read, now));
+        let command = HandCommand::Angles(hold.frame(&newest, is_read, way_back, now));
         if !hold.alarmed && !self.feedback.is_doubted() {
             self.status.hold = Hold::Asked {
                 at: hold.at,

@@ -22,6 +22,8 @@ const HOLD_GAP_MAX: Duration = Duration::from_millis(40 + 350);
 const HOLD_GAP_MAX_SLOW: Duration = Duration::from_millis(40 + 425 + 425);
 /// … which over CAN is a read of eleven pieces through an adapter, and a hold of two.
 const HOLD_GAP_MAX_PIECES: Duration = Duration::from_millis(40 + 500 + 160);
+/// A stop is confirmed or raises its alarm within this.
+const VERDICT_WITHIN: Duration = Duration::from_millis(500);
 /// Without faults every group is newer than this, on the slowest wire: forty pieces of a fingertip sweep at 15 ms each.
 const FRESH_WITHIN: Duration = Duration::from_millis(2200);
 /// Without faults the pose is newer than this …
@@ -559,7 +561,13 @@ impl Witness {
             is_recent
                 && pairs.all(|(is, target)| (is - f64::from(*target)).abs() <= EXPECTED_COUNTS)
         };
-        let expected = || self.protocol == Protocol::Tcp && self.reality.iter().any(was_there);
+        // What was told here says nothing of where joints are that another moves.
+        let is_foreign = |told: &Moment| *told <= frame.at && frame.at.since(*told) < UNSEEN_MOVE;
+        let expected = || {
+            self.protocol == Protocol::Tcp
+                && (self.reality.iter().any(was_there)
+                    || self.foreign_writes.iter().any(is_foreign))
+        };
         // Where feedback is in doubt the pose is reckoned: where the joints then are is judged instead.
         assert!(
             known || leaves || self.freezes || expected(),
@@ -689,8 +697,11 @@ impl Witness {
         assert!(status.state.is_live(), "seed {}: {status:?}", self.seed);
         // A joint in doubt that rests shows by nothing that its angle is true again.
         let is_doubted = self.freezes && status.feedback_in_doubt;
+        // A pose that grew old stops the hand, at any time where replies come in slow pieces.
+        let is_new = now.since(status.since) < VERDICT_WITHIN;
         assert!(
             status.state != LinkState::Holding
+                || is_new && status.disarmed == Some(Disarmed::Stale)
                 || is_doubted && matches!(status.hold, Hold::Alarm { .. }),
             "seed {}: {status:?} at {now:?}",
             self.seed
