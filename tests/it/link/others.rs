@@ -10,9 +10,9 @@ use handscope::hand::{
     Angle, Dof, Force, Gesture, GestureRoute, HandCommand, Span, Speed, Target, register,
 };
 use handscope::link::{LinkStatus, RequestError};
-use handscope::record::{Disarmed, LinkState, SetpointConflict, SetpointRegister};
+use handscope::record::{Disarmed, Hold, LinkState, SetpointConflict, SetpointRegister};
 use handscope::sim::serve::{can, rs485};
-use handscope::sim::{SharedHand, SimConfig};
+use handscope::sim::{Scenario, SharedHand, SimConfig};
 use handscope::transport::{Dial, Endpoint, Pipe, pair};
 use std::sync::{Arc, Mutex};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -476,5 +476,43 @@ async fn two_programs_that_stream_to_one_tcp_hand_do_not_fight_longer_than_two_s
             .find(|link| link.status().armed.is_none());
         let seen = conflict(loser.unwrap()).unwrap();
         assert_eq!(seen.register, SetpointRegister::AngleSet);
+    }
+}
+
+/// Right behind our target another's looks like a hand that limits what it takes, so it is not called another controller. The joint
+/// went where the hand holds it: a stop leaves it there.
+#[tokio::test(start_paused = true)]
+async fn a_stop_moves_no_joint_that_another_sent_elsewhere_unnoticed() {
+    for wire in ["rs485:test", "rtu:test", "tcp:127.0.0.1:6000", "can:test"] {
+        let hand = hand::shared(SimConfig {
+            scenario: Scenario::Free,
+            ..SimConfig::default()
+        });
+        let mut link = link::connect(wire, link::to_hand(hand.clone()));
+        arm(&mut link).await;
+        let mut setpoints = Setpoints::none(link.status().armed.unwrap());
+        setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(200)));
+        setpoints.speed[Dof::Index] = Some(Speed::MAX);
+        link.set(&setpoints);
+        pass(&mut link, Duration::from_millis(30)).await;
+        let foreign = 500_i16.to_le_bytes();
+        hand.with(|hand, now| hand.write(1492, &foreign, now))
+            .unwrap();
+        let index = || {
+            hand.with(|hand, now| {
+                hand.advance_to(now);
+                hand.true_angles()[Dof::Index]
+            })
+        };
+        pass(&mut link, Duration::from_secs(3)).await;
+        let before = index();
+        assert!((before - 500.0).abs() < 5.0, "{wire}: {before}");
+        link.stop();
+        for _ in 0..100 {
+            pass(&mut link, Duration::from_millis(10)).await;
+            assert!((index() - before).abs() < 5.0, "{wire}: {}", index());
+        }
+        let hold = link.status().hold;
+        assert!(matches!(hold, Hold::Confirmed { .. }), "{wire}: {hold:?}");
     }
 }

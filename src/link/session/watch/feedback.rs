@@ -5,6 +5,7 @@
 
 use crate::hand::{Angle, AngleReading, Dof, Finger, Group, Groups, HandSample, Moment, PerDof};
 use crate::hand::{RegisterWrite, Speed, Status, Target, register};
+use crate::record::SetpointRegister;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -184,6 +185,11 @@ impl FeedbackWatch {
                 unchanged.hand_lives = true;
             }
         }
+        if fresh.contains(Group::AngleSet) {
+            for dof in Dof::ALL {
+                self.unsure[dof] |= self.is_sent_elsewhere(dof, &before, sample);
+            }
+        }
         let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) else {
             return;
         };
@@ -195,6 +201,22 @@ impl FeedbackWatch {
             }
         }
         self.forget_old(angle.asked);
+    }
+
+    /// True if the hand holds another target now than it did, and none that was written here: another set it, or the hand limits what
+    /// it takes.
+    fn is_sent_elsewhere(&self, dof: Dof, before: &HandSample, now: &HandSample) -> bool {
+        let target = |sample: &HandSample| match sample.angle_set?.value[dof] {
+            Some(Target::Go(angle)) => Some(angle.get()),
+            _ => None,
+        };
+        let Some(holds) = target(now).filter(|_| target(before) != target(now)) else {
+            return false;
+        };
+        let within = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
+        let is_ours = |told: &Command| told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within);
+        let last = self.commands.back().and_then(|told| told.targets[dof]);
+        last.is_some() && !self.commands.iter().any(is_ours)
     }
 
     /// True if a joint moves away from where it was told to go, or is farther from it than its own speed can have carried it.
