@@ -214,7 +214,8 @@ impl FeedbackWatch {
             return false;
         };
         let within = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
-        let is_ours = |told: &Command| told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within);
+        let is_ours =
+            |told: &Command| told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within);
         let last = self.commands.back().and_then(|told| told.targets[dof]);
         last.is_some() && !self.commands.iter().any(is_ours)
     }
