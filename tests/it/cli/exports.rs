@@ -384,7 +384,7 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
             &["left.mcap"],
             &["--lerobot"],
             1,
-            "no reading of the joints",
+            "nothing to export in this stretch",
         ),
         (
             &["a.mcap"],

@@ -356,7 +356,7 @@ fn an_export_that_fails_says_why() {
     settle(&mut bench, |bench| {
         let told = bench.texts_with("Not exported: ");
         told.iter()
-            .any(|told| told.contains("There is no reading of the joints in this stretch."))
+            .any(|told| told.contains("There is nothing to export in this stretch."))
     });
 }
 
