@@ -8,7 +8,7 @@ use crate::link::{Clock, Lease, LinkStatus};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
-use crate::record::{LinkState, Record};
+use crate::record::{Disarmed, LinkState, Record};
 use crate::tasks::hand::TaskHand;
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -270,11 +270,14 @@ impl<H: TaskHand> Playing<'_, H> {
 
 /// Why what moves the hand in this arming must end now, if it must.
 pub(crate) fn reason(status: &LinkStatus, epoch: ArmEpoch) -> Option<PlayEnd> {
+    let is_armed = status.armed == Some(epoch);
+    // While it is stopped for a fault its state says so of the stop alone.
+    let by_fault = !is_armed && status.disarmed == Some(Disarmed::Fault);
     if !status.state.is_live() {
         Some(PlayEnd::LinkLost)
-    } else if status.state == LinkState::Fault {
+    } else if status.state == LinkState::Fault || by_fault {
         Some(PlayEnd::Fault)
-    } else if status.armed != Some(epoch) {
+    } else if !is_armed {
         Some(PlayEnd::Disarmed)
     } else {
         None
