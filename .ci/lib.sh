@@ -1,6 +1,6 @@
 # What the steps share. A step is run by `bash -euo pipefail`, at the top of the checkout, with $out as the folder of this run.
 # A backtrace would hide what a test says as it fails.
-export CARGO_TERM_COLOR=never CARGO_INCREMENTAL=0 RUST_BACKTRACE=0 CARGO_PROFILE_DEV_DEBUG=0
+export CARGO_TERM_COLOR=never CARGO_INCREMENTAL=0 RUST_BACKTRACE=0
 export HANDSCOPE=$PWD/target/debug/handscope
 handscope=$HANDSCOPE
 # What a step that fails leaves running would keep it from ending.

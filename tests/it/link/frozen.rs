@@ -15,19 +15,6 @@ fn ms(ms: u64) -> Duration {
     Duration::from_millis(ms)
 }
 
-async fn closing(hand: &SharedHand, wire: &str) -> Client {
-    let mut link = link::connect(wire, link::to_hand(hand.clone()));
-    link::live(&mut link).await;
-    pass(&mut link, ms(200)).await;
-    link.arm(link::gentle());
-    let armed = |status: &LinkStatus| status.armed.is_some();
-    let status = link::until(&mut link, SOON, armed).await;
-    let mut setpoints = Setpoints::none(status.armed.unwrap());
-    setpoints.angle = PerDof::splat(Some(Target::Go(Angle::MIN)));
-    link.set(&setpoints);
-    link
-}
-
 fn freeze(hand: &SharedHand, frozen: bool) {
     hand.with(|hand, now| hand.freeze_feedback(frozen, now));
 }
@@ -36,13 +23,6 @@ fn freeze(hand: &SharedHand, frozen: bool) {
 fn freeze_angles(hand: &SharedHand, joints: &[Dof]) {
     let frozen = PerDof::from_fn(|dof| joints.contains(&dof));
     hand.with(|hand, now| hand.freeze_angles(frozen, now));
-}
-
-fn index(hand: &SharedHand) -> f64 {
-    hand.with(|hand, now| {
-        hand.advance_to(now);
-        hand.true_angles()[Dof::Index]
-    })
 }
 
 /// Waits, and says whether a stop was ever told to be confirmed.
@@ -59,10 +39,10 @@ async fn confirmed(link: &mut Client, length: Duration) -> bool {
 async fn frozen_feedback_disarms_raises_the_alarm_and_holds_where_the_joints_must_be() {
     for wire in WIRES {
         let hand = hand::begin(hand::free(SimConfig::default()));
-        let mut link = closing(&hand, wire).await;
+        let mut link = link::closing(&hand, wire).await;
         pass(&mut link, ms(250)).await;
         freeze(&hand, true);
-        let shown = index(&hand);
+        let shown = hand::true_angle(&hand, Dof::Index);
         let doubted = |status: &LinkStatus| status.feedback_in_doubt;
         let status = link::until(&mut link, ms(800), doubted).await;
         assert_eq!(status.disarmed, Some(Disarmed::FrozenFeedback), "{wire}");
@@ -71,7 +51,7 @@ async fn frozen_feedback_disarms_raises_the_alarm_and_holds_where_the_joints_mus
             matches!(status.hold, Hold::Alarm { .. }),
             "{wire}: {status:?}"
         );
-        let was = index(&hand);
+        let was = hand::true_angle(&hand, Dof::Index);
         assert!(
             shown - was > 100.0,
             "{wire}: it went on unseen, {shown} {was}"
@@ -79,13 +59,16 @@ async fn frozen_feedback_disarms_raises_the_alarm_and_holds_where_the_joints_mus
         assert!(!confirmed(&mut link, SOON).await, "{wire}");
         assert_ne!(link.status().rest, Rest::Resting, "{wire}");
         assert_eq!(link.status().state, LinkState::Holding, "{wire}");
-        let rests = index(&hand);
+        let rests = hand::true_angle(&hand, Dof::Index);
         // From the last look to the moment of doubt the joint went about 200 counts, by a speed that is known to a tenth.
         assert!((was - rests).abs() < 60.0, "{wire}: {was} {rests}");
         freeze(&hand, false);
         assert!(confirmed(&mut link, SOON).await, "{wire}: it lives again");
         assert!(!link.status().feedback_in_doubt, "{wire}");
-        assert!((rests - index(&hand)).abs() < 5.0, "{wire}");
+        assert!(
+            (rests - hand::true_angle(&hand, Dof::Index)).abs() < 5.0,
+            "{wire}"
+        );
     }
 }
 
@@ -94,16 +77,16 @@ async fn a_stop_while_feedback_is_frozen_holds_where_the_joints_must_be_and_is_n
     for wire in WIRES {
         for after in [60, 150, 300] {
             let hand = hand::begin(hand::free(SimConfig::default()));
-            let mut link = closing(&hand, wire).await;
+            let mut link = link::closing(&hand, wire).await;
             pass(&mut link, ms(300)).await;
             freeze(&hand, true);
             pass(&mut link, ms(after)).await;
-            let was = index(&hand);
+            let was = hand::true_angle(&hand, Dof::Index);
             link.stop();
             assert!(!confirmed(&mut link, SOON).await, "{wire} {after}");
             let status = link.status();
             assert!(status.feedback_in_doubt, "{wire} {after}: {status:?}");
-            let rests = index(&hand);
+            let rests = hand::true_angle(&hand, Dof::Index);
             assert!((was - rests).abs() < 60.0, "{wire} {after}: {was} {rests}");
         }
     }
@@ -118,11 +101,11 @@ async fn a_stop_moves_no_joint_back_whose_angle_alone_is_frozen_and_is_never_con
     {
         for after in [150, 300, 450] {
             let hand = hand::begin(hand::free(SimConfig::default()));
-            let mut link = closing(&hand, wire).await;
+            let mut link = link::closing(&hand, wire).await;
             pass(&mut link, ms(300)).await;
             freeze_angles(&hand, joints);
             pass(&mut link, ms(after)).await;
-            let was = index(&hand);
+            let was = hand::true_angle(&hand, Dof::Index);
             link.stop();
             assert!(
                 !confirmed(&mut link, SOON).await,
@@ -134,7 +117,7 @@ async fn a_stop_moves_no_joint_back_whose_angle_alone_is_frozen_and_is_never_con
                 "{wire} {joints:?} {after}: {status:?}"
             );
             assert_ne!(status.rest, Rest::Resting, "{wire} {joints:?} {after}");
-            let rests = index(&hand);
+            let rests = hand::true_angle(&hand, Dof::Index);
             assert!(
                 (was - rests).abs() < 60.0,
                 "{wire} {joints:?} {after}: {was} {rests}"
@@ -147,19 +130,22 @@ async fn a_stop_moves_no_joint_back_whose_angle_alone_is_frozen_and_is_never_con
 async fn one_frozen_angle_disarms_whatever_else_in_the_hand_changes() {
     for wire in WIRES {
         let hand = hand::begin(hand::free(SimConfig::default()));
-        let mut link = closing(&hand, wire).await;
+        let mut link = link::closing(&hand, wire).await;
         pass(&mut link, ms(300)).await;
         freeze_angles(&hand, &[Dof::Index]);
         let disarmed = |status: &LinkStatus| status.disarmed.is_some();
         let status = link::until(&mut link, ms(800), disarmed).await;
         assert_eq!(status.disarmed, Some(Disarmed::FrozenFeedback), "{wire}");
-        let was = index(&hand);
+        let was = hand::true_angle(&hand, Dof::Index);
         assert!(!confirmed(&mut link, SOON).await, "{wire}");
-        let rests = index(&hand);
+        let rests = hand::true_angle(&hand, Dof::Index);
         assert!((was - rests).abs() < 60.0, "{wire}: {was} {rests}");
         freeze_angles(&hand, &[]);
         assert!(confirmed(&mut link, SOON).await, "{wire}: it lives again");
-        assert!((rests - index(&hand)).abs() < 5.0, "{wire}");
+        assert!(
+            (rests - hand::true_angle(&hand, Dof::Index)).abs() < 5.0,
+            "{wire}"
+        );
     }
 }
 
@@ -208,16 +194,16 @@ async fn a_deaf_hand_that_wakes_during_the_alarm_does_not_move() {
         let hand = hand::begin(hand::free(SimConfig::default()));
         let deaf = |deaf| hand.with(|hand, _| Dof::ALL.map(|dof| hand.set_dead(dof, deaf)));
         deaf(true);
-        let mut link = closing(&hand, wire).await;
+        let mut link = link::closing(&hand, wire).await;
         pass(&mut link, ms(700)).await;
-        let was = index(&hand);
+        let was = hand::true_angle(&hand, Dof::Index);
         link.stop();
         assert!(!confirmed(&mut link, ms(1500)).await, "{wire}");
         assert!(matches!(link.status().hold, Hold::Alarm { .. }), "{wire}");
         deaf(false);
         for _ in 0..2 {
             assert!(!confirmed(&mut link, SOON).await, "{wire}");
-            let rests = index(&hand);
+            let rests = hand::true_angle(&hand, Dof::Index);
             assert!((was - rests).abs() < 5.0, "{wire}: {was} {rests}");
             // Pressed again, as the alarm lasts.
             link.stop();
@@ -232,9 +218,12 @@ async fn the_scenario_freezes_what_the_hand_tells_and_the_link_notices() {
         ..SimConfig::default()
     };
     let hand = hand::shared(frozen);
-    let mut link = closing(&hand, "rs485:test").await;
+    let mut link = link::closing(&hand, "rs485:test").await;
     let disarmed = |status: &LinkStatus| status.disarmed.is_some();
     let status = link::until(&mut link, SOON, disarmed).await;
     assert_eq!(status.disarmed, Some(Disarmed::FrozenFeedback));
-    assert!(index(&hand) > 300.0, "it was stopped on its way");
+    assert!(
+        hand::true_angle(&hand, Dof::Index) > 300.0,
+        "it was stopped on its way"
+    );
 }

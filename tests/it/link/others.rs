@@ -498,12 +498,7 @@ async fn a_stop_moves_no_joint_that_another_sent_elsewhere_unnoticed() {
         let foreign = 500_i16.to_le_bytes();
         hand.with(|hand, now| hand.write(1492, &foreign, now))
             .unwrap();
-        let index = || {
-            hand.with(|hand, now| {
-                hand.advance_to(now);
-                hand.true_angles()[Dof::Index]
-            })
-        };
+        let index = || hand::true_angle(&hand, Dof::Index);
         pass(&mut link, Duration::from_secs(3)).await;
         let before = index();
         assert!((before - 500.0).abs() < 5.0, "{wire}: {before}");

@@ -1,6 +1,7 @@
 //! Simulated hands, and their servers behind a wire in memory.
 
 use futures::FutureExt as _;
+use handscope::hand::Dof;
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485, slcan, usbcan};
 use handscope::sim::{Object, Personality, SharedHand, SimConfig, SimHand, SimHands};
 use handscope::transport::{Endpoint, Wire};
@@ -20,6 +21,14 @@ pub(crate) fn shared(config: SimConfig) -> SharedHand {
 /// Lets a hand's time begin now.
 pub(crate) fn begin(hand: SimHand) -> SharedHand {
     SharedHand::new(hand, Instant::now())
+}
+
+/// Where a joint really is now.
+pub(crate) fn true_angle(hand: &SharedHand, dof: Dof) -> f64 {
+    hand.with(|hand, now| {
+        hand.advance_to(now);
+        hand.true_angles()[dof]
+    })
 }
 
 /// A hand with nothing in its reach.

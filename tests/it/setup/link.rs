@@ -3,11 +3,11 @@
 use crate::setup::hand;
 use futures::FutureExt as _;
 use futures::future::{BoxFuture, ready};
-use handscope::hand::{Force, PerDof, Setpoints, Speed};
+use handscope::hand::{Angle, Force, PerDof, Setpoints, Speed, Target};
 use handscope::link::{self, ArmRequest, Clock, Lease, LinkConfig, LinkHandle, LinkStatus};
 use handscope::link::{Owner, PollRates, Records};
 use handscope::record::{LinkState, Record};
-use handscope::sim::SimHands;
+use handscope::sim::{SharedHand, SimHands};
 use handscope::transport::{BoxedWire, Dial, Endpoint, Pipe, TransportError, Wire, pair};
 use std::cell::Cell;
 use std::ops::Deref;
@@ -125,6 +125,19 @@ impl Client {
     ) -> JoinHandle<F::Output> {
         tokio::spawn(ask(self.link.clone()))
     }
+}
+
+/// A link to this hand, which it sends to the fist.
+pub(crate) async fn closing(hand: &SharedHand, wire: &str) -> Client {
+    let mut link = connect(wire, to_hand(hand.clone()));
+    live(&mut link).await;
+    pass(&mut link, Duration::from_millis(200)).await;
+    link.arm(gentle());
+    let status = until(&mut link, PATIENCE, |status| status.armed.is_some()).await;
+    let mut setpoints = Setpoints::none(status.armed.unwrap());
+    setpoints.angle = PerDof::splat(Some(Target::Go(Angle::MIN)));
+    link.set(&setpoints);
+    link
 }
 
 /// Opens a link as the program does it.
