@@ -77,13 +77,13 @@ impl LinkStatus {
     }
 
     /// How much later than from a quick hand a reading may come: a slow way brings one three delays after the one before was asked for.
-    pub fn late(&self) -> Duration {
+    pub fn slow_allowance(&self) -> Duration {
         Duration::from_millis(self.slow_ms.unwrap_or(0).into()) * 3
     }
 
     /// How old a reading may be by which it is judged where a motion stands.
     pub fn fresh_for(&self) -> Duration {
-        FRESH_FOR + self.late()
+        FRESH_FOR + self.slow_allowance()
     }
 
     /// Whether it may go on though its right to be moved is over, and nothing showed rest: it owes a stop, unless another controller

@@ -215,7 +215,8 @@ impl<H: TaskHand> GripRun<'_, H> {
             return (since > limit(&leg)).then_some(GripEnd::Late);
         }
         let status = self.hand.status();
-        let rests = since >= BEGINS_WITHIN + status.late() && status.rest == Rest::Resting;
+        let rests =
+            since >= BEGINS_WITHIN + status.slow_allowance() && status.rest == Rest::Resting;
         if rests && !self.setpoints.others.is_doubted() {
             return Some(self.at_rest(leg, arrived));
         }

@@ -142,7 +142,7 @@ impl<H: TaskHand> Moving<'_, H> {
         if arrived && is_known && !self.start.settles {
             return Some(MoveEnd::Reached);
         }
-        if since >= BEGINS_WITHIN + status.late() && status.rest == Rest::Resting {
+        if since >= BEGINS_WITHIN + status.slow_allowance() && status.rest == Rest::Resting {
             return Some(if arrived {
                 MoveEnd::Reached
             } else {

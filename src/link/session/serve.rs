@@ -160,7 +160,8 @@ impl Session {
 
     /// Whether the hand rests, by what is read of it.
     pub(crate) fn rest_now(&self, now: Moment) -> Rest {
-        self.moving.rest(&self.sample, now, self.status.late())
+        self.moving
+            .rest(&self.sample, now, self.status.slow_allowance())
     }
 
     /// Feedback shows that the hand rests. True if that is news.
