@@ -61,6 +61,14 @@ fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
         return (end == TextEnd::Whole && only.lower() == "stop").then_some(EndWord::Stop);
     }
     let mut found = None;
+    // Cut off behind its name.
+    if end == TextEnd::Whole
+        && let [.., Token::Mark(b'{' | b','), Token::Text(name)] = all.as_slice()
+        && name.is_ended
+        && name.lower() == "stop"
+    {
+        found = Some(EndWord::Stop);
+    }
     for (nth, token) in all.iter().enumerate() {
         let (Token::Text(name), Some(Token::Mark(b':' | b'='))) = (token, all.get(nth + 1)) else {
             continue;

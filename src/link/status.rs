@@ -1,6 +1,6 @@
 //! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
 
-use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Speed};
+use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Setpoints, Speed};
 use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
 use crate::link::series::Series;
@@ -225,4 +225,15 @@ pub struct ArmRequest {
     pub speed: PerDof<Speed>,
     /// Force thresholds to set before anything moves.
     pub force: PerDof<Force>,
+}
+
+impl ArmRequest {
+    /// The same for a hand that is armed already.
+    pub(crate) fn setpoints(&self, epoch: ArmEpoch) -> Setpoints {
+        Setpoints {
+            speed: self.speed.map(Some),
+            force: self.force.map(Some),
+            ..Setpoints::none(epoch)
+        }
+    }
 }

@@ -2,8 +2,8 @@
 //! something stops it.
 
 use crate::hand::grip::{Grip, GripEstimator};
-use crate::hand::{Angle, ArmEpoch, Force, Groups, HandSample, Moment, Setpoints, Speed, Target};
-use crate::link::{Clock, Lease};
+use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, Setpoints, Speed, Target};
+use crate::link::{ArmRequest, Clock, Lease};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{Targets, way};
 use crate::record::{Record, Rest};
@@ -25,10 +25,8 @@ const SPARE: Duration = Duration::from_secs(4);
 pub struct MoveStart {
     /// Where the joints go; `None` leaves one alone.
     pub targets: Targets,
-    /// Speed of the joints that go.
-    pub speed: Speed,
-    /// Their force threshold.
-    pub force: Force,
+    /// Speeds and force thresholds of the joints that go.
+    pub limits: ArmRequest,
     /// Whether it is over only once the hand rests, so that it is known what it grips.
     pub settles: bool,
     /// The arming that the user gave for it.
@@ -149,7 +147,14 @@ impl<H: TaskHand> Moving<'_, H> {
                 MoveEnd::Stopped
             });
         }
-        (since > limit(self.start.speed)).then_some(MoveEnd::Late)
+        (since > limit(self.slowest())).then_some(MoveEnd::Late)
+    }
+
+    /// The speed of the slowest joint that goes.
+    fn slowest(&self) -> Speed {
+        let goes = self.start.targets.iter().filter(|(_, to)| to.is_some());
+        let speeds = goes.map(|(dof, _)| self.start.limits.speed[dof]);
+        speeds.min().unwrap_or(Speed::GENTLE)
     }
 
     /// Sends the first part of what is left.
@@ -159,8 +164,8 @@ impl<H: TaskHand> Moving<'_, H> {
         for (dof, to) in leg.iter() {
             if let Some(to) = *to {
                 setpoints.angle[dof] = Some(Target::Go(to));
-                setpoints.speed[dof] = Some(self.start.speed);
-                setpoints.force[dof] = Some(self.start.force);
+                setpoints.speed[dof] = Some(self.start.limits.speed[dof]);
+                setpoints.force[dof] = Some(self.start.limits.force[dof]);
             }
         }
         self.sent = self.start.clock.now();

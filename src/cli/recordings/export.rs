@@ -155,8 +155,11 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         }
     }
     files.iter().for_each(say_remarks);
-    let stretches = files.iter().map(|file| args.stretch.of(file));
-    let stretches: Vec<Stretch> = stretches.collect::<anyhow::Result<_>>()?;
+    let named = |file: &RecordingFile| match args.stretch.of(file) {
+        Err(why) if files.len() > 1 => Err(why.context(file.path().display().to_string())),
+        stretch => stretch,
+    };
+    let stretches: Vec<Stretch> = files.iter().map(named).collect::<anyhow::Result<_>>()?;
     if form == Form::Png {
         let (Some(file), Some(stretch)) = (files.first(), stretches.first()) else {
             return Ok(());

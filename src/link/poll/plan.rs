@@ -26,7 +26,7 @@ const TEMPERATURE_HZ: f64 = 5.0;
 /// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
 /// three of them show another controller within a second.
 const WATCHED_HZ: f64 = 25.0;
-/// A write this long after the one before is none of a stream.
+/// A round this long after the one before is none of a stream.
 const ALONE: Duration = Duration::from_millis(100);
 /// Once one of them is doubtful, they are read before each write for so long.
 const DOUBTFUL_FOR: Duration = Duration::from_secs(1);
@@ -122,8 +122,10 @@ pub(crate) struct PollPlan {
     rates: PollRates,
     /// Whether setpoints are read often enough to see another controller's.
     watched: bool,
-    /// When a setpoint was written last, and whether it was one of a stream.
-    wrote: Option<(Moment, bool)>,
+    /// When a setpoint was written last.
+    wrote: Option<Moment>,
+    /// When a round of setpoints began last, and whether it is one of a stream.
+    round: Option<(Moment, bool)>,
     /// Setpoints are read before each write until then.
     doubtful_until: Moment,
     parts: [Due; ReadPart::ALL.len()],
@@ -142,6 +144,7 @@ impl PollPlan {
             rates,
             watched: false,
             wrote: None,
+            round: None,
             doubtful_until: now,
             parts: ReadPart::ALL.map(|part| Due {
                 part,
@@ -337,11 +340,16 @@ impl PollPlan {
         self.asked(window, now);
     }
 
-    /// A setpoint was written: one that stands alone is read back at once, so that nobody else's comes between.
+    /// A round of setpoints begins.
+    pub(crate) fn begin_round(&mut self, now: Moment) {
+        let in_stream = self.round.is_some_and(|(at, _)| now.since(at) < ALONE);
+        self.round = Some((now, in_stream));
+    }
+
+    /// A setpoint was written: a round that stands alone is read back at once, so that nobody else's comes between.
     pub(crate) fn wrote_setpoint(&mut self, now: Moment) {
-        let in_stream = self.wrote.is_some_and(|(at, _)| now.since(at) < ALONE);
-        self.wrote = Some((now, in_stream));
-        if self.watched && !in_stream {
+        self.wrote = Some(now);
+        if self.watched && !self.watched_in_stream(now) {
             self.look_at_settings(now);
         }
     }
@@ -349,7 +357,7 @@ impl PollPlan {
     /// The setpoints that the hand holds, if they are to be read before the next write of a stream: what another wrote since the
     /// last one is there until then.
     pub(crate) fn before_write(&self, now: Moment) -> Option<NextRead> {
-        let (wrote, _) = self.wrote.filter(|_| self.watched_in_stream(now))?;
+        let wrote = self.wrote.filter(|_| self.watched_in_stream(now))?;
         let targets = self
             .parts
             .iter()
@@ -365,8 +373,9 @@ impl PollPlan {
 
     /// True while setpoints are read before writes, and only there.
     fn watched_in_stream(&self, now: Moment) -> bool {
-        let streams = |(at, in_stream): (Moment, bool)| in_stream && now.since(at) < ALONE;
-        self.watched && self.wrote.is_some_and(streams)
+        let is_recent = self.wrote.is_some_and(|at| now.since(at) < ALONE);
+        let in_stream = self.round.is_some_and(|(_, in_stream)| in_stream);
+        self.watched && is_recent && in_stream
     }
 
     /// A setpoint that the hand holds may be another controller's.

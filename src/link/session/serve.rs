@@ -105,6 +105,7 @@ impl Session {
         self.watch_age();
         self.watch_heat();
         let now = self.now();
+        let begins_round = self.motion.begins_round(now);
         let hold = self.motion.hold;
         let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
         if hold.is_some_and(is_due) {
@@ -123,11 +124,12 @@ impl Session {
             self.motion.waits_for_look = true;
         } else if self.pose_is_due(now) {
             self.poll_motion(bus).await?;
-        } else if self.motion.begins_round(now)
-            && let Some(question) = self.plan.before_write(now)
-        {
+        } else if begins_round && let Some(question) = self.plan.before_write(now) {
             self.poll(bus, &question).await?;
         } else if let Some(write) = self.motion.next_write(now) {
+            if begins_round {
+                self.plan.begin_round(now);
+            }
             self.send_setpoint(bus, write).await?;
             self.motion.took(self.now().since(now));
         } else {

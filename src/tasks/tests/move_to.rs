@@ -2,7 +2,7 @@
 
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Speed, Target};
-use crate::link::Owner;
+use crate::link::{ArmRequest, Owner};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::Targets;
 use crate::record::{LinkState, Rest};
@@ -26,8 +26,10 @@ impl Bench {
         let targets: Targets = PerDof::new(to.map(|to| to.map(Angle::nearest)));
         let start = MoveStart {
             targets,
-            speed: Speed::nearest(100),
-            force: Force::nearest(400),
+            limits: ArmRequest {
+                speed: PerDof::splat(Speed::nearest(100)),
+                force: PerDof::splat(Force::nearest(400)),
+            },
             settles,
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),

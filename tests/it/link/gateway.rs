@@ -8,7 +8,7 @@ use handscope::hand::grip::GripEstimator;
 use handscope::hand::{
     Angle, Dof, Force, HandSample, ModbusException, PerDof, Setpoints, Speed, Target,
 };
-use handscope::link::{LinkStatus, LinkTrouble, TouchVariant};
+use handscope::link::{ArmRequest, LinkStatus, LinkTrouble, TouchVariant};
 use handscope::record::{Hold, LinkState};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::tasks::grip::{GripEnd, GripStart, grip};
@@ -228,8 +228,10 @@ async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
                 targets: PerDof::from_fn(|dof| {
                     (dof == Dof::Index).then_some(Angle::nearest(angle))
                 }),
-                speed: Speed::nearest(500),
-                force: Force::GENTLE,
+                limits: ArmRequest {
+                    speed: PerDof::splat(Speed::nearest(500)),
+                    force: PerDof::splat(Force::GENTLE),
+                },
                 settles: true,
                 epoch: epoch.armed.unwrap(),
                 lease: link.lease(),

@@ -479,8 +479,43 @@ async fn two_programs_that_stream_to_one_tcp_hand_do_not_fight_longer_than_two_s
     }
 }
 
-/// Right behind our target another's looks like a hand that limits what it takes, so it is not called another controller. The joint
-/// went where the hand holds it: a stop leaves it there.
+/// The round that sends a joint off writes its speed before its angle: it is no stream, so it is read back at once.
+#[tokio::test(start_paused = true)]
+async fn another_programs_target_right_behind_ours_is_noticed_within_half_a_second_over_tcp() {
+    let targets = [(300, 600), (300, 100), (1000, 500)];
+    for (ours, theirs) in targets {
+        for behind in [20, 30, 50, 80, 120, 250] {
+            for moved_before in [false, true] {
+                let at = OnTcp::new();
+                let mut link = at.armed().await;
+                if moved_before {
+                    move_to(&link, 900);
+                    pass(&mut link, Duration::from_millis(700)).await;
+                }
+                let mut setpoints = Setpoints::none(link.status().armed.unwrap());
+                setpoints.angle[Dof::Index] = Some(Target::Go(Angle::nearest(ours)));
+                setpoints.speed[Dof::Index] = Some(Speed::nearest(300));
+                link.set(&setpoints);
+                pass(&mut link, Duration::from_millis(behind)).await;
+                at.write(1492, &[theirs]);
+                let mut waited = 0;
+                while link.status().armed.is_some() {
+                    pass(&mut link, Duration::from_millis(10)).await;
+                    waited += 10;
+                    let status = link.status();
+                    assert!(
+                        waited <= 500,
+                        "{ours}, {theirs}, {behind} ms behind: {status:?}"
+                    );
+                }
+                assert_eq!(conflict(&link).unwrap().holds, Some(theirs));
+            }
+        }
+    }
+}
+
+/// Another's target that comes before ours is read back looks like a hand that limits what it takes, so it is not called another
+/// controller. The joint went where the hand holds it: a stop leaves it there.
 #[tokio::test(start_paused = true)]
 async fn a_stop_moves_no_joint_that_another_sent_elsewhere_unnoticed() {
     for wire in ["rs485:test", "rtu:test", "tcp:127.0.0.1:6000", "can:test"] {

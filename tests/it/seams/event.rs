@@ -190,6 +190,11 @@ impl<'a> Witness<'a> {
             Column::GatewayRefuses => self.gateway_refuses(&hand),
             Column::StopThenLost => self.stop_then_lost(&hand),
             Column::RepliesSlow => self.replies_are_slow(&hand),
+            Column::RestsShort => {
+                self.pass(1000);
+                self.mover.stop();
+                self.pass(5000);
+            }
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::JointFrozen => self.angles_freeze(&hand),

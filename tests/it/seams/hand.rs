@@ -6,7 +6,9 @@ use crate::setup::hand;
 use crate::setup::link;
 use handscope::codec::modbus_rtu::crc16;
 use handscope::hand::{Dof, Fault, Moment, PerDof, Span};
-use handscope::sim::{JournalEntry, Personality, Scenario, SharedHand, SimConfig, SimHand};
+use handscope::sim::{
+    ForceCompared, JournalEntry, MinusOne, Scenario, SharedHand, SimConfig, SimHand,
+};
 use handscope::transport::{Dial, Endpoint, PtyLink, Wire, pair};
 use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
@@ -166,16 +168,43 @@ pub(super) struct SeamHand {
     pub(super) endpoint: String,
 }
 
+/// What the hand is like.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum HandKind {
+    Usual,
+    /// It takes its time to answer, so that what is written in a row takes a second.
+    Slow,
+    /// Its joints rest up to 8 counts beside their targets, its drives count what their force sensors read without a load, and -1 stays
+    /// in ANGLE_SET where it was written.
+    RestsShort,
+}
+
+impl HandKind {
+    fn config(self) -> SimConfig {
+        let mut config = SimConfig {
+            scenario: Scenario::Free,
+            ..SimConfig::default()
+        };
+        match self {
+            Self::Usual => {}
+            Self::Slow => config.personality.turnaround = Duration::from_millis(40),
+            Self::RestsShort => {
+                config.personality.minus_one_mid_move = MinusOne::Ignore;
+                config.personality.force_compared = ForceCompared::AsRead;
+                for (_, joint) in config.body.joints.iter_mut() {
+                    (joint.backlash, joint.force_zero_g) = (16.0, 60.0);
+                }
+            }
+        }
+        config
+    }
+}
+
 impl SeamHand {
-    fn new(protocol: Protocol, endpoint: String, id: u8, thinks: Duration) -> Arc<Self> {
+    fn new(protocol: Protocol, endpoint: String, id: u8, kind: HandKind) -> Arc<Self> {
         let config = SimConfig {
             id,
-            scenario: Scenario::Free,
-            personality: Personality {
-                turnaround: thinks,
-                ..Personality::default()
-            },
-            ..SimConfig::default()
+            ..kind.config()
         };
         Arc::new(Self {
             hand: hand::shared(config),
@@ -193,7 +222,7 @@ impl SeamHand {
     }
 
     /// A hand on wires in memory. Called inside the runtime whose time it lives in.
-    pub(super) fn in_memory(protocol: Protocol) -> Arc<Self> {
+    pub(super) fn in_memory(protocol: Protocol, kind: HandKind) -> Arc<Self> {
         let endpoint = match protocol {
             Protocol::Rs485 => "rs485:seam",
             Protocol::Rtu => "rtu:seam",
@@ -201,7 +230,7 @@ impl SeamHand {
             Protocol::Can => "can:seam",
             Protocol::Slcan => "slcan:seam",
         };
-        Self::new(protocol, endpoint.into(), 1, Duration::ZERO)
+        Self::new(protocol, endpoint.into(), 1, kind)
     }
 
     /// A hand that other processes reach: a pseudo-terminal in the folder, a loopback socket, or the interface `vcan0`. Each has an
@@ -210,7 +239,7 @@ impl SeamHand {
         protocol: Protocol,
         folder: &Path,
         id: u8,
-        thinks: Duration,
+        kind: HandKind,
     ) -> Arc<Self> {
         let link = folder.join("hand");
         let port = || link.to_str().unwrap().to_owned();
@@ -218,18 +247,18 @@ impl SeamHand {
             Protocol::Tcp => {
                 let socket = TcpListener::bind("127.0.0.1:0").unwrap();
                 let place = socket.local_addr().unwrap();
-                let hand = Self::new(protocol, format!("tcp:{place}"), id, thinks);
+                let hand = Self::new(protocol, format!("tcp:{place}"), id, kind);
                 tokio::spawn(Arc::clone(&hand).serve_sockets(socket, place));
                 hand
             }
             Protocol::Can => {
-                let hand = Self::new(protocol, format!("can:vcan0?id={id}"), id, thinks);
+                let hand = Self::new(protocol, format!("can:vcan0?id={id}"), id, kind);
                 tokio::spawn(Arc::clone(&hand).serve_interface());
                 hand
             }
             Protocol::Rs485 | Protocol::Rtu | Protocol::Slcan => {
-                let kind = name(protocol);
-                let hand = Self::new(protocol, format!("{kind}:{}?id={id}", port()), id, thinks);
+                let endpoint = format!("{}:{}?id={id}", name(protocol), port());
+                let hand = Self::new(protocol, endpoint, id, kind);
                 let made = PtyLink::create(&link).unwrap();
                 tokio::spawn(Arc::clone(&hand).serve_ports(made, link));
                 hand

@@ -11,6 +11,7 @@ mod table;
 mod window;
 
 use crate::seams::event::Witness;
+use crate::seams::hand::HandKind;
 use crate::seams::judge::{Seen, Verdict};
 use crate::seams::process::{Place, Process};
 use crate::seams::table::{Cell, Column, Row, cell, cell_on};
@@ -25,9 +26,6 @@ use std::time::{Duration, Instant};
 
 /// Cells at a time, unless `HANDSCOPE_SEAMS_AT_A_TIME` says otherwise: nearly all of their time they wait, but a slow guest is late then.
 const AT_A_TIME: usize = 4;
-/// A hand that takes its time to answer, so that what is written in a row takes a second.
-const THINKS: Duration = Duration::from_millis(40);
-
 /// One try: a cell on a wire.
 #[derive(Debug, Clone, Copy)]
 struct Try {
@@ -41,6 +39,14 @@ impl Try {
     fn name(&self) -> String {
         let (row, column) = (self.row.name(), self.column.name());
         format!("{row} / {column} / {}", hand::name(self.protocol))
+    }
+
+    fn hand(&self) -> HandKind {
+        match (self.row, self.column) {
+            (_, Column::RestsShort) => HandKind::RestsShort,
+            (Row::Params, _) => HandKind::Slow,
+            _ => HandKind::Usual,
+        }
     }
 
     /// Every way in which this row moves a hand.
@@ -81,6 +87,7 @@ impl Try {
                 | Column::GatewayRefuses
                 | Column::StopThenLost
                 | Column::RepliesSlow
+                | Column::RestsShort
                 | Column::JointFrozen
                 | Column::OddStop
                 | Column::GrantedAgain
@@ -120,14 +127,10 @@ impl Try {
             witness.seen()
         };
         match start {
-            Start::Window(start) => watch(&mut start(Window::live(self.protocol))),
+            Start::Window(start) => watch(&mut start(Window::live(self.protocol, self.hand()))),
             Start::Process(start) => {
-                let thinks = match self.row {
-                    Row::Params => THINKS,
-                    _ => Duration::ZERO,
-                };
                 let number = u8::try_from(self.number % 250).unwrap();
-                watch(&mut start(Place::new(self.protocol, number, thinks)))
+                watch(&mut start(Place::new(self.protocol, number, self.hand())))
             }
         }
     }
@@ -297,6 +300,7 @@ events! {
     the_gateway_refuses GatewayRefuses,
     a_stop_meets_a_lost_link StopThenLost,
     replies_are_slow RepliesSlow,
+    the_hand_rests_short RestsShort,
     the_computer_is_busy Busy,
     no_descriptor_is_left NoDescriptors,
     one_joint_reads_the_same JointFrozen,
@@ -316,7 +320,7 @@ fn the_window_is_closed() {
     .into_iter()
     .enumerate()
     {
-        let mut window = start(Window::live(protocol));
+        let mut window = start(Window::live(protocol, HandKind::Usual));
         let mut witness = Witness::of(&mut window, number, true);
         witness.closes();
         let seen = witness.seen();
@@ -456,9 +460,9 @@ fn is_held_hot((name, start, protocol, celsius, words): &HotCell) -> Result<(), 
         witness.seen()
     };
     let tried = || match start {
-        Start::Window(start) => watch(&mut start(Window::live(*protocol))),
+        Start::Window(start) => watch(&mut start(Window::live(*protocol, HandKind::Usual))),
         Start::Process(start) => {
-            let place = Place::new(*protocol, 200 + celsius % 50, Duration::ZERO);
+            let place = Place::new(*protocol, 200 + celsius % 50, HandKind::Usual);
             watch(&mut start(place))
         }
     };
@@ -472,7 +476,7 @@ fn is_held_hot((name, start, protocol, celsius, words): &HotCell) -> Result<(), 
 
 #[test]
 fn a_drive_that_is_hot_before_anything_moves_is_named_as_the_cause() {
-    let place = Place::new(Protocol::Tcp, 251, Duration::ZERO).reads_temperature(80);
+    let place = Place::new(Protocol::Tcp, 251, HandKind::Usual).reads_temperature(80);
     let mut process: Process = place.trial();
     let begun = Instant::now();
     while !mover::Mover::has_ended(&mut process) {

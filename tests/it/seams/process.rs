@@ -1,7 +1,7 @@
 //! Rows of the table that a command moves: the real program in a process of its own, in real time, at the hand of a cell on a real wire.
 
 use crate::inputs::stops::odd_stops;
-use crate::seams::hand::SeamHand;
+use crate::seams::hand::{HandKind, SeamHand};
 use crate::seams::mover::Mover;
 use crate::setup::body::Protocol;
 use crate::setup::hand;
@@ -96,10 +96,10 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn new(protocol: Protocol, number: u8, thinks: Duration) -> Self {
+    pub(super) fn new(protocol: Protocol, number: u8, kind: HandKind) -> Self {
         let (runtime, folder) = (Time::Real.runtime(), tempfile::tempdir().unwrap());
         let inside = runtime.enter();
-        let hand = SeamHand::on_a_wire(protocol, folder.path(), number + 1, thinks);
+        let hand = SeamHand::on_a_wire(protocol, folder.path(), number + 1, kind);
         drop(inside);
         Self {
             hand,

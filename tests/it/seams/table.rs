@@ -50,6 +50,7 @@ pub(super) enum Column {
     GatewayRefuses,
     StopThenLost,
     RepliesSlow,
+    RestsShort,
     Busy,
     NoDescriptors,
     JointFrozen,
@@ -94,7 +95,7 @@ impl Row {
 }
 
 impl Column {
-    pub(super) const ALL: [Self; 27] = [
+    pub(super) const ALL: [Self; 28] = [
         Self::Signal,
         Self::Killed,
         Self::Panic,
@@ -117,6 +118,7 @@ impl Column {
         Self::GatewayRefuses,
         Self::StopThenLost,
         Self::RepliesSlow,
+        Self::RestsShort,
         Self::Busy,
         Self::NoDescriptors,
         Self::JointFrozen,
@@ -148,6 +150,7 @@ impl Column {
             Self::GatewayRefuses => "gateway refuses",
             Self::StopThenLost => "stop, then link lost",
             Self::RepliesSlow => "slow replies",
+            Self::RestsShort => "hand rests short",
             Self::Busy => "computer busy",
             Self::NoDescriptors => "no descriptor left",
             Self::JointFrozen => "one joint's feedback frozen",
@@ -263,7 +266,7 @@ const fn told_by_the_window(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => HELD_BY_COMMANDS,
         Column::GatewayRefuses => Tried(NothingMore(0), LINK_IS_LOST),
         Column::StopThenLost => Tried(Held(4000), ""),
-        Column::RepliesSlow => Tried(Held(4500), ""),
+        Column::RepliesSlow | Column::RestsShort => Tried(Held(4500), ""),
         Column::Busy => VIRTUAL,
         Column::NoDescriptors => NO_PROCESS,
         Column::JointFrozen => Tried(Held(1500), ""),
@@ -296,6 +299,7 @@ const fn series(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::Busy
         | Column::NoDescriptors
         | Column::JointFrozen
@@ -330,6 +334,7 @@ const fn leading(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::JointFrozen
         | Column::OddStop
         | Column::FaultOrHeat => told_by_the_window(column),
@@ -366,6 +371,7 @@ const fn gamepad(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::FaultOrHeat => leading(column),
     }
 }
@@ -394,6 +400,7 @@ const fn exhibition(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::Busy
         | Column::NoDescriptors
         | Column::JointFrozen
@@ -405,6 +412,7 @@ const fn exhibition(column: Column) -> Cell {
 /// The hand does it alone; no joint moves.
 const fn calibration(column: Column) -> Cell {
     match column {
+        Column::RestsShort => CannotBe("no joint is told where to go"),
         Column::Signal | Column::Killed | Column::Panic | Column::DisplayLost => {
             CannotBe("the hand calibrates alone: nothing was told that could be taken back")
         }
@@ -453,7 +461,7 @@ const fn trial(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "feedback shows rest"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
-        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
+        Column::RepliesSlow | Column::RestsShort => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
         Column::JointFrozen => Tried(Held(1500), ""),
@@ -482,7 +490,7 @@ const fn follow(column: Column) -> Cell {
         Column::HolderKilled | Column::HolderFrozen => Tried(Held(3000), ""),
         Column::GatewayRefuses => Tried(NothingMore(0), "lost"),
         Column::StopThenLost => Tried(HeldAtTheEnd(4000), ""),
-        Column::RepliesSlow => Tried(HeldAtTheEnd(4500), ""),
+        Column::RepliesSlow | Column::RestsShort => Tried(HeldAtTheEnd(4500), ""),
         Column::Busy => Tried(HeldAtTheEnd(6000), ""),
         Column::NoDescriptors => Tried(HeldAtTheEnd(4000), ""),
         Column::JointFrozen => Tried(Held(1500), ""),
@@ -509,6 +517,7 @@ const fn share(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::Busy
         | Column::NoDescriptors
         | Column::JointFrozen
@@ -551,6 +560,7 @@ const fn stdio(column: Column) -> Cell {
         | Column::GatewayRefuses
         | Column::StopThenLost
         | Column::RepliesSlow
+        | Column::RestsShort
         | Column::Busy
         | Column::NoDescriptors
         | Column::JointFrozen => share(column),
@@ -560,6 +570,7 @@ const fn stdio(column: Column) -> Cell {
 /// Defaults are written one after the other; nothing moves.
 const fn params(column: Column) -> Cell {
     match column {
+        Column::RestsShort => CannotBe("no joint is told where to go"),
         Column::Frozen | Column::DisplayLost => NO_WINDOW,
         Column::SecondMaster => CannotBe("another controller moves joints, and nothing here does"),
         Column::Panic => NO_PANIC,

@@ -1,7 +1,7 @@
 //! Rows of the table that the window moves: the whole program without its display, in virtual time, in front of the hand of a cell.
 
 use crate::pad::setup::{self as pad, PAD};
-use crate::seams::hand::{InMemory, SeamHand};
+use crate::seams::hand::{HandKind, InMemory, SeamHand};
 use crate::seams::mover::Mover;
 use crate::setup::body::Protocol;
 use crate::setup::hand;
@@ -66,12 +66,12 @@ pub(super) struct Window {
 
 impl Window {
     /// Connected, with nothing asked of it yet.
-    pub(super) fn live(protocol: Protocol) -> Self {
+    pub(super) fn live(protocol: Protocol, kind: HandKind) -> Self {
         let mut hands = None;
         let (pad, reports) = mpsc::channel(64);
         let reports = Mutex::new(Some(reports));
         let program = Program::start(Time::Virtual, None, || {
-            let (hand, leader) = (SeamHand::in_memory(protocol), hand::plain());
+            let (hand, leader) = (SeamHand::in_memory(protocol, kind), hand::plain());
             hands = Some((Arc::clone(&hand), leader.clone()));
             let place: Endpoint = LEADER.parse().unwrap();
             let others = vec![(place, leader)];

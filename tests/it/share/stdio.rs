@@ -205,6 +205,36 @@ fn a_motion_says_where_it_ended_and_what_is_held() {
 }
 
 #[test]
+fn speed_and_threshold_are_those_of_the_arming_until_others_are_named() {
+    // SPEED_SET and FORCE_SET of the index finger.
+    let (speed_set, force_set) = (1528, 1504);
+    let (_sim, hand) = sim_on_tcp(&[]);
+    let mut client = Client::of(&hand);
+    let mut limits = || [client.read(speed_set, 1)[0], client.read(force_set, 1)[0]];
+    let mut script = Script::start(&hand);
+    let bend = json!({"do": "move", "angle": [null, null, null, 900, null, null]});
+    script.done(json!({"do": "arm", "speed": 400, "force_g": 333}));
+    assert_eq!(limits(), [400, 333]);
+    script.done(bend.clone());
+    assert_eq!(limits(), [400, 333], "a motion that names none");
+    script.done(to_index(950, 300));
+    assert_eq!(limits(), [300, 333], "a motion that names a speed");
+    script.done(bend);
+    assert_eq!(limits(), [400, 333], "and the next");
+    let mut slowly = to_index(0, 100);
+    slowly["id"] = Value::Null;
+    script.tell(&slowly);
+    while script.until("state")["angle"][3].as_i64().unwrap() > 800 {}
+    script.done(json!({"do": "arm", "speed": 50}));
+    let began = Instant::now();
+    while limits() != [50, 500] {
+        assert!(began.elapsed() < PATIENCE, "{:?}", limits());
+    }
+    script.done(json!({"do": "stop"}));
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
 fn the_end_of_the_script_stops_the_hand_at_once() {
     let (_sim, hand) = sim_on_tcp(&[]);
     let mut client = Client::of(&hand);

@@ -50,8 +50,9 @@ pub(crate) enum Ask {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct MoveAsk {
     pub(crate) targets: Targets,
-    pub(crate) speed: Speed,
-    pub(crate) force: Force,
+    /// Those of the arming, where none is asked for.
+    pub(crate) speed: Option<Speed>,
+    pub(crate) force: Option<Force>,
     pub(crate) settles: bool,
 }
 
@@ -127,8 +128,8 @@ fn ask(fields: &mut Fields) -> Result<Ask, String> {
     let what = take(fields, "do", text)?.unwrap_or_default();
     let ask = match what.as_str() {
         "arm" => Ask::Arm(ArmRequest {
-            speed: PerDof::splat(moving_speed(fields)?),
-            force: PerDof::splat(rated_force(fields)?),
+            speed: PerDof::splat(moving_speed(fields)?.unwrap_or(Speed::GENTLE)),
+            force: PerDof::splat(rated_force(fields)?.unwrap_or(Force::GENTLE)),
         }),
         "move" => Ask::Move(MoveAsk {
             targets: targets(fields)?,
@@ -207,19 +208,17 @@ fn targets(fields: &mut Fields) -> Result<Targets, String> {
     Ok(targets)
 }
 
-/// Gentle, where none is asked for.
-fn moving_speed(fields: &mut Fields) -> Result<Speed, String> {
-    let speed = take(fields, "speed", fields::whole)?;
-    let speed = speed.map_or(Ok(Speed::GENTLE), Speed::new);
-    let speed = speed.map_err(|error| error.to_string()).and_then(moving);
+fn moving_speed(fields: &mut Fields) -> Result<Option<Speed>, String> {
+    let speed = take(fields, "speed", fields::whole)?.map(Speed::new);
+    let speed = speed.transpose().map_err(|error| error.to_string());
+    let speed = speed.and_then(|speed| speed.map(moving).transpose());
     speed.map_err(|why| format!("speed: {why}"))
 }
 
-/// Gentle, where none is asked for.
-fn rated_force(fields: &mut Fields) -> Result<Force, String> {
-    let force = take(fields, "force_g", fields::whole)?;
-    let force = force.map_or(Ok(Force::GENTLE), Force::new);
-    let force = force.map_err(|error| error.to_string()).and_then(rated);
+fn rated_force(fields: &mut Fields) -> Result<Option<Force>, String> {
+    let force = take(fields, "force_g", fields::whole)?.map(Force::new);
+    let force = force.transpose().map_err(|error| error.to_string());
+    let force = force.and_then(|force| force.map(rated).transpose());
     force.map_err(|why| format!("force_g: {why}"))
 }
 
@@ -232,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_said_is_gentle_and_null_leaves_a_joint_alone() {
+    fn what_is_not_said_is_as_armed_and_null_leaves_a_joint_alone() {
         let asked = Asked::parse(
             br#"{"id":7,"do":"move","angle":[0,null,null,400.0,null,1e3]}"#,
             Side::Right,
@@ -244,15 +243,13 @@ mod tests {
         let counts = ask.targets.map(|to| to.map(Angle::get));
         let want = [Some(0), None, None, Some(400), None, Some(1000)];
         assert_eq!(Dof::ALL.map(|dof| counts[dof]), want);
-        assert_eq!(
-            (ask.speed, ask.force, ask.settles),
-            (Speed::GENTLE, Force::GENTLE, false)
-        );
+        assert_eq!((ask.speed, ask.force, ask.settles), (None, None, false));
         let armed = parse(r#"{"do":"arm","speed":50}"#);
         let Ok(Ask::Arm(limits)) = armed else {
             panic!("{armed:?}")
         };
         assert_eq!(limits.speed, PerDof::splat(Speed::nearest(50)));
+        assert_eq!(limits.force, PerDof::splat(Force::GENTLE));
         assert!(matches!(
             parse(r#"{"right":[1,1,1,1,1,1],"seq":1}"#),
             Ok(Ask::Follow(_))

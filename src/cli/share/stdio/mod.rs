@@ -14,7 +14,7 @@ use crate::cli::share::stdio::refused::{RefusalKind, Refused};
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
+use crate::hand::{ArmEpoch, Group, HandCommand, HandSample, PerDof};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -181,8 +181,8 @@ impl Script<'_> {
     /// Stops a hand that may move, and ends the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
-        self.task = None;
-        // Nobody reads any more what it tells.
+        // Perhaps nobody reads any more what it tells.
+        let _told = self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into());
         let _told = self.look();
         if link.status().owes_stop() {
             let back = async {
@@ -425,8 +425,10 @@ impl Script<'_> {
             };
             let start = MoveStart {
                 targets: ask.targets,
-                speed: ask.speed,
-                force: ask.force,
+                limits: ArmRequest {
+                    speed: ask.speed.map_or(right.limits.speed, PerDof::splat),
+                    force: ask.force.map_or(right.limits.force, PerDof::splat),
+                },
                 settles: ask.settles,
                 epoch,
                 lease: right.lease,
@@ -447,7 +449,7 @@ impl Script<'_> {
     fn follow(&mut self, id: Value, right: Right, line: StreamLine) -> Result<(), NobodyReads> {
         if line.held == Some(false) && self.followed_by().is_none() {
             // Nothing is followed; what moves the hand is ended all the same.
-            self.end_task(Refused::replaced())?;
+            self.end_task(LeaseRefusal::Ended(Disarmed::Released).into())?;
             let done = self.hand.link.halt(right.lease);
             return self.reply(&id, done.map(|()| json!({})).map_err(Refused::from));
         }
@@ -648,7 +650,13 @@ async fn granted(
             },
         };
         match armed(link, right).await {
-            Ok(_epoch) => return Ok(right),
+            Ok(epoch) => {
+                if held.is_some() {
+                    // Its arming goes on, and writes nothing by itself.
+                    link.set(right.lease, &limits.setpoints(epoch))?;
+                }
+                return Ok(right);
+            }
             // Nothing moved yet: it begins anew with a link that is back.
             Err(no) if no.kind == LINK_LOST && held.is_none() && Instant::now() < until => {}
             Err(no) => return Err(no),

@@ -54,10 +54,34 @@ struct Joint {
     due: Option<(u64, Wrote)>,
     /// The newest write through a wire that is gone, if it must have acted by now: nobody knows when.
     stale: Option<Wrote>,
-    /// The least and the largest of our values that were read back as written.
-    taken: Option<(i16, i16)>,
+    /// The least and the largest value that it was seen to hold: a hand that limits what it takes holds none beyond.
+    takes: Option<(i16, i16)>,
     /// What we wrote last.
     wrote: Option<i16>,
+}
+
+impl Joint {
+    /// It was seen to hold this.
+    fn takes(&mut self, value: i16) {
+        if value != LEAVE && value != SET_OUT_OF_RANGE {
+            let (least, most) = self.takes.unwrap_or((value, value));
+            self.takes = Some((least.min(value), most.max(value)));
+        }
+    }
+
+    /// True if a hand that limits what it takes would show this: it never held a value beyond.
+    fn limits(&self, wrote: Wrote, read: i16) -> bool {
+        let Wrote::Value(wrote) = wrote else {
+            return false;
+        };
+        self.takes.is_none_or(|(least, most)| {
+            if wrote > read {
+                most <= read
+            } else {
+                least >= read
+            }
+        })
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -240,6 +264,7 @@ impl SetpointWatch {
         for (dof, value) in values.iter() {
             let joint = &mut self.joints[dof];
             joint.held = Some(*value);
+            joint.takes(*value);
             joint.open_from = self.next;
             joint.due = None;
         }
@@ -247,7 +272,13 @@ impl SetpointWatch {
 
     fn judge(&mut self, dof: Dof, read: i16, angle: Option<i16>) -> Verdict {
         let joint = self.joints[dof];
+        let open = self.open(dof);
         if joint.held == Some(read) {
+            if !open.is_empty() && open.iter().all(|(_, wrote)| *wrote == Wrote::Value(read)) {
+                self.joints[dof].takes(read);
+                self.settle(dof, read, self.next);
+                return Verdict::Ours;
+            }
             let says_this =
                 |value| matches!(value, Wrote::Value(_)) && self.may_be(value, read, angle);
             let is_late = |(_, value)| matches!(value, Wrote::Value(_)) && !says_this(value);
@@ -259,17 +290,14 @@ impl SetpointWatch {
                 Verdict::Ours
             };
         }
-        let open = self.open(dof);
         let is_this = |(_, value): &&(u64, Wrote)| self.may_be(*value, read, angle);
         if let Some((number, value)) = open.iter().find(is_this).copied() {
             self.clamps_leave &= !(value == Wrote::Leave && read == LEAVE);
             // A value near ours may be one from before it, which acts yet.
             let is_rounded = matches!(value, Wrote::Value(value) if value != read);
             self.settle(dof, read, number + u64::from(!is_rounded));
-            if let Wrote::Value(value) = value {
-                let joint = &mut self.joints[dof];
-                let (least, most) = joint.taken.unwrap_or((value, value));
-                joint.taken = Some((least.min(value), most.max(value)));
+            if matches!(value, Wrote::Value(_)) {
+                self.joints[dof].takes(read);
             }
             return Verdict::Ours;
         }
@@ -280,12 +308,14 @@ impl SetpointWatch {
         let mut earlier = earlier.map(|write| write.values[dof]).chain(joint.stale);
         if joint.held.is_none() || earlier.any(|value| self.may_be(value, read, angle)) {
             self.joints[dof].held = Some(read);
+            self.joints[dof].takes(read);
             return Verdict::Ours;
         }
-        let is_limit = |(_, wrote): &&(u64, Wrote)| is_limit(joint, *wrote, read);
+        let is_limit = |(_, wrote): &&(u64, Wrote)| joint.limits(*wrote, read);
         match open.iter().find(is_limit).copied() {
             Some((number, _)) => {
                 self.settle(dof, read, number + 1);
+                self.joints[dof].takes(read);
                 Verdict::NotTaken
             }
             None if open.is_empty() => Verdict::Changed,
@@ -327,20 +357,6 @@ impl SetpointWatch {
     }
 }
 
-/// True if a hand that limits what it takes would show this: nothing beyond it was ever taken.
-fn is_limit(joint: Joint, wrote: Wrote, read: i16) -> bool {
-    let Wrote::Value(wrote) = wrote else {
-        return false;
-    };
-    joint.taken.is_none_or(|(least, most)| {
-        if wrote > read {
-            most <= read
-        } else {
-            least >= read
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -364,7 +380,7 @@ mod tests {
         let mut all = Vec::new();
         for every in [20, 1000] {
             let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
-            let (mut holds, mut under_way) = (1000, VecDeque::new());
+            let (mut holds, mut under_way) = (takes(Wrote::Value(1000), 1000), VecDeque::new());
             for t in 0..20_000 {
                 if t > 500 && t % every == 0 {
                     watch.wrote(PerDof::splat(tells(t)), ms(t));
@@ -460,6 +476,32 @@ mod tests {
             watch.read(&PerDof::splat(held + 100), None, ms(5050));
             let foreign = watch.read(&PerDof::splat(held + 100), None, ms(5100));
             assert!(matches!(foreign, Seen::Foreign(_)), "{held}, {told}");
+        }
+    }
+
+    /// Another's value comes before ours is read back.
+    #[test]
+    fn a_value_beyond_what_the_hand_held_or_to_a_joint_that_stays_is_no_limit_of_the_hand() {
+        for (held, told, foreign) in [
+            (1000, 1000, 500),
+            (500, 500, 900),
+            (1000, 600, 300),
+            (300, 600, 900),
+            (0, 500, 700),
+        ] {
+            let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
+            let read = |watch: &mut SetpointWatch, value, t| {
+                watch.read(&PerDof::splat(value), None, ms(t))
+            };
+            assert_eq!(read(&mut watch, held, 0), Seen::Usual);
+            watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
+            let seen = (0..10).map(|nth| read(&mut watch, foreign, 110 + 40 * nth));
+            let foreign = seen.collect::<Vec<_>>();
+            let is_foreign = |seen: &Seen| matches!(seen, Seen::Foreign(_));
+            assert!(
+                foreign[..3].iter().any(is_foreign),
+                "{held}, {told}: {foreign:?}"
+            );
         }
     }
 
