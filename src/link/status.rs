@@ -8,8 +8,8 @@ use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 use std::time::Duration;
 
-/// A reading of a quick hand is younger.
-const FRESH_FOR: Duration = Duration::from_millis(250);
+/// Angles older than this are neither armed with, nor held to, nor gone by, on a way that is not slow.
+pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 
 /// Everything the window shows of the link.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -83,7 +83,7 @@ impl LinkStatus {
 
     /// How old a reading may be by which it is judged where a motion stands.
     pub fn fresh_for(&self) -> Duration {
-        FRESH_FOR + self.slow_allowance()
+        ANGLE_FRESH + self.slow_allowance()
     }
 
     /// Whether it may go on though its right to be moved is over, and nothing showed rest: it owes a stop, unless another controller

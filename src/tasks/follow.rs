@@ -19,8 +19,6 @@ use tokio::time::sleep;
 
 /// How often time is looked at where nothing is offered or read.
 const TICK: Duration = Duration::from_millis(5);
-/// Angles older than this are not gone by.
-const FRESH_FOR: Duration = Duration::from_millis(250);
 /// The delay that is told is that of so many targets.
 const DELAYS: usize = 512;
 /// Offers and records that are looked at before the hand is again: whoever sends without a pause keeps nothing else waiting.
@@ -191,8 +189,9 @@ impl<H: TaskHand> FollowRun<'_, H> {
     /// Where each joint is, if that is known freshly.
     fn pose(&self) -> PerDof<Option<Angle>> {
         let now = self.start.clock.now();
+        let fresh_for = self.hand.status().fresh_for();
         let angle = self.sample.angle;
-        let angle = angle.filter(|angle| angle.age(now) <= FRESH_FOR);
+        let angle = angle.filter(|angle| angle.age(now) <= fresh_for);
         PerDof::from_fn(|dof| angle.and_then(|angle| AngleReading::hold(angle.value[dof])))
     }
 

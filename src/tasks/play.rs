@@ -16,8 +16,6 @@ use tokio::time::timeout;
 
 /// How often time is looked at where nothing is read.
 const TICK: Duration = Duration::from_millis(10);
-/// Angles older than this are not gone by.
-const FRESH_FOR: Duration = Duration::from_millis(250);
 
 /// What a sequence begins with.
 #[derive(Debug, Clone)]
@@ -199,13 +197,13 @@ impl<H: TaskHand> Playing<'_, H> {
 
     /// Sends the fingers whose tip was touched or let go.
     fn react(&mut self, tell: &mut impl FnMut(PlayStep)) {
-        let now = self.clock.now();
+        let (now, fresh_for) = (self.clock.now(), self.hand.status().fresh_for());
         let Some(reacting) = &mut self.reaction else {
             return;
         };
         let mut setpoints = Setpoints::none(self.epoch);
         for (finger, tip) in self.sample.tactile.iter() {
-            let fresh = tip.filter(|tip| tip.age(now) <= FRESH_FOR);
+            let fresh = tip.filter(|tip| tip.age(now) <= fresh_for);
             let Some(newtons) = fresh.and_then(|tip| tip.value.normal()) else {
                 continue;
             };
@@ -226,11 +224,11 @@ impl<H: TaskHand> Playing<'_, H> {
 
     /// Angles that are fresh enough to go by.
     fn angles(&self) -> Option<PerDof<AngleReading>> {
-        let now = self.clock.now();
+        let (now, fresh_for) = (self.clock.now(), self.hand.status().fresh_for());
         let angle = self
             .sample
             .angle
-            .filter(|angle| angle.age(now) <= FRESH_FOR)?;
+            .filter(|angle| angle.age(now) <= fresh_for)?;
         Some(angle.value)
     }
 

@@ -314,8 +314,8 @@ fn ended(end: FollowEnd, sender: &str) -> String {
             Disarmed::FrozenFeedback => {
                 return format!("{why}: the hand is held where it must be, look at it");
             }
+            Disarmed::Person => return format!("{why}, and goes where it was told to go last"),
             Disarmed::Stop
-            | Disarmed::Person
             | Disarmed::Fault
             | Disarmed::Stale
             | Disarmed::Released

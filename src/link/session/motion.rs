@@ -4,6 +4,7 @@ use crate::hand::ArmEpoch;
 use crate::hand::Setpoints;
 use crate::hand::{Dof, HandCommand, HandSample, Moment, PerDof, RegisterWrite, Target, Timed};
 use crate::link::session::hold::HoldWatch;
+use crate::link::status::ANGLE_FRESH;
 use crate::link::wanted::AskedArm;
 use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
@@ -14,8 +15,6 @@ pub const SETPOINT_HZ_MAX: u32 = 200;
 /// On a slow line rounds leave three quarters of the time to what is read, as long as that lets this many a second.
 const SETPOINT_HZ_SLOW: u32 = 50;
 const ROUND_SHARE: u32 = 4;
-/// Angles older than this are neither armed with nor held to.
-pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 /// An armed hand whose angles grow this old is disarmed.
 pub(crate) const ANGLE_LOST: Duration = Duration::from_millis(500);
 /// An arming waits this long for readings that are missing: on a link that was just made, or after a stall of this computer.

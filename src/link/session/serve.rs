@@ -13,10 +13,10 @@ use crate::link::series::Series;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{
-    ANGLE_FRESH, ANGLE_LOST, ARM_READS_TIMEOUT, PendingArm, arm_refusal, hold_targets,
+    ANGLE_LOST, ARM_READS_TIMEOUT, PendingArm, arm_refusal, hold_targets,
 };
 use crate::link::session::stall::watched;
-use crate::link::status::LinkTrouble;
+use crate::link::status::{ANGLE_FRESH, LinkTrouble};
 use crate::link::wanted::{AskedArm, PendingControl};
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
 use std::sync::Arc;

@@ -102,8 +102,9 @@ fn every_seeded_schedule_keeps_the_rules() {
     }
     // Nor are there many joints that move for long enough: `link::frozen` tries that alone.
     assert!(seen.doubts > schedules / 1000, "{seen:?}");
-    // In a second and a half of faults and holds of our own, few of them can be: `link::others` tries that alone.
-    assert!(seen.foreign_noticed > schedules / 500, "{seen:?}");
+    // In a second and a half of faults, in which one hand in four is armed at all and old poses soon end that, few of them can be:
+    // `link::others` tries that alone.
+    assert!(seen.foreign_noticed > schedules / 1000, "{seen:?}");
 }
 
 /// Whether an oracle noticed with these words. One may notice first what follows from it.
