@@ -147,9 +147,15 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
         ),
         GripEnd::Late => Err("the hand did not get there in time".into()),
         GripEnd::Person => Err("ended by a person".into()),
-        GripEnd::OtherWrote => Err(
-            "another controller wrote to the hand, or talks to it: let one of them move it".into(),
-        ),
+        GripEnd::OtherWrote => {
+            let did = report.foreign.map_or_else(
+                || "talks to the hand".into(),
+                |wrote| format!("wrote {wrote}"),
+            );
+            Err(format!(
+                "another controller {did}: let one of them move the hand"
+            ))
+        }
         GripEnd::Broken(why) => Err(match report.disarmed {
             Some(disarmed) => format!("{}: {disarmed}", broken(why)),
             None => broken(why).into(),

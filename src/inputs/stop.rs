@@ -93,7 +93,11 @@ pub(crate) fn lets_go(text: &[u8]) -> bool {
             Token::Text(name),
             Token::Mark(b':' | b'='),
             Token::Text(value),
-        ] => name.lower() == "held" && value.is_ended && is_no(&value.lower()),
+        ] if name.lower() == "held" => {
+            let value_is = value.lower();
+            // The whole word, at which the text was cut off, is one too; of a number more may be missing.
+            is_no(&value_is) && (value.is_ended || value_is == "false")
+        }
         _ => false,
     })
 }
@@ -217,6 +221,8 @@ pub(crate) mod tests {
             (r#"{"held":true}"#, false),
             (r#"{"held":"#, false),
             (r#"{"held":fals"#, false),
+            (r#"{"v":1,"held":false"#, true),
+            (r#"{"held":0"#, false),
             (r#"{"right":[1]}"#, false),
         ] {
             assert_eq!(lets_go(text.as_bytes()), lets, "{text}");

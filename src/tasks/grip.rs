@@ -11,7 +11,7 @@ use crate::link::session::watch::other_controller::OtherController;
 use crate::link::{Clock, Lease, Stop};
 use crate::poses::player::PlayEnd;
 use crate::poses::way::{WayPart, pinch_way};
-use crate::record::{Disarmed, Record, Rest};
+use crate::record::{Disarmed, Record, Rest, SetpointConflict};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::reason;
 use std::collections::VecDeque;
@@ -79,6 +79,8 @@ pub struct GripReport {
     pub end: GripEnd,
     /// Why the hand was not armed any more then, if it was not.
     pub disarmed: Option<Disarmed>,
+    /// What another controller was seen to write.
+    pub foreign: Option<SetpointConflict>,
     /// What is between the pads then, by the model; `None` where they do not face each other, or angles are old.
     pub gap: Option<PinchGap>,
     /// What the hand gripped then.
@@ -141,9 +143,11 @@ pub async fn grip<H: TaskHand>(
         | GripEnd::OtherWrote
         | GripEnd::Broken(_) => Some(hand.stopped().await),
     };
+    let foreign = run.setpoints.others.foreign;
     GripReport {
         end,
         disarmed,
+        foreign: foreign.or(hand.status().foreign_setpoint),
         gap: run
             .angles()
             .and_then(|angles| pinch_gap(&angles.map(f32::from))),

@@ -1,5 +1,6 @@
 //! The command line of `trial` as clap sees it, and the plan that it stands for.
 
+use crate::cli::out::WrongUsage;
 use crate::cli::parse::{angle, dof, force, number, seconds, speed, whole};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::transport::Endpoint;
@@ -96,7 +97,7 @@ impl TrialArgs {
     pub(crate) fn plan(&self) -> TrialPlan {
         let close = PerDof::from_fn(|dof| self.joint.contains(&dof).then_some(self.close));
         let mut start = close.map(|target| target.map(|_| self.start));
-        for (dof, at) in self.pose.iter().filter(|(dof, _)| close[*dof].is_none()) {
+        for (dof, at) in &self.pose {
             start[*dof] = Some(*at);
         }
         TrialPlan {
@@ -142,6 +143,30 @@ impl TrialArgs {
 
 fn grams(text: &str) -> Result<f64, String> {
     number(text, 0.0..=4000.0, "a force between 0 and 4000 g")
+}
+
+/// Each joint is named once: it closes, or stays still.
+pub(crate) fn check_joints(closes: &[Dof], stays: &[(Dof, Angle)]) -> anyhow::Result<()> {
+    for (nth, dof) in closes.iter().enumerate() {
+        if closes[..nth].contains(dof) {
+            return Err(WrongUsage::error(format!(
+                "--joint names {} twice",
+                dof.name()
+            )));
+        }
+    }
+    for (nth, (dof, at)) in stays.iter().enumerate() {
+        let (name, at) = (dof.name(), at.get());
+        if closes.contains(dof) {
+            return Err(WrongUsage::error(format!(
+                "{name} closes and so cannot stay still: leave out --pose {name}={at}, or take {name} out of --joint"
+            )));
+        }
+        if stays[..nth].iter().any(|(before, _)| before == dof) {
+            return Err(WrongUsage::error(format!("--pose names {name} twice")));
+        }
+    }
+    Ok(())
 }
 
 pub(crate) fn place(text: &str) -> Result<(Dof, Angle), String> {

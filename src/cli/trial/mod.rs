@@ -14,6 +14,7 @@ use anyhow::bail;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.
 pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
+    args::check_joints(&args.joint, &args.pose)?;
     let plan = args.plan();
     plan.check()
         .map_err(|error| WrongUsage::error(error.to_string()))?;

@@ -66,7 +66,7 @@ impl TuneArgs {
         let usual = SearchGoal::new(&self.joint, self.limit);
         let close = PerDof::from_fn(|dof| self.joint.contains(&dof).then_some(self.close));
         let mut start = close.map(|target| target.map(|_| self.start));
-        for (dof, at) in self.pose.iter().filter(|(dof, _)| close[*dof].is_none()) {
+        for (dof, at) in &self.pose {
             start[*dof] = Some(*at);
         }
         SearchGoal {

@@ -6,6 +6,7 @@ mod output;
 pub(crate) use args::TuneArgs;
 
 use crate::cli::out::{Out, WrongUsage};
+use crate::cli::trial::args::check_joints;
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsWanted;
@@ -17,6 +18,7 @@ use anyhow::bail;
 
 /// Runs the search. Fails if it ended early, or if there is nothing to claim.
 pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
+    check_joints(&args.joint, &args.pose)?;
     let search =
         SettingsSearch::new(args.goal()).map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.arm {

@@ -26,6 +26,8 @@ const TEMPERATURE_HZ: f64 = 5.0;
 /// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
 /// three of them show another controller within a second.
 const WATCHED_HZ: f64 = 25.0;
+/// On a way that is too slow for that, they are read before anything but the pose after this.
+const WATCHED_WITHIN: Duration = Duration::from_millis(250);
 /// A round this long after the one before is none of a stream.
 const ALONE: Duration = Duration::from_millis(100);
 /// Once one of them is doubtful, they are read before each write for so long.
@@ -128,6 +130,8 @@ pub(crate) struct PollPlan {
     round: Option<(Moment, bool)>,
     /// Setpoints are read before each write until then.
     doubtful_until: Moment,
+    /// Setpoints are read before anything but the pose from then on.
+    look_at: Option<Moment>,
     parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
@@ -146,6 +150,7 @@ impl PollPlan {
             wrote: None,
             round: None,
             doubtful_until: now,
+            look_at: None,
             parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
@@ -273,9 +278,13 @@ impl PollPlan {
         };
         let any = || due().reduce(|a, b| a.later(b, now));
         let others = || {
-            due()
-                .filter(|due| !self.goes_with_motion(due.part, tempo))
-                .reduce(|a, b| a.later(b, now))
+            let looked_at = || due().find(|due| self.is_looked_at(due, now));
+            let longest = || {
+                due()
+                    .filter(|due| !self.goes_with_motion(due.part, tempo))
+                    .reduce(|a, b| a.later(b, now))
+            };
+            looked_at().or_else(longest)
         };
         let between = match self.priority {
             PollPriority::Force => 1,
@@ -317,6 +326,13 @@ impl PollPlan {
         due.filter(|due| !self.goes_with_motion(due.part, Tempo::Motion))
             .reduce(|a, b| a.later(b, now))
             .map(|first| self.question(first, now, Tempo::Motion))
+    }
+
+    /// True for setpoints that were just written, are doubtful, or were not read for long though they are watched.
+    fn is_looked_at(&self, due: &Due, now: Moment) -> bool {
+        let is_wanted = self.look_at.is_some_and(|at| at <= now);
+        let is_old = self.watched && now.since(due.asked) >= WATCHED_WITHIN;
+        due.part == ReadPart::Targets && (is_wanted || is_old)
     }
 
     /// When something is due next.
@@ -385,6 +401,7 @@ impl PollPlan {
 
     /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
     pub(crate) fn look_at_settings(&mut self, at: Moment) {
+        self.look_at = Some(self.look_at.map_or(at, |before| before.min(at)));
         for due in &mut self.parts {
             if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
                 due.next = due.next.min(at);
@@ -413,6 +430,9 @@ impl PollPlan {
                 // A part that came along in company before its time is not put off for all the times it did.
                 due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
+                if due.part == ReadPart::Targets {
+                    self.look_at = self.look_at.filter(|look| at < *look);
+                }
                 if due.part.is_motion() {
                     self.since_motion = 0;
                 }

@@ -111,7 +111,7 @@ impl Session {
         if hold.is_some_and(is_due) {
             // Where an acknowledgement takes longer than the frames are apart, the pose is read between two: frames alone would never
             // see the hand rest. While the line is left to the hand nobody looks.
-            let looks = self.slowness.slowest().is_some() && !self.leaves_line;
+            let looks = !self.leaves_line;
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
@@ -120,8 +120,9 @@ impl Session {
             {
                 return self.read_pose(bus).await.map(|()| true);
             }
-            self.send_hold(bus).await?;
-            self.motion.waits_for_look = true;
+            let is_acknowledged = self.send_hold(bus).await?;
+            // One that was not is repeated at once, unless its acknowledgement is only late.
+            self.motion.waits_for_look = is_acknowledged || self.slowness.slowest().is_some();
         } else if self.pose_is_due(now) {
             self.poll_motion(bus).await?;
         } else if begins_round && let Some(question) = self.plan.before_write(now) {
@@ -505,13 +506,17 @@ impl Session {
     /// The targets that hold the hand where it is, as far as that is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
         let seen = hold_targets(&self.sample, now);
-        // On a slow way the newest pose is old: where the joints must be by now follows from what they were told.
+        // On a slow way the newest pose is old: where the joints are by now follows from how they went, or from what they were told.
         let is_slow = self.slowness.slowest().is_some();
-        let is_old = is_slow && !self.sample.angles_fresh(now, ANGLE_FRESH);
+        let is_old = !self.sample.angles_fresh(now, ANGLE_FRESH);
         PerDof::from_fn(|dof| {
             let doubted = self.feedback.hold_target(dof, now);
-            let expected = || self.feedback.expected(dof, now).filter(|_| is_old);
-            doubted.or_else(expected).unwrap_or(seen[dof])
+            let by_now = || match (is_slow, is_old) {
+                (false, _) => None,
+                (true, false) => self.feedback.gone_on(dof, now),
+                (true, true) => self.feedback.expected(dof, now),
+            };
+            doubted.or_else(by_now).unwrap_or(seen[dof])
         })
     }
 
@@ -530,13 +535,14 @@ impl Session {
         }
     }
 
-    async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
+    /// True if the hand acknowledged it.
+    async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
         let newest = self.hold_targets(now);
         let is_read = self.sample.angles_fresh(now, ANGLE_FRESH);
         let way_back = self.feedback.way_back(now);
         let Some(hold) = &mut self.motion.hold else {
-            return Ok(());
+            return Ok(false);
         };
         let command = HandCommand::Angles(hold.frame(&newest, is_read, way_back, now));
         if !hold.alarmed && !self.feedback.is_doubted() {
@@ -559,7 +565,7 @@ impl Session {
             hold.doubted_acknowledged(now);
         }
         self.publish();
-        Ok(())
+        Ok(is_acknowledged)
     }
 
     pub(crate) fn hold_confirmed(&mut self) {

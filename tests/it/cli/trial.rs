@@ -60,6 +60,33 @@ fn without_a_persons_word_nothing_moves() {
 }
 
 #[test]
+fn a_joint_that_is_named_twice_is_wrong_usage_and_nothing_moves() {
+    let named: [(&[&str], &str); 3] = [
+        (&["--joint", "index,index"], "--joint names index twice"),
+        (
+            &["--joint", "index", "--pose", "index=300"],
+            "index closes and so cannot stay still",
+        ),
+        (
+            &[
+                "--joint", "index", "--pose", "ring=300", "--pose", "ring=900",
+            ],
+            "--pose names ring twice",
+        ),
+    ];
+    let (_sim, hand) = rigid();
+    for (more, why) in named {
+        for command in [&["trial"][..], &["tune", "--limit", "500"]] {
+            let args = [command, &["--hand", &hand, "--arm"], more].concat();
+            let ended = run(&args);
+            assert_eq!(ended.code, Some(2), "{args:?}");
+            assert!(ended.err.contains(why), "{args:?}: {}", ended.err);
+        }
+    }
+    assert_eq!(index_angle(&hand), 1000);
+}
+
+#[test]
 fn a_plan_that_makes_no_sense_is_wrong_usage() {
     for (more, words) in [
         (&["--speed", "0"][..], "a speed of 0"),

@@ -9,10 +9,11 @@ use handscope::hand::{
     Angle, Dof, Force, HandSample, ModbusException, PerDof, Setpoints, Speed, Target,
 };
 use handscope::link::{ArmRequest, LinkStatus, LinkTrouble, TouchVariant};
-use handscope::record::{Hold, LinkState};
-use handscope::sim::{Scenario, SimConfig};
+use handscope::record::{Disarmed, Hold, LinkState};
+use handscope::sim::{Scenario, SharedHand, SimConfig};
 use handscope::tasks::grip::{GripEnd, GripStart, grip};
 use handscope::tasks::move_to::{MoveEnd, MoveStart, move_to};
+use handscope::tasks::series::RATES;
 use std::future::pending;
 use std::sync::Arc;
 use tokio::time::{Duration, Instant, sleep};
@@ -276,5 +277,87 @@ async fn a_stop_does_not_wait_for_a_reply_that_is_late() {
         assert!(waited <= Duration::from_millis(60), "{waited:?}");
         let held = |status: &LinkStatus| matches!(status.hold, Hold::Confirmed { .. });
         link::until(&mut link, Duration::from_secs(4), held).await;
+    }
+}
+
+/// A hand with nothing in it behind a gateway whose replies take so long, and an armed link to it.
+async fn armed_behind(ms: u64) -> (SharedHand, link::Client) {
+    let hand = hand::shared(SimConfig {
+        scenario: Scenario::Free,
+        ..SimConfig::default()
+    });
+    let gateway = Gateway::to(hand.clone());
+    gateway.delays(Duration::from_millis(ms));
+    let mut link = link::connect(PLACE, gateway.dial());
+    link::live(&mut link).await;
+    states(&mut link, Duration::from_secs(4)).await;
+    link.arm(link::gentle());
+    let armed = |status: &LinkStatus| status.armed.is_some();
+    link::until(&mut link, Duration::from_secs(4), armed).await;
+    (hand, link)
+}
+
+fn bend(link: &link::Client, to: i16, speed: Speed) {
+    let mut wish = Setpoints::none(link.status().armed.unwrap());
+    wish.angle[Dof::Index] = Some(Target::Go(Angle::nearest(to)));
+    wish.speed[Dof::Index] = Some(speed);
+    link.set(&wish);
+}
+
+/// Also where a reply takes as long as two frames of a hold are apart, so that frames alone would fill the way. A joint at full
+/// speed goes on for a reply and the hand's dead time; it is not sent back to where it was read long before.
+#[tokio::test(start_paused = true)]
+async fn a_stop_is_confirmed_however_long_replies_take_and_sends_no_joint_far_back() {
+    for ms in [
+        0, 10, 20, 30, 34, 36, 38, 40, 42, 44, 46, 50, 60, 80, 100, 150, 200,
+    ] {
+        for later in [0, 15, 35, 55] {
+            let (hand, mut link) = armed_behind(ms).await;
+            let index = || hand::true_angle(&hand, Dof::Index);
+            bend(&link, 0, Speed::MAX);
+            while index() > 700.0 {
+                link::pass(&mut link, Duration::from_millis(2)).await;
+            }
+            link::pass(&mut link, Duration::from_millis(later)).await;
+            link.stop();
+            let mut least = index();
+            for _ in 0..300 {
+                link::pass(&mut link, Duration::from_millis(10)).await;
+                least = least.min(index());
+            }
+            let (hold, back) = (link.status().hold, index() - least);
+            assert!(
+                matches!(hold, Hold::Confirmed { .. }),
+                "{ms} ms, {later} later: {hold:?}"
+            );
+            assert!(
+                back <= 150.0,
+                "{ms} ms, {later} later: {back} back from {least}"
+            );
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn another_controller_is_noticed_on_a_slow_way_too() {
+    for (ms, within) in [(0, 500), (30, 500), (60, 800), (100, 1200), (150, 1600)] {
+        for after in [300, 500, 900] {
+            let (hand, mut link) = armed_behind(ms).await;
+            link.read_at(RATES);
+            bend(&link, 0, Speed::nearest(50));
+            link::pass(&mut link, Duration::from_millis(ms * 3 + after)).await;
+            let foreign = 500_i16.to_le_bytes().repeat(6);
+            hand.with(|hand, now| hand.write(1486, &foreign, now).map(drop))
+                .unwrap();
+            let mut waited = 0;
+            while link.status().armed.is_some() {
+                link::pass(&mut link, Duration::from_millis(10)).await;
+                waited += 10;
+                let status = link.status();
+                assert!(waited <= within, "{ms} ms, {after} after: {status:?}");
+            }
+            let disarmed = link.status().disarmed;
+            assert_eq!(disarmed, Some(Disarmed::OtherController), "{ms} ms");
+        }
     }
 }

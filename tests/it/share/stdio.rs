@@ -227,7 +227,7 @@ fn speed_and_threshold_are_those_of_the_arming_until_others_are_named() {
     while script.until("state")["angle"][3].as_i64().unwrap() > 800 {}
     script.done(json!({"do": "arm", "speed": 50}));
     let began = Instant::now();
-    while limits() != [50, 500] {
+    while limits() != [50, 333] {
         assert!(began.elapsed() < PATIENCE, "{:?}", limits());
     }
     script.done(json!({"do": "stop"}));

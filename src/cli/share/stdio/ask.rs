@@ -27,8 +27,8 @@ pub(crate) struct Asked {
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ask {
-    /// To move the hand from now on, beginning with these speeds and force thresholds.
-    Arm(ArmRequest),
+    /// To move the hand from now on, within these limits.
+    Arm(LimitsAsk),
     Move(MoveAsk),
     /// A target to be followed, as lines of `follow` have it.
     Follow(StreamLine),
@@ -50,10 +50,32 @@ pub(crate) enum Ask {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct MoveAsk {
     pub(crate) targets: Targets,
-    /// Those of the arming, where none is asked for.
+    pub(crate) limits: LimitsAsk,
+    pub(crate) settles: bool,
+}
+
+/// A speed and a force threshold for all joints, as far as they are named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LimitsAsk {
     pub(crate) speed: Option<Speed>,
     pub(crate) force: Option<Force>,
-    pub(crate) settles: bool,
+}
+
+impl LimitsAsk {
+    fn take(fields: &mut Fields) -> Result<Self, String> {
+        Ok(Self {
+            speed: moving_speed(fields)?,
+            force: rated_force(fields)?,
+        })
+    }
+
+    /// What is not named stays as it is.
+    pub(crate) fn over(self, now: ArmRequest) -> ArmRequest {
+        ArmRequest {
+            speed: self.speed.map_or(now.speed, PerDof::splat),
+            force: self.force.map_or(now.force, PerDof::splat),
+        }
+    }
 }
 
 impl Asked {
@@ -127,14 +149,10 @@ fn ask(fields: &mut Fields) -> Result<Ask, String> {
     }
     let what = take(fields, "do", text)?.unwrap_or_default();
     let ask = match what.as_str() {
-        "arm" => Ask::Arm(ArmRequest {
-            speed: PerDof::splat(moving_speed(fields)?.unwrap_or(Speed::GENTLE)),
-            force: PerDof::splat(rated_force(fields)?.unwrap_or(Force::GENTLE)),
-        }),
+        "arm" => Ask::Arm(LimitsAsk::take(fields)?),
         "move" => Ask::Move(MoveAsk {
             targets: targets(fields)?,
-            speed: moving_speed(fields)?,
-            force: rated_force(fields)?,
+            limits: LimitsAsk::take(fields)?,
             settles: take(fields, "settle", flag)?.unwrap_or(false),
         }),
         "stop" => Ask::Stop,
@@ -243,13 +261,21 @@ mod tests {
         let counts = ask.targets.map(|to| to.map(Angle::get));
         let want = [Some(0), None, None, Some(400), None, Some(1000)];
         assert_eq!(Dof::ALL.map(|dof| counts[dof]), want);
-        assert_eq!((ask.speed, ask.force, ask.settles), (None, None, false));
+        assert_eq!(
+            (ask.limits.speed, ask.limits.force, ask.settles),
+            (None, None, false)
+        );
         let armed = parse(r#"{"do":"arm","speed":50}"#);
         let Ok(Ask::Arm(limits)) = armed else {
             panic!("{armed:?}")
         };
+        let before = ArmRequest {
+            speed: PerDof::splat(Speed::nearest(700)),
+            force: PerDof::splat(Force::nearest(120)),
+        };
+        let limits = limits.over(before);
         assert_eq!(limits.speed, PerDof::splat(Speed::nearest(50)));
-        assert_eq!(limits.force, PerDof::splat(Force::GENTLE));
+        assert_eq!(limits.force, before.force, "not named");
         assert!(matches!(
             parse(r#"{"right":[1,1,1,1,1,1],"seq":1}"#),
             Ok(Ask::Follow(_))

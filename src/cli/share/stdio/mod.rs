@@ -8,13 +8,13 @@ mod refused;
 use crate::cli::out::{Out, say};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
-use crate::cli::share::stdio::ask::{Ask, Asked, MoveAsk};
+use crate::cli::share::stdio::ask::{Ask, Asked, LimitsAsk, MoveAsk};
 use crate::cli::share::stdio::pipe::{NobodyReads, Told};
 use crate::cli::share::stdio::refused::{RefusalKind, Refused};
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{ArmEpoch, Group, HandCommand, HandSample, PerDof};
+use crate::hand::{ArmEpoch, Force, Group, HandCommand, HandSample, PerDof, Speed};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -42,6 +42,12 @@ const BACK_WITHIN: Duration = Duration::from_secs(6);
 const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
+
+/// What a hand is armed with where nothing is named.
+const GENTLE: ArmRequest = ArmRequest {
+    speed: PerDof::splat(Speed::GENTLE),
+    force: PerDof::splat(Force::GENTLE),
+};
 
 /// The hand that is shared, and as what.
 pub(crate) struct StdioHand<'a> {
@@ -404,8 +410,9 @@ impl Script<'_> {
     }
 
     /// Takes the right to move the hand, unless another has it.
-    fn arm(&mut self, id: Value, limits: ArmRequest) -> Result<(), NobodyReads> {
+    fn arm(&mut self, id: Value, limits: LimitsAsk) -> Result<(), NobodyReads> {
         let held = self.holds();
+        let limits = limits.over(held.map_or(GENTLE, |right| right.limits));
         let link = self.hand.link.clone();
         let arming = async move { Done::Armed(granted(&link, held, limits).await) };
         self.begin(Task {
@@ -425,10 +432,7 @@ impl Script<'_> {
             };
             let start = MoveStart {
                 targets: ask.targets,
-                limits: ArmRequest {
-                    speed: ask.speed.map_or(right.limits.speed, PerDof::splat),
-                    force: ask.force.map_or(right.limits.force, PerDof::splat),
-                },
+                limits: ask.limits.over(right.limits),
                 settles: ask.settles,
                 epoch,
                 lease: right.lease,

@@ -67,6 +67,8 @@ struct Unchanged {
 #[derive(Debug, Clone, Copy)]
 struct Joint {
     seen: i16,
+    /// The reading before.
+    before: Option<(i16, Moment)>,
     /// Where it must be at `at`, by what it was told since it was last seen to live.
     estimate: f64,
     at: Moment,
@@ -242,6 +244,7 @@ impl FeedbackWatch {
         let Some(mut joint) = known else {
             return Joint {
                 seen,
+                before: self.joints[dof].map(|before| (before.seen, before.at)),
                 estimate: f64::from(seen),
                 at: asked,
                 unchanged: None,
@@ -250,6 +253,7 @@ impl FeedbackWatch {
                 back_at: asked,
             };
         };
+        joint.before = Some((seen, joint.at));
         let paused = asked.since(joint.at) > PAUSE;
         joint.estimate = self.estimate(dof, &joint, asked);
         joint.at = asked;
@@ -429,6 +433,25 @@ impl FeedbackWatch {
             return None;
         }
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
+    }
+
+    /// Where a joint is by now that was on its way when it was seen last, if it went on as fast; never beyond its target. Where two
+    /// readings cannot show yet how fast it goes, it is where it must be by now. `None` for one that stays where it is seen.
+    pub(crate) fn gone_on(&self, dof: Dof, now: Moment) -> Option<Target> {
+        let (joint, aim) = (self.joints[dof]?, self.aims[dof]?);
+        if self.has_reason(dof, &joint) {
+            return None;
+        }
+        let (from, since) = joint.before?;
+        let took = joint.at.since(since);
+        if since < aim.at.plus(DEAD_TIME) || took.is_zero() {
+            return self.expected(dof, now);
+        }
+        let seen = f64::from(joint.seen);
+        let (left, way) = (f64::from(aim.target) - seen, seen - f64::from(from));
+        let gone = way * now.since(joint.at).as_secs_f64() / took.as_secs_f64();
+        let is_on_its_way = way.abs() >= AWAY && left * way > 0.0;
+        is_on_its_way.then(|| Target::Go(nearest(seen + gone.clamp(-left.abs(), left.abs()))))
     }
 
     /// How long the joints need from where they must be by now to where they were seen last, dead time included; nothing where that
