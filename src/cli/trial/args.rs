@@ -147,22 +147,22 @@ fn grams(text: &str) -> Result<f64, String> {
 
 /// Each joint is named once: it closes, or stays still.
 pub(crate) fn check_joints(closes: &[Dof], stays: &[(Dof, Angle)]) -> anyhow::Result<()> {
-    for (nth, dof) in closes.iter().enumerate() {
-        if closes[..nth].contains(dof) {
+    for dof in closes {
+        if closes.iter().filter(|one| *one == dof).count() > 1 {
             return Err(WrongUsage::error(format!(
                 "--joint names {} twice",
                 dof.name()
             )));
         }
     }
-    for (nth, (dof, at)) in stays.iter().enumerate() {
+    for (dof, at) in stays {
         let (name, at) = (dof.name(), at.get());
         if closes.contains(dof) {
             return Err(WrongUsage::error(format!(
                 "{name} closes and so cannot stay still: leave out --pose {name}={at}, or take {name} out of --joint"
             )));
         }
-        if stays[..nth].iter().any(|(before, _)| before == dof) {
+        if stays.iter().filter(|(one, _)| one == dof).count() > 1 {
             return Err(WrongUsage::error(format!("--pose names {name} twice")));
         }
     }

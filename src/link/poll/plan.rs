@@ -401,7 +401,9 @@ impl PollPlan {
 
     /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
     pub(crate) fn look_at_settings(&mut self, at: Moment) {
-        self.look_at = Some(self.look_at.map_or(at, |before| before.min(at)));
+        if self.watched {
+            self.look_at = Some(self.look_at.map_or(at, |before| before.min(at)));
+        }
         for due in &mut self.parts {
             if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
                 due.next = due.next.min(at);

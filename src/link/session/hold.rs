@@ -130,18 +130,22 @@ impl HoldWatch {
         is_blind && !std::mem::replace(&mut self.looked, true)
     }
 
-    /// The targets of the hold frame that leaves at `now`, given where the joints are, and whether that was read or is expected. A pose
+    /// The targets of the hold frame that leaves at `now`, given where the joints are, and when that was asked for; `None` if it is
+    /// expected. A pose
     /// that was expected is replaced by the first that is read, however late. `way_back` as for [`Self::new`], by now.
     pub(crate) fn frame(
         &mut self,
         newest: &PerDof<Target>,
-        is_read: bool,
+        read: Option<Moment>,
         way_back: Duration,
         now: Moment,
     ) -> PerDof<Target> {
-        let is_first_read = is_read && !self.is_read;
-        let follows = is_first_read || now.since(self.follows_from) <= HOLD_FOLLOWS;
-        self.is_read |= is_read;
+        let is_first_read = read.is_some() && !self.is_read;
+        let is_soon = is_first_read || now.since(self.follows_from) <= HOLD_FOLLOWS;
+        // An older pose is that of the first frame, or what it went by.
+        let is_newer = |first: Moment| read.is_some_and(|asked| asked >= first);
+        let follows = is_soon && self.first_held.is_none_or(is_newer);
+        self.is_read |= read.is_some();
         for (dof, target) in self.pose.iter_mut() {
             if follows || *target == Target::Leave {
                 *target = newest[dof];
@@ -238,7 +242,7 @@ mod tests {
         (0..200).map(|n| n * 10).find(|t| {
             if *t == sent {
                 let pose = PerDof::splat(Target::Go(Angle::nearest(500)));
-                watch.frame(&pose, true, Duration::ZERO, ms(*t));
+                watch.frame(&pose, Some(ms(*t)), Duration::ZERO, ms(*t));
             }
             let (sample, fresh) = sample(ms(*t), angle_at(*t));
             watch.rests(&sample, fresh, &PerDof::splat(false))
@@ -273,8 +277,8 @@ mod tests {
         let pose = PerDof::splat(Target::Go(Angle::nearest(500)));
         let rests = (0..200).map(|n| n * 10).find(|t| {
             match *t {
-                0 => watch.frame(&PerDof::splat(Target::Leave), false, Duration::ZERO, ms(*t)),
-                300 => watch.frame(&pose, true, Duration::from_millis(400), ms(*t)),
+                0 => watch.frame(&PerDof::splat(Target::Leave), None, Duration::ZERO, ms(*t)),
+                300 => watch.frame(&pose, Some(ms(*t)), Duration::from_millis(400), ms(*t)),
                 _ => pose,
             };
             let (sample, fresh) = sample(ms(*t), 500);
@@ -308,7 +312,12 @@ mod tests {
     fn frames_are_due_at_once_and_then_each_forty_milliseconds() {
         let mut watch = HoldWatch::new(ms(7), false, Duration::ZERO);
         assert_eq!(watch.next_frame(ms(7)), Some(ms(7)));
-        watch.frame(&PerDof::splat(Target::Leave), true, Duration::ZERO, ms(9));
+        watch.frame(
+            &PerDof::splat(Target::Leave),
+            Some(ms(9)),
+            Duration::ZERO,
+            ms(9),
+        );
         assert_eq!(watch.next_frame(ms(10)), Some(ms(49)));
     }
 
@@ -316,7 +325,12 @@ mod tests {
     fn frames_for_joints_in_doubt_cease_once_the_hand_had_time_to_obey_and_the_others_rest() {
         let mut watch = HoldWatch::new(ms(0), true, Duration::ZERO);
         for t in (0..=240).step_by(40) {
-            watch.frame(&PerDof::splat(Target::Leave), true, Duration::ZERO, ms(t));
+            watch.frame(
+                &PerDof::splat(Target::Leave),
+                Some(ms(t)),
+                Duration::ZERO,
+                ms(t),
+            );
             watch.doubted_acknowledged(ms(t));
             watch.trusted_rest();
         }
@@ -343,22 +357,25 @@ mod tests {
         let pose = |angle| PerDof::splat(Target::Go(Angle::nearest(angle)));
         let mut watch = HoldWatch::new(ms(0), false, Duration::ZERO);
         assert_eq!(
-            watch.frame(&pose(500), true, Duration::ZERO, ms(0)),
+            watch.frame(&pose(500), Some(ms(0)), Duration::ZERO, ms(0)),
             pose(500)
         );
         assert_eq!(
-            watch.frame(&pose(480), true, Duration::ZERO, ms(40)),
+            watch.frame(&pose(480), Some(ms(40)), Duration::ZERO, ms(40)),
             pose(480)
         );
         assert_eq!(
-            watch.frame(&pose(470), true, Duration::ZERO, ms(160)),
+            watch.frame(&pose(470), Some(ms(160)), Duration::ZERO, ms(160)),
             pose(480)
         );
         let mut blind = HoldWatch::new(ms(0), false, Duration::ZERO);
         let unknown = PerDof::splat(Target::Leave);
-        assert_eq!(blind.frame(&unknown, true, Duration::ZERO, ms(0)), unknown);
         assert_eq!(
-            blind.frame(&pose(300), true, Duration::ZERO, ms(200)),
+            blind.frame(&unknown, Some(ms(0)), Duration::ZERO, ms(0)),
+            unknown
+        );
+        assert_eq!(
+            blind.frame(&pose(300), Some(ms(200)), Duration::ZERO, ms(200)),
             pose(300)
         );
     }

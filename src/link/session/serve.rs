@@ -111,7 +111,8 @@ impl Session {
         if hold.is_some_and(is_due) {
             // Where an acknowledgement takes longer than the frames are apart, the pose is read between two: frames alone would never
             // see the hand rest. While the line is left to the hand nobody looks.
-            let looks = !self.leaves_line;
+            // In pieces a look takes longer than the verdict may: there frames go on.
+            let looks = !self.leaves_line && !self.dialled.is_can();
             // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
@@ -539,12 +540,14 @@ impl Session {
     async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
         let newest = self.hold_targets(now);
-        let is_read = self.sample.angles_fresh(now, ANGLE_FRESH);
+        let angle = self.sample.angle;
+        let read = angle.filter(|_| self.sample.angles_fresh(now, ANGLE_FRESH));
         let way_back = self.feedback.way_back(now);
         let Some(hold) = &mut self.motion.hold else {
             return Ok(false);
         };
-        let command = HandCommand::Angles(hold.frame(&newest, is_read, way_back, now));
+        let asked = read.map(|angle| angle.asked);
+        let command = HandCommand::Angles(hold.frame(&newest, asked, way_back, now));
         if !hold.alarmed && !self.feedback.is_doubted() {
             self.status.hold = Hold::Asked {
                 at: hold.at,

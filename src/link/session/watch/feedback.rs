@@ -435,23 +435,24 @@ impl FeedbackWatch {
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
     }
 
-    /// Where a joint is by now that was on its way when it was seen last, if it went on as fast; never beyond its target. Where two
-    /// readings cannot show yet how fast it goes, it is where it must be by now. `None` for one that stays where it is seen.
+    /// How far a joint is by now at least that was seen to be on its way, if it went on as fast; never beyond its target. `None` for
+    /// one that stays where it is seen, or may. When the hand took a reading is not known: at the latest as it came.
     pub(crate) fn gone_on(&self, dof: Dof, now: Moment) -> Option<Target> {
         let (joint, aim) = (self.joints[dof]?, self.aims[dof]?);
-        if self.has_reason(dof, &joint) {
-            return None;
-        }
         let (from, since) = joint.before?;
-        let took = joint.at.since(since);
-        if since < aim.at.plus(DEAD_TIME) || took.is_zero() {
-            return self.expected(dof, now);
-        }
         let seen = f64::from(joint.seen);
         let (left, way) = (f64::from(aim.target) - seen, seen - f64::from(from));
-        let gone = way * now.since(joint.at).as_secs_f64() / took.as_secs_f64();
         let is_on_its_way = way.abs() >= AWAY && left * way > 0.0;
-        is_on_its_way.then(|| Target::Go(nearest(seen + gone.clamp(-left.abs(), left.abs()))))
+        if !is_on_its_way || self.unsure[dof] || self.has_reason(dof, &joint) {
+            return None;
+        }
+        let age = now.since(self.last.angle?.received).as_secs_f64();
+        let took = joint.at.since(since).max(Duration::from_millis(1));
+        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
+        let told = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
+        let gone = (way.abs() / took.as_secs_f64()).min(told) * age;
+        let gone = gone.min(left.abs()).copysign(left);
+        Some(Target::Go(nearest(seen + gone)))
     }
 
     /// How long the joints need from where they must be by now to where they were seen last, dead time included; nothing where that

@@ -37,7 +37,7 @@ const RESTS_WITHIN: f64 = 60.0;
 /// A pose that is expected, not read, is one in which the joints were by so many counts …
 const EXPECTED_COUNTS: f64 = 20.0;
 /// … not longer ago than this.
-const EXPECTED_WITHIN: Duration = Duration::from_millis(200);
+const EXPECTED_WITHIN: Duration = Duration::from_millis(400);
 /// Joints in doubt get frames for this long, and then nothing more.
 const DOUBTED_HOLD: Duration = Duration::from_millis(250);
 /// A joint that another controller moves arrives within this.
@@ -554,25 +554,35 @@ impl Witness {
             pose[first..].starts_with(&targets)
         });
         let leaves = targets.iter().all(|target| *target == -1);
-        // Slow replies are learnt over Modbus TCP alone. The pose is then where the joints must be by now: they were there.
-        let was_there = |(at, joints): &(Moment, PerDof<f64>)| {
-            let mut pairs = joints.as_array()[first..].iter().zip(&targets);
-            let is_recent = *at <= frame.at && frame.at.since(*at) <= EXPECTED_WITHIN;
-            is_recent
-                && pairs.all(|(is, target)| (is - f64::from(*target)).abs() <= EXPECTED_COUNTS)
+        // Slow replies are learnt over Modbus TCP alone. The pose is then where the joints are by now as far as is known: on the way
+        // that they just went.
+        let is_recent = |at: Moment| at <= frame.at && frame.at.since(at) <= EXPECTED_WITHIN;
+        let lately = self.reality.iter().filter(|(at, _)| is_recent(*at));
+        let lately: Vec<[f64; 6]> = lately.map(|(_, joints)| *joints.as_array()).collect();
+        let newest = self.poses[..before].last();
+        let was_there = |(joint, target): (usize, &i16)| {
+            let is_read = newest.is_some_and(|(_, pose)| pose.as_array()[joint].raw() == *target);
+            let lately = || lately.iter().map(|joints| joints[joint]);
+            let (least, most) = (
+                lately().fold(f64::MAX, f64::min),
+                lately().fold(f64::MIN, f64::max),
+            );
+            let way = least - EXPECTED_COUNTS..=most + EXPECTED_COUNTS;
+            is_read || way.contains(&f64::from(*target))
         };
         // What was told here says nothing of where joints are that another moves.
         let is_foreign = |told: &Moment| *told <= frame.at && frame.at.since(*told) < UNSEEN_MOVE;
         let expected = || {
             self.protocol == Protocol::Tcp
-                && (self.reality.iter().any(was_there)
+                && ((first..).zip(&targets).all(was_there)
                     || self.foreign_writes.iter().any(is_foreign))
         };
         // Where feedback is in doubt the pose is reckoned: where the joints then are is judged instead.
         assert!(
             known || leaves || self.freezes || expected(),
-            "seed {}: {frame:?} is no pose the hand was in",
-            self.seed
+            "seed {}: {frame:?} is no pose the hand was in: {:?}",
+            self.seed,
+            self.reality.iter().rfind(|(at, _)| *at <= frame.at),
         );
     }
 
