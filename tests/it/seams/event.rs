@@ -190,11 +190,7 @@ impl<'a> Witness<'a> {
             Column::GatewayRefuses => self.gateway_refuses(&hand),
             Column::StopThenLost => self.stop_then_lost(&hand),
             Column::RepliesSlow => self.replies_are_slow(&hand),
-            Column::RestsShort => {
-                self.pass(1000);
-                self.mover.stop();
-                self.pass(5000);
-            }
+            Column::RestsShort => self.stopped_after_a_second(),
             Column::Busy => self.computer_is_busy(),
             Column::NoDescriptors => self.no_descriptor_is_left(),
             Column::JointFrozen => self.angles_freeze(&hand),
@@ -232,6 +228,12 @@ impl<'a> Witness<'a> {
         self.mover.stop();
         self.pass(800);
         hand.silence(false);
+        self.pass(5000);
+    }
+
+    fn stopped_after_a_second(&mut self) {
+        self.pass(1000);
+        self.mover.stop();
         self.pass(5000);
     }
 
