@@ -36,8 +36,8 @@ const POSE_WITHIN_PIECES: Duration = Duration::from_millis(1400);
 const RESTS_WITHIN: f64 = 60.0;
 /// A pose that is expected, not read, is one in which the joints were by so many counts …
 const EXPECTED_COUNTS: f64 = 20.0;
-/// … not longer ago than this.
-const EXPECTED_WITHIN: Duration = Duration::from_millis(400);
+/// … not longer ago than this: a hold of it is repeated.
+const EXPECTED_WITHIN: Duration = Duration::from_secs(1);
 /// Joints in doubt get frames for this long, and then nothing more.
 const DOUBTED_HOLD: Duration = Duration::from_millis(250);
 /// A joint that another controller moves arrives within this.
