@@ -131,8 +131,8 @@ impl HoldWatch {
     }
 
     /// The targets of the hold frame that leaves at `now`, given where the joints are, and when that was asked for; `None` if it is
-    /// expected. A pose
-    /// that was expected is replaced by the first that is read, however late. `way_back` as for [`Self::new`], by now.
+    /// expected. A pose that was expected is replaced by the first that is read, however late. `way_back` as for [`Self::new`], by
+    /// now.
     pub(crate) fn frame(
         &mut self,
         newest: &PerDof<Target>,
