@@ -14,6 +14,7 @@ use crate::poses::player::PlayEnd;
 use crate::tasks::grip::{self, GripEnd, GripReport, GripStart};
 use crate::tasks::series::{STOP_LOST, stop_words};
 use crate::transport::Endpoint;
+use crate::trials::limits::Abort;
 use anyhow::bail;
 use clap::Args;
 use serde_json::{Value, json};
@@ -148,13 +149,9 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
         GripEnd::Late => Err("the hand did not get there in time".into()),
         GripEnd::Person => Err("ended by a person".into()),
         GripEnd::OtherWrote => {
-            let did = report.foreign.map_or_else(
-                || "talks to the hand".into(),
-                |wrote| format!("wrote {wrote}"),
-            );
-            Err(format!(
-                "another controller {did}: let one of them move the hand"
-            ))
+            let wrote = report.foreign;
+            let other = Abort::OtherController { wrote };
+            Err(format!("{other}: let one of them move the hand"))
         }
         GripEnd::Broken(why) => Err(match report.disarmed {
             Some(disarmed) => format!("{}: {disarmed}", broken(why)),

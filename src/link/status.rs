@@ -228,6 +228,12 @@ pub struct ArmRequest {
 }
 
 impl ArmRequest {
+    /// What a hand is armed with where nothing is named.
+    pub const GENTLE: Self = Self {
+        speed: PerDof::splat(Speed::GENTLE),
+        force: PerDof::splat(Force::GENTLE),
+    };
+
     /// The same for a hand that is armed already.
     pub(crate) fn setpoints(&self, epoch: ArmEpoch) -> Setpoints {
         Setpoints {

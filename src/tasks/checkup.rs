@@ -9,8 +9,7 @@ use crate::checkup::usage::Usage;
 use crate::checkup::{Checkup, Measured};
 use crate::hand::grip::FreeForce;
 use crate::hand::kinematics::Side;
-use crate::hand::{Force, PerDof, Speed};
-use crate::link::{ArmRequest, Clock, LinkObserver};
+use crate::link::{Clock, LinkObserver};
 use crate::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use crate::store::calendar::{since_1970, stamp};
 use crate::store::{create_folder, replace};
@@ -21,14 +20,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tokio_util::task::AbortOnDrop;
-
-/// The limits that a hand is armed with for a check-up, which sets its own below them.
-pub const fn arm_limits() -> ArmRequest {
-    ArmRequest {
-        speed: PerDof::splat(Speed::GENTLE),
-        force: PerDof::splat(Force::GENTLE),
-    }
-}
 
 /// Where the files of a check-up are.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -12,8 +12,9 @@ use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan, expected};
 use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
+use crate::link::ArmRequest;
 use crate::store::{self, on_thread};
-use crate::tasks::checkup::{CheckupFiles, EndedCheckup, arm_limits};
+use crate::tasks::checkup::{CheckupFiles, EndedCheckup};
 use anyhow::{Context as _, bail};
 use std::path::Path;
 
@@ -29,7 +30,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     }
     let files = files(args)?;
     prepare(&files)?;
-    let mut hand = ArmedHand::ready(&args.hand, arm_limits()).await?;
+    let mut hand = ArmedHand::ready(&args.hand, ArmRequest::GENTLE).await?;
     let recording = match files.record(hand.link.observe(), hand.clock) {
         Ok(recording) => recording,
         Err(error) => {

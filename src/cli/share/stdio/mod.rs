@@ -14,7 +14,7 @@ use crate::cli::share::stdio::refused::{RefusalKind, Refused};
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{ArmEpoch, Force, Group, HandCommand, HandSample, PerDof, Speed};
+use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -42,12 +42,6 @@ const BACK_WITHIN: Duration = Duration::from_secs(6);
 const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
-
-/// What a hand is armed with where nothing is named.
-const GENTLE: ArmRequest = ArmRequest {
-    speed: PerDof::splat(Speed::GENTLE),
-    force: PerDof::splat(Force::GENTLE),
-};
 
 /// The hand that is shared, and as what.
 pub(crate) struct StdioHand<'a> {
@@ -412,7 +406,7 @@ impl Script<'_> {
     /// Takes the right to move the hand, unless another has it.
     fn arm(&mut self, id: Value, limits: LimitsAsk) -> Result<(), NobodyReads> {
         let held = self.holds();
-        let limits = limits.over(held.map_or(GENTLE, |right| right.limits));
+        let limits = limits.over(held.map_or(ArmRequest::GENTLE, |right| right.limits));
         let link = self.hand.link.clone();
         let arming = async move { Done::Armed(granted(&link, held, limits).await) };
         self.begin(Task {

@@ -55,17 +55,17 @@ struct Joint {
     /// The newest write through a wire that is gone, if it must have acted by now: nobody knows when.
     stale: Option<Wrote>,
     /// The least and the largest value that it was seen to hold: a hand that limits what it takes holds none beyond.
-    takes: Option<(i16, i16)>,
+    held_within: Option<(i16, i16)>,
     /// What we wrote last.
     wrote: Option<i16>,
 }
 
 impl Joint {
     /// It was seen to hold this.
-    fn takes(&mut self, value: i16) {
+    fn saw(&mut self, value: i16) {
         if value != LEAVE && value != SET_OUT_OF_RANGE {
-            let (least, most) = self.takes.unwrap_or((value, value));
-            self.takes = Some((least.min(value), most.max(value)));
+            let (least, most) = self.held_within.unwrap_or((value, value));
+            self.held_within = Some((least.min(value), most.max(value)));
         }
     }
 
@@ -74,7 +74,7 @@ impl Joint {
         let Wrote::Value(wrote) = wrote else {
             return false;
         };
-        self.takes.is_none_or(|(least, most)| {
+        self.held_within.is_none_or(|(least, most)| {
             if wrote > read {
                 most <= read
             } else {
@@ -264,7 +264,7 @@ impl SetpointWatch {
         for (dof, value) in values.iter() {
             let joint = &mut self.joints[dof];
             joint.held = Some(*value);
-            joint.takes(*value);
+            joint.saw(*value);
             joint.open_from = self.next;
             joint.due = None;
         }
@@ -275,7 +275,7 @@ impl SetpointWatch {
         let open = self.open(dof);
         if joint.held == Some(read) {
             if !open.is_empty() && open.iter().all(|(_, wrote)| *wrote == Wrote::Value(read)) {
-                self.joints[dof].takes(read);
+                self.joints[dof].saw(read);
                 self.settle(dof, read, self.next);
                 return Verdict::Ours;
             }
@@ -297,7 +297,7 @@ impl SetpointWatch {
             let is_rounded = matches!(value, Wrote::Value(value) if value != read);
             self.settle(dof, read, number + u64::from(!is_rounded));
             if matches!(value, Wrote::Value(_)) {
-                self.joints[dof].takes(read);
+                self.joints[dof].saw(read);
             }
             return Verdict::Ours;
         }
@@ -308,14 +308,14 @@ impl SetpointWatch {
         let mut earlier = earlier.map(|write| write.values[dof]).chain(joint.stale);
         if joint.held.is_none() || earlier.any(|value| self.may_be(value, read, angle)) {
             self.joints[dof].held = Some(read);
-            self.joints[dof].takes(read);
+            self.joints[dof].saw(read);
             return Verdict::Ours;
         }
         let is_limit = |(_, wrote): &&(u64, Wrote)| joint.limits(*wrote, read);
         match open.iter().find(is_limit).copied() {
             Some((number, _)) => {
                 self.settle(dof, read, number + 1);
-                self.joints[dof].takes(read);
+                self.joints[dof].saw(read);
                 Verdict::NotTaken
             }
             None if open.is_empty() => Verdict::Changed,
