@@ -194,8 +194,8 @@ mod tests {
 
     #[test]
     fn six_angles_are_six_words() {
-        let mut targets = PerDof::splat(Target::Go(Angle::MAX));
-        targets[crate::hand::Dof::Little] = Target::Leave;
+        let mut targets = PerDof::splat(Some(Target::Go(Angle::MAX)));
+        targets[crate::hand::Dof::Little] = Some(Target::Leave);
         let writes = HandCommand::Angles(targets).writes();
         let words = ArrayVec::from([0xFFFF, 1000, 1000, 1000, 1000, 1000]);
         assert_eq!(

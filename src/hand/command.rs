@@ -31,19 +31,19 @@ pub enum GestureRoute {
 /// ```
 /// use handscope::hand::{Angle, Dof, HandCommand, PerDof, Target};
 ///
-/// let mut targets = PerDof::splat(Target::Leave);
-/// targets[Dof::Index] = Target::Go(Angle::new(500)?);
+/// let mut targets = PerDof::splat(None);
+/// targets[Dof::Index] = Some(Target::Go(Angle::new(500)?));
 /// let writes = HandCommand::Angles(targets).writes();
-/// assert_eq!(writes[0].address(), 1486);
-/// // -1 for each joint that stays, 500 for the index finger.
-/// assert_eq!(writes[0].bytes()[4..8], [0xFF, 0xFF, 0xF4, 0x01]);
+/// assert_eq!(writes[0].address(), 1492);
+/// assert_eq!(writes[0].bytes(), [0xF4, 0x01]);
 /// # Ok::<(), handscope::hand::OutOfRange>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum HandCommand {
-    /// Move joints now (manual 2.6.11).
-    Angles(PerDof<Target>),
+    /// Move the joints that are given now (manual 2.6.11). The others keep their target in the hand, where what another
+    /// controller writes can be seen.
+    Angles(PerDof<Option<Target>>),
     /// Force thresholds of the joints that are given (manual 2.6.12).
     Forces(PerDof<Option<Force>>),
     /// Speeds of the joints that are given (manual 2.6.13).
@@ -126,7 +126,11 @@ impl HandCommand {
     pub fn writes(&self) -> Writes {
         let mut out = Writes::new();
         match self {
-            Self::Angles(targets) => out.push(angles(targets)),
+            Self::Angles(targets) => runs(
+                &register::ANGLE_SET,
+                targets.map(|v| v.map(Target::raw)),
+                &mut out,
+            ),
             Self::Forces(values) => runs(
                 &register::FORCE_SET,
                 values.map(|v| v.map(Force::get)),
@@ -154,14 +158,7 @@ impl HandCommand {
     }
 }
 
-fn angles(targets: &PerDof<Target>) -> RegisterWrite {
-    let bytes = targets
-        .iter()
-        .flat_map(|(_, target)| target.raw().to_le_bytes());
-    RegisterWrite::run(register::ANGLE_SET.address, bytes)
-}
-
-/// One write for each run of neighbouring joints that have a value: there is no "leave alone" in these groups.
+/// One write for each run of neighbouring joints that have a value.
 pub(super) fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
     let mut run: Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)> = None;
     let flush = |run: &mut Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)>, out: &mut Writes| {
@@ -207,7 +204,7 @@ mod tests {
         // Manual 2.2.2 writes 2000 to ANGLE_SET(4) although 2.6.11 allows -1 and 0 to 1000.
         assert!(angles_from([100, 100, 100, 100, 2000, 0]).is_err());
         let angles = angles_from([100, 100, 100, 100, 1000, 0]).unwrap();
-        let writes = HandCommand::Angles(angles.map(Target::Go)).writes();
+        let writes = HandCommand::Angles(angles.map(Target::Go).map(Some)).writes();
         assert_eq!(writes[0].address(), 1486);
         assert_eq!(
             writes[0].bytes(),
@@ -217,7 +214,7 @@ mod tests {
 
     #[test]
     fn leave_alone_is_minus_one() {
-        let writes = HandCommand::Angles(PerDof::splat(Target::Leave)).writes();
+        let writes = HandCommand::Angles(PerDof::splat(Some(Target::Leave))).writes();
         assert_eq!(writes[0].bytes(), [0xFF; 12]);
     }
 
@@ -268,7 +265,7 @@ mod tests {
     fn commands() -> impl Strategy<Value = HandCommand> {
         let gesture = any::<u8>().prop_map(Gesture::nearest);
         prop_oneof![
-            prop::array::uniform6(target()).prop_map(|t| HandCommand::Angles(PerDof::new(t))),
+            prop::array::uniform6(prop::option::of(target())).prop_map(|t| HandCommand::Angles(PerDof::new(t))),
             forces().prop_map(HandCommand::Forces),
             speeds().prop_map(HandCommand::Speeds),
             (gesture, route()).prop_map(|(number, route)| HandCommand::Gesture(number, route)),

@@ -3,7 +3,6 @@
 use crate::hand::command::HandCommand;
 use crate::hand::dof::PerDof;
 use crate::hand::units::{Force, Speed, Target};
-use arrayvec::ArrayVec;
 
 /// One arming. Setpoints carry it, so that none from an earlier arming can act.
 #[derive(
@@ -50,18 +49,13 @@ impl Setpoints {
         *self == Self::none(self.epoch)
     }
 
-    /// The commands that send them: speeds before forces before angles, so that no motion starts with older limits. Angles go out
-    /// for all joints at once, so that a joint without a target is told "no action".
-    pub fn commands(&self) -> ArrayVec<HandCommand, 3> {
-        let mut commands = ArrayVec::from_iter([
+    /// The commands that send them: speeds before forces before angles, so that no motion starts with older limits.
+    pub const fn commands(&self) -> [HandCommand; 3] {
+        [
             HandCommand::Speeds(self.speed),
             HandCommand::Forces(self.force),
-        ]);
-        if self.angle.iter().any(|(_, angle)| angle.is_some()) {
-            let angles = self.angle.map(|angle| angle.unwrap_or(Target::Leave));
-            commands.push(HandCommand::Angles(angles));
-        }
-        commands
+            HandCommand::Angles(self.angle),
+        ]
     }
 
     /// Puts newer values over older ones, joint by joint. Another arming replaces all.

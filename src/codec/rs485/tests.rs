@@ -205,7 +205,7 @@ fn requests_are_encoded_as_printed() {
             7,
             HandCommand::Forces(PerDof::splat(Some(Force::new(1000).unwrap()))).writes(),
         ),
-        (8, HandCommand::Angles(angles).writes()),
+        (8, HandCommand::Angles(angles.map(Some)).writes()),
     ] {
         let frame = encode_write(id, &only(&writes));
         assert_eq!(frame.as_slice(), printed[row], "{writes:?}");

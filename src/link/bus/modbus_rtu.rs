@@ -351,7 +351,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn writes_are_functions_6_and_16_and_the_printed_zeros_acknowledge() {
         let (mut bus, mut far) = line();
-        let open = HandCommand::Angles(PerDof::splat(Target::Go(Angle::MAX))).writes();
+        let open = HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::MAX)))).writes();
         let frame = "01 10 05 CE 00 06 0C 03 E8 03 E8 03 E8 03 E8 03 E8 03 E8";
         for (write, asked, answered) in [
             (

@@ -242,8 +242,8 @@ impl Session {
         self.status.moved_to = at.port().filter(|_| at != asked).map(str::to_owned);
     }
 
-    /// A fresh conversation: nothing of an earlier one is known, wanted or waiting.
-    /// A stop that came while there was no live link is kept; nothing else is.
+    /// A fresh conversation: nothing of an earlier one is wanted or waiting. A stop that came while there was no live link is kept,
+    /// and for it what is known of joints whose feedback froze; nothing else is.
     fn begin(&mut self, bus: &dyn Bus) {
         self.keep_pressed_stop();
         self.forget_wishes();
@@ -257,7 +257,10 @@ impl Session {
             self.plan.know_gap(gap);
         }
         self.moving = RestWatch::default();
-        self.feedback = FeedbackWatch::default();
+        let before = std::mem::take(&mut self.feedback);
+        if self.has_pending_stop() {
+            self.feedback = before.after_loss();
+        }
         self.heat = HeatWatch::default();
         self.status.feedback_in_doubt = false;
         self.ticks = Ticks::default();
@@ -270,6 +273,9 @@ impl Session {
         self.guard.reaches(true);
         self.go(LinkState::Monitoring);
         self.resume_stop();
+        if self.feedback.is_doubted() {
+            self.doubt_feedback();
+        }
     }
 
     /// The link is gone: nothing stays armed, nothing stays queued but a stop that feedback did not confirm.

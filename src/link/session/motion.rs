@@ -302,7 +302,7 @@ mod tests {
         let sent: Vec<_> = std::iter::from_fn(|| motion.next_write(now))
             .map(|write| write.address())
             .collect();
-        assert_eq!(sent, [1528, 1504, 1486]);
+        assert_eq!(sent, [1528, 1504, 1492]);
         motion.asked(true);
         motion.want(&wish, Some(epoch));
         assert_eq!(motion.next_write(now.plus(Duration::from_millis(4))), None);

@@ -106,7 +106,7 @@ impl Session {
 
     /// Makes the pose of this moment the target: the request may have waited for a stop.
     async fn hold_for(&mut self, bus: &mut dyn Bus, job: WriteJob) -> Result<(), WireEnd> {
-        let hold = HandCommand::Angles(self.hold_targets(self.now()));
+        let hold = HandCommand::Angles(self.hold_targets(self.now()).map(Some));
         for write in hold.writes() {
             if let Err(error) = self.write(bus, &write, WriteCause::Request).await {
                 let _told = job.answer.send(Err(request_error(&error, write.span())));

@@ -474,7 +474,7 @@ impl Session {
     }
 
     /// What is read of suspect joints counts for nothing until it changes: the hold that is asked for cannot be confirmed by it.
-    fn doubt_feedback(&mut self) {
+    pub(crate) fn doubt_feedback(&mut self) {
         self.feedback.doubt();
         self.status.feedback_in_doubt = true;
         if let Some(hold) = &self.motion.hold {
@@ -547,7 +547,7 @@ impl Session {
             return Ok(false);
         };
         let asked = read.map(|angle| angle.asked);
-        let command = HandCommand::Angles(hold.frame(&newest, asked, way_back, now));
+        let command = HandCommand::Angles(hold.frame(&newest, asked, way_back, now).map(Some));
         if !hold.alarmed && !self.feedback.is_doubted() {
             self.status.hold = Hold::Asked {
                 at: hold.at,

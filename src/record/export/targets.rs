@@ -169,8 +169,8 @@ mod tests {
         for step in steps {
             match step {
                 Step::Sent(at, number, raw) => {
-                    let mut six = PerDof::splat(Target::Leave);
-                    six[Dof::Index] = target(*raw);
+                    let mut six = PerDof::splat(None);
+                    six[Dof::Index] = Some(target(*raw));
                     targets.sent(millis(*at), *number, &first(HandCommand::Angles(six)));
                 }
                 Step::Gesture(at) => {

@@ -15,24 +15,22 @@ use crate::hand::{
 pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, ModbusException> {
     let wrong = |_range: OutOfRange| ModbusException::IllegalValue;
     if let Some(values) = joints(&ANGLE_SET, address, words) {
-        let target = |value: Option<i16>| match value {
+        let target = |value| match value {
             // The manual's "no action" (2.6.11).
-            None | Some(-1) => Ok(Target::Leave),
-            Some(angle) => Angle::new(angle).map(Target::Go),
+            -1 => Ok(Target::Leave),
+            angle => Angle::new(angle).map(Target::Go),
         };
         return checked(values, target)
             .map(HandCommand::Angles)
             .map_err(wrong);
     }
     if let Some(values) = joints(&FORCE_SET, address, words) {
-        let force = |value: Option<i16>| value.map(Force::new).transpose();
-        return checked(values, force)
+        return checked(values, Force::new)
             .map(HandCommand::Forces)
             .map_err(wrong);
     }
     if let Some(values) = joints(&SPEED_SET, address, words) {
-        let speed = |value: Option<i16>| value.map(Speed::new).transpose();
-        return checked(values, speed)
+        return checked(values, Speed::new)
             .map(HandCommand::Speeds)
             .map_err(wrong);
     }
@@ -79,11 +77,11 @@ fn joints(register: &Register, address: u16, words: &[u16]) -> Option<PerDof<Opt
 
 fn checked<T: Copy>(
     values: PerDof<Option<i16>>,
-    check: impl Fn(Option<i16>) -> Result<T, OutOfRange>,
-) -> Result<PerDof<T>, OutOfRange> {
-    let mut all = PerDof::splat(check(None)?);
+    check: impl Fn(i16) -> Result<T, OutOfRange>,
+) -> Result<PerDof<Option<T>>, OutOfRange> {
+    let mut all = PerDof::splat(None);
     for (dof, value) in values.iter() {
-        all[dof] = check(*value)?;
+        all[dof] = value.map(&check).transpose()?;
     }
     Ok(all)
 }
@@ -97,9 +95,12 @@ mod tests {
 
     #[test]
     fn words_become_what_they_mean_for_the_joints_they_are_written_to() {
-        let mut angles = PerDof::splat(Target::Leave);
-        angles[Dof::Index] = Target::Go(Angle::nearest(500));
+        let index = Some(Target::Go(Angle::nearest(500)));
+        let mut angles = PerDof::splat(None);
+        angles[Dof::Index] = index;
         assert_eq!(command(1492, &[500]), Ok(HandCommand::Angles(angles)));
+        let mut angles = PerDof::splat(Some(Target::Leave));
+        angles[Dof::Index] = index;
         let all = [0xFFFF, 0xFFFF, 0xFFFF, 500, 0xFFFF, 0xFFFF];
         assert_eq!(command(1486, &all), Ok(HandCommand::Angles(angles)));
         let mut forces = PerDof::splat(None);

@@ -24,7 +24,7 @@ struct Bench {
     hand: FakeHand,
     /// What the hand holds of what it was told.
     holds: Cell<Option<Setpoints>>,
-    /// It keeps "no action" in ANGLE_SET as it was written, as the manual has it and some hands do.
+    /// Until a joint is told something, its ANGLE_SET holds "no action" (-1), as a stop without a known pose leaves it.
     keeps_leave: Cell<bool>,
     /// Another controller writes so to its little finger: an angle, and a speed.
     foreign: Cell<[Option<i16>; 2]>,
@@ -155,7 +155,8 @@ impl Bench {
         let mut taken = known.copied().unwrap_or(*told);
         for dof in Dof::ALL {
             let leave = self.keeps_leave.get().then_some(Target::Leave);
-            taken.angle[dof] = told.angle[dof].or(leave).or(taken.angle[dof]);
+            let known = known.and_then(|known| known.angle[dof]);
+            taken.angle[dof] = told.angle[dof].or(known).or(leave);
             taken.speed[dof] = told.speed[dof].or(taken.speed[dof]);
         }
         taken
@@ -352,7 +353,7 @@ async fn one_wrong_reading_and_a_hand_that_rounds_end_nothing() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_hand_that_keeps_no_action_where_it_was_written_is_not_another_controller() {
+async fn a_hand_that_holds_no_action_where_it_was_told_nothing_is_not_another_controller() {
     let bench = Bench::start();
     bench.keeps_leave.set(true);
     bench.moves(true);

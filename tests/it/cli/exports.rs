@@ -83,8 +83,8 @@ impl Script {
 
     /// Sends a target to the index finger and leaves the others alone.
     fn send(&mut self, millis: u64, cause: WriteCause, angle: i16, fate: WriteFate) {
-        let mut six = PerDof::splat(Target::Leave);
-        six[Dof::Index] = Target::Go(Angle::new(angle).unwrap());
+        let mut six = PerDof::splat(None);
+        six[Dof::Index] = Some(Target::Go(Angle::new(angle).unwrap()));
         let write = HandCommand::Angles(six).writes();
         self.number += 1;
         let (number, write) = (self.number, WrittenMemory::from(write.first().unwrap()));

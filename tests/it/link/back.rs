@@ -8,11 +8,11 @@ use crate::setup::link::{self, Client};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use handscope::hand::Setpoints;
-use handscope::hand::{Angle, Dof, Target, register};
+use handscope::hand::{Angle, Dof, Moment, Target, register};
 use handscope::link::{Clock, LinkConfig, LinkStatus, LinkTrouble, STOP_PENDING, Stop};
 use handscope::record::{Disarmed, Hold, LinkState};
 use handscope::sim::serve::{rs485, slcan};
-use handscope::sim::{Personality, SharedHand};
+use handscope::sim::{Personality, SharedHand, SimHand};
 use handscope::transport::{Dial, Endpoint, PortFound, TransportError, UsbFound, Wire, pair};
 use std::sync::{Arc, Mutex};
 use tokio::sync::watch;
@@ -354,6 +354,34 @@ async fn a_stop_pressed_before_a_loss_is_noticed_is_sent_first_when_the_hand_is_
         assert!(matches!(stop, Stop::Confirmed { .. }), "{wire}: {stop:?}");
         check_held(&computer, before, was, wire);
         assert_eq!(link.status().state, LinkState::Monitoring, "{wire}");
+    }
+}
+
+/// Where nothing tells whether the frames of the stop reached the hand, it is held where it was when that was asked for.
+#[tokio::test(start_paused = true)]
+async fn a_stop_after_a_loss_sends_no_joint_back_to_where_its_feedback_froze_before() {
+    for wire in WIRES {
+        for frozen_for in [250, 350] {
+            let computer = Computer::new();
+            let mut link = open(&computer, wire);
+            armed(&mut link).await;
+            let freeze = |hand: &mut SimHand, now: Moment| hand.freeze_feedback(true, now);
+            computer.hand.with(freeze);
+            sleep(Duration::from_millis(frozen_for)).await;
+            computer.cut(true);
+            let was = computer.index();
+            let stop = link.begin(|link| async move { link.stop().await });
+            until(&mut link, SILENCE_WITHIN, is_lost).await;
+            computer.cut(false);
+            until(&mut link, BACK_WITHIN, |status| status.state.is_live()).await;
+            assert_eq!(stop.await.unwrap(), Stop::NotConfirmed, "{wire}");
+            let rests = computer.index();
+            assert!(
+                (was - rests).abs() < 45.0,
+                "{wire} {frozen_for}: {was} {rests}"
+            );
+            assert!(link.status().feedback_in_doubt, "{wire}");
+        }
     }
 }
 

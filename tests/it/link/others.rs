@@ -403,6 +403,39 @@ async fn another_program_that_writes_into_a_stream_of_setpoints_is_noticed_over_
     }
 }
 
+/// A joint that no round writes keeps what the other wrote.
+#[tokio::test(start_paused = true)]
+async fn another_programs_single_write_to_a_joint_that_a_stream_leaves_alone_is_noticed_over_tcp() {
+    for (moved, theirs) in [
+        (Dof::Index, Dof::Little),
+        (Dof::Little, Dof::ThumbRotate),
+        (Dof::ThumbBend, Dof::Index),
+    ] {
+        let at = OnTcp::new();
+        let mut link = at.armed().await;
+        for step in 0..150 {
+            let Some(epoch) = link.status().armed else {
+                break;
+            };
+            let mut setpoints = Setpoints::none(epoch);
+            for dof in [moved, Dof::Ring] {
+                setpoints.angle[dof] = Some(Target::Go(Angle::nearest(1000 - step)));
+            }
+            link.set(&setpoints);
+            if step == 100 {
+                at.write(1486 + 2 * theirs as u16, &[913]);
+            }
+            pass(&mut link, Duration::from_millis(10)).await;
+        }
+        let foreign = conflict(&link).unwrap();
+        assert_eq!(foreign.dof, theirs);
+        assert_eq!(
+            (foreign.register, foreign.holds),
+            (SetpointRegister::AngleSet, Some(913))
+        );
+    }
+}
+
 #[tokio::test(start_paused = true)]
 async fn another_programs_write_is_noticed_within_a_second_while_we_move_the_hand_over_tcp() {
     let mut chance = fastrand::Rng::with_seed(26);

@@ -57,7 +57,7 @@ fn open(hands: SimHands, id: u8) -> Client {
 async fn bend(hands: &SimHands, id: u8) {
     let (mut wire, its) = pair();
     tokio::spawn(rs485::serve(hands.clone(), its));
-    let command = HandCommand::Angles(PerDof::splat(Target::Go(Angle::nearest(400))));
+    let command = HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::nearest(400)))));
     for write in &command.writes() {
         let frame = encode_write(HandId::nearest(id), write);
         wire.write_all(&frame).await.unwrap();

@@ -235,6 +235,24 @@ fn speed_and_threshold_are_those_of_the_arming_until_others_are_named() {
 }
 
 #[test]
+fn a_motion_goes_on_while_its_limits_change() {
+    let mut script = Script::start("sim:");
+    script.done(json!({"do": "arm"}));
+    script.tell(&to_index(300, 100));
+    for speed in [200, 900] {
+        let reply = script.ask(json!({"do": "arm", "speed": speed}));
+        assert_eq!((&reply["id"], &reply["ok"]), (&json!("own"), &json!({})));
+    }
+    let moved = script.until("reply");
+    assert_eq!(
+        (&moved["id"], &moved["ok"]["end"]),
+        (&json!(1), &json!("reached")),
+        "{moved}"
+    );
+    assert_eq!(script.end(), Some(0));
+}
+
+#[test]
 fn the_end_of_the_script_stops_the_hand_at_once() {
     let (_sim, hand) = sim_on_tcp(&[]);
     let mut client = Client::of(&hand);

@@ -5,7 +5,7 @@ use super::other_hand::OtherHand;
 use handscope::hand::impact::RIGID_G_PER_COUNT;
 use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, Reply,
-    Setpoints, Span, Speed, Target,
+    Setpoints, Span, Speed,
 };
 use handscope::record::{LinkState, SetpointConflict};
 use handscope::sim::body_params::JointBody;
@@ -211,12 +211,7 @@ impl<H: RegisterHand> VirtualHand<H> {
     }
 
     fn set(&mut self, setpoints: &Setpoints) {
-        let angles = setpoints.angle.map(|angle| angle.unwrap_or(Target::Leave));
-        let commands = [
-            HandCommand::Speeds(setpoints.speed),
-            HandCommand::Forces(setpoints.force),
-            HandCommand::Angles(angles),
-        ];
+        let commands = setpoints.commands();
         for write in commands.iter().flat_map(HandCommand::writes) {
             let span = write.span();
             self.hand.write(span.address, write.bytes(), self.now);

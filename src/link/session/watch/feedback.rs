@@ -96,7 +96,7 @@ pub(crate) struct FeedbackWatch {
 }
 
 impl FeedbackWatch {
-    /// We write this, or may have. A joint that is left alone goes where it was told before.
+    /// We write this, or may have. A joint that is not written goes where it was told before.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
         self.forget_unsure(write);
         self.mark(write, true);
@@ -402,6 +402,27 @@ impl FeedbackWatch {
         }
     }
 
+    /// What a link that is back must know for a stop that waited for it: the suspect joints, and what they were told.
+    pub(crate) fn after_loss(mut self) -> Self {
+        self.doubt();
+        let doubted = self.doubted();
+        for command in &mut self.commands {
+            keep(&mut command.targets, &doubted);
+        }
+        keep(&mut self.joints, &doubted);
+        keep(&mut self.aims, &doubted);
+        for (_, joint) in self.joints.iter_mut() {
+            *joint = joint.map(|joint| Joint {
+                unchanged: None,
+                ..joint
+            });
+        }
+        Self {
+            last: HandSample::default(),
+            ..self
+        }
+    }
+
     /// True if any joint is in doubt.
     pub(crate) fn is_doubted(&self) -> bool {
         self.doubted().iter().any(|(_, doubted)| *doubted)
@@ -525,6 +546,14 @@ fn put(into: &mut PerDof<Option<i16>>, newer: &PerDof<Option<i16>>) {
     }
 }
 
+fn keep<T>(all: &mut PerDof<Option<T>>, kept: &PerDof<bool>) {
+    for (dof, one) in all.iter_mut() {
+        if !kept[dof] {
+            *one = None;
+        }
+    }
+}
+
 /// True if any measured value differs from the one before, or is the first.
 fn has_changed(before: &HandSample, now: &HandSample, fresh: Groups) -> bool {
     let differs = |group: Group| fresh.contains(group) && before.memory(group) != now.memory(group);
@@ -600,7 +629,7 @@ mod tests {
         let (first, fresh) = sample(at(1000, 2), ms(0));
         watch.take(&first, fresh);
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(speed))));
-        let angles = HandCommand::Angles(PerDof::splat(target));
+        let angles = HandCommand::Angles(PerDof::splat(Some(target)));
         for command in [speeds, angles] {
             tell(&mut watch, &command, ms(0));
         }
@@ -627,7 +656,7 @@ mod tests {
     #[test]
     fn a_write_without_acknowledgement_puts_no_joint_in_doubt() {
         let mut watch = watch(250, go(1000));
-        let close = HandCommand::Angles(PerDof::splat(go(0)));
+        let close = HandCommand::Angles(PerDof::splat(Some(go(0))));
         watch.wrote(&close.writes()[0], ms(0));
         for t in (20..900).step_by(20) {
             let (unmoved, fresh) = sample(at(1000, 2), ms(t));
@@ -661,7 +690,7 @@ mod tests {
         let (read, fresh) = sample(at(700, 1), ms(500));
         watch.take(&read, fresh);
         assert_eq!(watch.expected(Dof::Index, ms(600)), None, "it goes on");
-        let hold = HandCommand::Angles(PerDof::splat(go(700)));
+        let hold = HandCommand::Angles(PerDof::splat(Some(go(700))));
         tell(&mut watch, &hold, ms(600));
         let (read, fresh) = sample(at(690, 1), ms(700));
         watch.take(&read, fresh);
@@ -676,7 +705,7 @@ mod tests {
         assert_eq!(watch.way_back(ms(364)).as_millis(), 364);
         assert_eq!(watch.way_back(ms(3000)), WAY_BACK_MAX);
         // It is sent back to where it is seen: at rest there it is only once it had the time to come back, whatever its drive reports.
-        let back = HandCommand::Angles(PerDof::splat(go(1000)));
+        let back = HandCommand::Angles(PerDof::splat(Some(go(1000))));
         tell(&mut watch, &back, ms(300));
         let (frozen, fresh) = sample(at(1000, 2), ms(400));
         watch.take(&frozen, fresh);
@@ -800,7 +829,7 @@ mod tests {
         assert!((30..=50).contains(&way), "{way}");
         tell(
             &mut watch,
-            &HandCommand::Angles(PerDof::splat(held)),
+            &HandCommand::Angles(PerDof::splat(Some(held))),
             ms(420),
         );
         read(&mut watch, 430..1200, 2);
@@ -819,7 +848,7 @@ mod tests {
         read(&mut watch, 10..600);
         watch.doubt();
         let held = watch.hold_target(Dof::Index, ms(600)).unwrap();
-        let hold = HandCommand::Angles(PerDof::splat(held));
+        let hold = HandCommand::Angles(PerDof::splat(Some(held)));
         watch.wrote(&hold.writes()[0], ms(600));
         read(&mut watch, 610..700);
         tell(&mut watch, &hold, ms(700));
@@ -858,7 +887,7 @@ mod tests {
         watch.take(&seen, fresh);
         assert_eq!(held(&watch, 300), go(824));
         // The hold acts late too.
-        let hold = HandCommand::Angles(PerDof::splat(go(824)));
+        let hold = HandCommand::Angles(PerDof::splat(Some(go(824))));
         tell(&mut watch, &hold, ms(300));
         assert_eq!(held(&watch, 364), go(775));
         assert_eq!(held(&watch, 1000), go(824));

@@ -81,7 +81,7 @@ pub(crate) fn entries(seed: u64, count: u64) -> Vec<Entry> {
 
 fn others(number: u64, at: Moment, all: &mut Vec<Entry>) {
     let angle = Angle::new(500).unwrap();
-    let command = HandCommand::Angles(PerDof::splat(Target::Go(angle)));
+    let command = HandCommand::Angles(PerDof::splat(Some(Target::Go(angle))));
     let write = command.writes().first().unwrap().into();
     let cause = WriteCause::Setpoint;
     all.extend([
