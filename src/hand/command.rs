@@ -265,7 +265,8 @@ mod tests {
     fn commands() -> impl Strategy<Value = HandCommand> {
         let gesture = any::<u8>().prop_map(Gesture::nearest);
         prop_oneof![
-            prop::array::uniform6(prop::option::of(target())).prop_map(|t| HandCommand::Angles(PerDof::new(t))),
+            prop::array::uniform6(prop::option::of(target()))
+                .prop_map(|t| HandCommand::Angles(PerDof::new(t))),
             forces().prop_map(HandCommand::Forces),
             speeds().prop_map(HandCommand::Speeds),
             (gesture, route()).prop_map(|(number, route)| HandCommand::Gesture(number, route)),

@@ -320,7 +320,8 @@ mod tests {
     fn an_action_is_what_was_sent_before_it_is_read_back() {
         let (mut frames, mut sample) = (empty(), HandSample::default());
         let mut all = Vec::new();
-        let command = HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::new(900).unwrap()))));
+        let command =
+            HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::new(900).unwrap()))));
         let sent = Entry::Heard(Record::Sent {
             at: millis(150),
             number: 1,
@@ -351,7 +352,8 @@ mod tests {
             ..empty().plan
         };
         let (mut frames, mut sample) = (DatasetFrames::new(plan), HandSample::default());
-        let command = HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::new(900).unwrap()))));
+        let command =
+            HandCommand::Angles(PerDof::splat(Some(Target::Go(Angle::new(900).unwrap()))));
         let mut all = Vec::new();
         for n in 0..=60 {
             // Read 200 ms after the command, the hand still holds what it held before.

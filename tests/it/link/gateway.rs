@@ -201,8 +201,8 @@ async fn a_hand_stays_armed_and_moves_on_a_slow_way() {
         }
         let told = hand.with(|hand, _| {
             let mut all = hand.journal().iter().rev();
-            let angles = all.find(|write| write.address == 1486);
-            angles.map(|write| i16::from_le_bytes([write.bytes[6], write.bytes[7]]))
+            let index = all.find(|write| write.address == 1492);
+            index.map(|write| i16::from_le_bytes([write.bytes[0], write.bytes[1]]))
         });
         assert_eq!(told, Some(400), "{ms} ms");
     }

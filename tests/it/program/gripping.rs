@@ -2,7 +2,7 @@
 
 use crate::program::playing::{ENDINGS, stays_ended};
 use crate::program::playing::{library, phase};
-use crate::program::{ANGLE_SET, Bench, shorts, spoil};
+use crate::program::{ANGLE_SET, Bench, angles_told, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
@@ -93,13 +93,10 @@ async fn a_hand_that_closes_on_nothing_opens_and_tries_again_so_often_and_no_mor
     let end = PlayEnd::NotHolding(GripState::Empty);
     assert_eq!(phase(&bench), Some(PlayPhase::Ended(end)));
     assert_eq!(places(&bench), [700, 300, OPENS, 300, OPENS, 300]);
-    let rotation = |entry: &handscope::sim::JournalEntry| shorts(entry).get(5) == Some(&OPENS);
-    let angles = |entry: &&handscope::sim::JournalEntry| entry.address == ANGLE_SET;
-    let written = bench.written();
-    assert!(
-        !written.iter().filter(angles).any(rotation),
-        "the thumb keeps its rotation"
-    );
+    let turned = angles_told(&bench)
+        .into_iter()
+        .any(|told| told[Dof::ThumbRotate as usize] == OPENS);
+    assert!(!turned, "the thumb keeps its rotation");
     let grip = GripState::Empty;
     assert!(bench.told().contains(&NoticeKind::NotHolding { grip }));
     bench.forget();

@@ -183,6 +183,26 @@ fn spoil(line: &Line, trouble: Trouble) {
     *line.trouble.lock().unwrap() = trouble;
 }
 
+/// Where the joints were told to go, one entry a write of angles: joints that were left alone are -1.
+fn angles_told(bench: &Bench) -> Vec<[i16; 6]> {
+    let written = bench.written();
+    let angles = written
+        .iter()
+        .filter(|one| (ANGLE_SET..ANGLE_SET + 12).contains(&one.address));
+    let mut told: Vec<[i16; 6]> = Vec::new();
+    for one in angles {
+        let first = usize::from((one.address - ANGLE_SET) / 2);
+        let mut all = [-1; 6];
+        for (at, value) in shorts(one).into_iter().enumerate() {
+            all[first + at] = value;
+        }
+        if told.last() != Some(&all) {
+            told.push(all);
+        }
+    }
+    told
+}
+
 /// The shorts of a write.
 fn shorts(entry: &JournalEntry) -> Vec<i16> {
     let (pairs, _) = entry.bytes.as_chunks::<2>();

@@ -1,6 +1,6 @@
 //! Poses and sequences: what they send, and what ends them.
 
-use crate::program::{ANGLE_SET, Bench, shorts, spoil};
+use crate::program::{ANGLE_SET, Bench, angles_told, shorts, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
@@ -268,13 +268,13 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
         .map(|one| (one.address, shorts(one)))
         .collect();
     sent.dedup();
-    // SPEED_SET and FORCE_SET from the middle finger on, then the angles.
+    // SPEED_SET, FORCE_SET and ANGLE_SET from the middle finger on.
     assert_eq!(
         sent,
         [
             (1526, vec![350; 4]),
             (1502, vec![900; 4]),
-            (ANGLE_SET, vec![-1, -1, 700, 700, 700, 700]),
+            (ANGLE_SET + 4, vec![700; 4]),
         ]
     );
     assert_eq!(bench.target(Dof::Index), Some(700));
@@ -355,26 +355,6 @@ fn shipped(name: &str) -> PoseId {
     starter().pose_named(name).unwrap().id
 }
 
-/// Where the joints were told to go, one entry a write of angles: joints that were left alone are -1.
-fn angles_told(bench: &Bench) -> Vec<[i16; 6]> {
-    let written = bench.written();
-    let angles = written
-        .iter()
-        .filter(|one| (ANGLE_SET..ANGLE_SET + 12).contains(&one.address));
-    let mut told: Vec<[i16; 6]> = Vec::new();
-    for one in angles {
-        let first = usize::from((one.address - ANGLE_SET) / 2);
-        let mut all = [-1; 6];
-        for (at, value) in shorts(one).into_iter().enumerate() {
-            all[first + at] = value;
-        }
-        if told.last() != Some(&all) {
-            told.push(all);
-        }
-    }
-    told
-}
-
 #[tokio::test(start_paused = true)]
 async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_bends_last() {
     let mut bench = Bench::armed().await;
@@ -394,7 +374,8 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
         told,
         [
             [-1, -1, -1, -1, 800, -1],
-            [0, 0, 0, 0, -1, 300],
+            [0, 0, 0, 0, -1, -1],
+            [-1, -1, -1, -1, -1, 300],
             [-1, -1, -1, -1, 580, -1],
         ]
     );

@@ -56,8 +56,13 @@ fn newest(place: &Place) -> GatewayClient {
 fn targets(place: &Place) -> Vec<i16> {
     place.hand.with(|hand, _| {
         let all = hand.journal().iter();
-        let angles = all.filter(|write| write.address == 1486);
-        let index = angles.map(|write| i16::from_le_bytes([write.bytes[6], write.bytes[7]]));
+        // A stop tells all joints.
+        let index = all.filter_map(|write| match (write.address, &write.bytes[..]) {
+            (INDEX, [low, high]) | (1486, [_, _, _, _, _, _, low, high, ..]) => {
+                Some(i16::from_le_bytes([*low, *high]))
+            }
+            _ => None,
+        });
         index.collect()
     })
 }
@@ -107,7 +112,7 @@ async fn two_clients_at_once_one_moves_the_hand_and_the_other_looks_on() {
     let place = first_may().await;
     let (mut mover, mut other) = (place.client().await, place.client().await);
     assert_eq!(put(&mut mover, INDEX, &[300]).await, Ok(()));
-    assert_eq!(place.wires.writes(), [1522, 1498, 1486]);
+    assert_eq!(place.wires.writes(), [1522, 1498, INDEX]);
     assert_eq!(put(&mut other, INDEX, &[700]).await, BUSY);
     assert_eq!(put(&mut other, 1522, &[700]).await, BUSY);
     // What the hand holds is seen by both from then on.

@@ -114,7 +114,8 @@ fn what_is_done_to_one_hand_reaches_no_other() {
     arm(&mut bench);
     bench.drag("Index angle target", 1.0, 0.4);
     bench.run(300);
-    assert!(bench.addresses_at(SECOND).contains(&ANGLE_SET));
+    let index = ANGLE_SET + 2 * Dof::Index as u16;
+    assert!(bench.addresses_at(SECOND).contains(&index));
     assert_eq!(bench.writes().len(), 0);
     let [first, second] = hands(&bench)[..] else {
         panic!("two")

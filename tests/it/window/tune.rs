@@ -137,7 +137,7 @@ fn held_for_a_second_the_button_arms_the_hand_and_then_starts() {
     hold(&mut bench, 900);
     check_nothing(&bench, "not yet");
     bench.until(1000, runs);
-    let is_angle = |write: &Write| write.address == ANGLE_SET;
+    let is_angle = |write: &Write| (ANGLE_SET..ANGLE_SET + 12).contains(&write.address);
     let writes = bench.writes();
     let limits = |address| writes.iter().position(|write| write.address == address);
     let first_angle = writes.iter().position(is_angle);

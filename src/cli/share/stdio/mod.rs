@@ -23,9 +23,7 @@ use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
-use futures::StreamExt as _;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
-use futures::stream::FuturesUnordered;
 use serde_json::{Value, json};
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -42,8 +40,6 @@ const ARMS_WITHIN: Duration = Duration::from_secs(5);
 /// one that does not.
 const BACK_WITHIN: Duration = Duration::from_secs(6);
 const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
-/// Requests beside a motion that may be under way.
-const BESIDE_MAX: usize = 16;
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
 
@@ -111,8 +107,6 @@ struct Script<'a> {
     missed: u64,
     right: Option<Right>,
     task: Option<Task>,
-    /// What is asked for beside that and ends nothing: other limits.
-    beside: FuturesUnordered<BoxFuture<'static, (Value, Done)>>,
     recording: Option<SideRecording>,
     /// The recording that is being ended, and whom that is told to.
     ending: Option<(Value, BoxFuture<'static, anyhow::Result<()>>)>,
@@ -137,7 +131,6 @@ pub(crate) async fn serve<'a>(
         missed: 0,
         right: None,
         task: None,
-        beside: FuturesUnordered::new(),
         recording: None,
         ending: None,
         is_live: true,
@@ -175,7 +168,6 @@ impl Script<'_> {
                     None => return Ok(()),
                 },
                 Some(done) = task => self.finish(done)?,
-                Some((id, done)) = self.beside.next() => self.tell_done(&id, done)?,
                 Some(whole) = ending => self.ended(whole)?,
                 record = records.next() => match record {
                     Some(record) => self.take(record, records)?,
@@ -208,12 +200,6 @@ impl Script<'_> {
         } else {
             Ok(())
         };
-        let answers = async {
-            while let Some((id, done)) = self.beside.next().await {
-                let _told = self.tell_done(&id, done);
-            }
-        };
-        let _answered = timeout(ARMS_WITHIN, answers).await;
         let mut recorded = Ok(());
         if let Some(recording) = self.recording.take() {
             recorded = recording.end_here().await;
@@ -291,9 +277,7 @@ impl Script<'_> {
 
     /// The right to move the hand is over, which was not asked for.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
-        if self.right.take().is_none() {
-            return Ok(());
-        }
+        self.right = None;
         if why.kind == LINK_LOST {
             // The hand goes on to where it was sent: a stop waits for it.
             drop(self.hand.link.stop());
@@ -409,20 +393,6 @@ impl Script<'_> {
         Ok(())
     }
 
-    /// Begins what goes on beside a task.
-    fn begin_beside(
-        &mut self,
-        id: Value,
-        done: impl Future<Output = Done> + Send + 'static,
-    ) -> Result<(), NobodyReads> {
-        if self.beside.len() == BESIDE_MAX {
-            let busy = format!("{BESIDE_MAX} requests are under way: ask again when one is answered");
-            return self.reply(&id, Err(Refused::new(RefusalKind::Refused, busy)));
-        }
-        self.beside.push(async { (id, done.await) }.boxed());
-        Ok(())
-    }
-
     /// Stops the hand, whoever moves it, and waits for what feedback says of it.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
         self.hand.link.stop();
@@ -433,15 +403,18 @@ impl Script<'_> {
         self.begin(Task::of(id, stopping))
     }
 
-    /// Takes the right to move the hand, unless another has it.
+    /// Takes the right to move the hand, unless another has it. Where the hand is armed already only its limits change, at once, and
+    /// what moves it goes on.
     fn arm(&mut self, id: Value, limits: LimitsAsk) -> Result<(), NobodyReads> {
         let held = self.holds();
         let limits = limits.over(held.map_or(ArmRequest::GENTLE, |right| right.limits));
+        if let (Some(right), Some(epoch)) = (held, self.hand.link.status().armed) {
+            let set = self.hand.link.set(right.lease, &limits.setpoints(epoch));
+            self.right = Some(Right { limits, ..right });
+            return self.reply(&id, set.map(|()| json!({})).map_err(Refused::from));
+        }
         let link = self.hand.link.clone();
         let arming = async move { Done::Armed(granted(&link, held, limits).await) };
-        if held.is_some() {
-            return self.begin_beside(id, arming);
-        }
         self.begin(Task {
             id,
             done: arming.boxed(),
@@ -581,37 +554,33 @@ impl Script<'_> {
 
     /// A task is over.
     fn finish(&mut self, done: Done) -> Result<(), NobodyReads> {
-        match self.task.take() {
-            Some(Task { id, .. }) => self.tell_done(&id, done),
-            None => Ok(()),
-        }
-    }
-
-    fn tell_done(&mut self, id: &Value, done: Done) -> Result<(), NobodyReads> {
+        let Some(Task { id, .. }) = self.task.take() else {
+            return Ok(());
+        };
         match done {
             Done::Armed(Ok(right)) => {
                 self.right = Some(right);
-                self.reply(id, Ok(json!({})))
+                self.reply(&id, Ok(json!({})))
             }
             // What it had before may hold, or have ended meanwhile.
             Done::Armed(Err(no)) => {
                 let lost = self.right.is_some() && self.holds().is_none();
-                self.reply(id, Err(no.clone()))?;
+                self.reply(&id, Err(no.clone()))?;
                 if lost { self.lose(&no) } else { Ok(()) }
             }
             Done::Moved(moved) => {
                 let done = moved.and_then(|report| self.moved(&report));
                 let lost = done.clone().err().filter(|_| self.holds().is_none());
-                self.reply(id, done)?;
+                self.reply(&id, done)?;
                 lost.map_or(Ok(()), |why| self.lose(&why))
             }
             Done::Followed(followed) => self.followed(followed),
             Done::Stopped(stopped) => {
                 let done =
                     stopped.map_err(|not| Refused::new(RefusalKind::NotConfirmed, not.to_string()));
-                self.reply(id, done.map(|()| json!({})))
+                self.reply(&id, done.map(|()| json!({})))
             }
-            Done::Cleared(cleared) => self.reply(id, cleared.map(|()| json!({}))),
+            Done::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
         }
     }
 
@@ -685,13 +654,7 @@ async fn granted(
             },
         };
         match armed(link, right).await {
-            Ok(epoch) => {
-                if held.is_some() {
-                    // Its arming goes on, and writes nothing by itself.
-                    link.set(right.lease, &limits.setpoints(epoch))?;
-                }
-                return Ok(right);
-            }
+            Ok(_epoch) => return Ok(right),
             // Nothing moved yet: it begins anew with a link that is back.
             Err(no) if no.kind == LINK_LOST && held.is_none() && Instant::now() < until => {}
             Err(no) => return Err(no),

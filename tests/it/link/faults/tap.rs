@@ -115,10 +115,8 @@ impl Log {
     fn keep(&self, mut sent: Sent) {
         let holds = sent.is_motion();
         let tips = sent.asks_in(3000..3290);
-        // A stop leaves all joints as they are, or none.
-        let bytes = sent.written.as_deref().unwrap_or_default();
-        let leaves = bytes.iter().filter(|byte| **byte == 0xFF).count();
-        let wish = holds && (1..bytes.len()).contains(&leaves);
+        // A stop is told to all joints.
+        let wish = holds && sent.written.as_ref().is_some_and(|bytes| bytes.len() == 2);
         let job = sent.asks_in(1000..1070);
         let mut kept = self.sent.lock().unwrap();
         match self.lie {
