@@ -2,7 +2,7 @@
 
 use crate::app::files::settings_file;
 use crate::cli::out::{Out, say};
-use crate::cli::parse::{force, hand, moving, rated, speed};
+use crate::cli::parse::{hand, moving_speed, rated_force};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::hand::PerDof;
@@ -58,14 +58,6 @@ fn gap(text: &str) -> Result<Gap, String> {
         .parse()
         .map_err(|_not_one| format!("'{text}' is not a number of millimetres"))?;
     Gap::new(mm).map_err(|error| error.to_string())
-}
-
-fn moving_speed(text: &str) -> Result<Speed, String> {
-    speed(text).and_then(moving)
-}
-
-fn rated_force(text: &str) -> Result<Force, String> {
-    force(text).and_then(rated)
 }
 
 /// Grips. Fails if it was ended early, or if something stopped the hand that it does not hold.

@@ -115,6 +115,14 @@ pub(crate) fn speed(text: &str) -> Result<Speed, String> {
     Speed::new(whole(text)?).map_err(|error| error.to_string())
 }
 
+pub(crate) fn moving_speed(text: &str) -> Result<Speed, String> {
+    speed(text).and_then(moving)
+}
+
+pub(crate) fn rated_force(text: &str) -> Result<Force, String> {
+    force(text).and_then(rated)
+}
+
 pub(crate) fn force(text: &str) -> Result<Force, String> {
     Force::new(whole(text)?).map_err(|error| error.to_string())
 }

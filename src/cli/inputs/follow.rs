@@ -46,10 +46,10 @@ pub(crate) struct FollowArgs {
     #[arg(long, value_name = "COUNTS", default_value_t = FollowLimits::default().rate, value_parser = rate)]
     rate: u16,
     /// Speed of the drives, 1 to 1000 [default: a quarter more than --rate needs]
-    #[arg(long, value_parser = parse::speed)]
+    #[arg(long, value_parser = parse::moving_speed)]
     speed: Option<Speed>,
-    /// Force threshold of all joints, g [default: gentle]
-    #[arg(long, value_parser = parse::force)]
+    /// Force threshold of all joints, 0 to 2000 g [default: gentle]
+    #[arg(long, value_parser = parse::rated_force)]
     force: Option<Force>,
     /// Take a line of standard input for an answer, also where that is no terminal: one that comes after the question
     #[arg(long, value_name = "FROM", requires = "arm")]

@@ -531,6 +531,10 @@ impl Session {
             return;
         }
         hold.trusted_rest();
+        if hold.has_ceased() {
+            // Who held it in place of this program would lead its joints back to where they froze.
+            self.guard.rests();
+        }
         if !self.feedback.is_doubted() {
             self.hold_confirmed();
         }

@@ -449,6 +449,8 @@ fn wrong_use_is_told_in_one_sentence() {
     for (args, code, words) in [
         (&["--hand", "sim:"][..], 2, "--udp"),
         (&["--hand", "sim:", "--udp", "here"], 2, "127.0.0.1:6000"),
+        (&["--hand", "sim:", "--speed", "0"], 2, "nothing moves"),
+        (&["--hand", "sim:", "--force", "2001"], 2, "2000 g"),
         (
             &["--hand", "sim:", "--udp", "127.0.0.1:0", "--lead", "5"],
             2,

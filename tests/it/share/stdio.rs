@@ -238,7 +238,7 @@ fn speed_and_threshold_are_those_of_the_arming_until_others_are_named() {
 fn a_motion_goes_on_while_its_limits_change() {
     let mut script = Script::start("sim:");
     script.done(json!({"do": "arm"}));
-    script.tell(&to_index(300, 100));
+    script.tell(&to_index(750, 100));
     for speed in [200, 900] {
         let reply = script.ask(json!({"do": "arm", "speed": speed}));
         assert_eq!((&reply["id"], &reply["ok"]), (&json!("own"), &json!({})));
@@ -263,6 +263,27 @@ fn the_end_of_the_script_stops_the_hand_at_once() {
     let took = client.until_held(killed);
     assert!(took < STOPS_WITHIN, "{took:?}");
     assert_eq!(script.end(), Some(0), "at rest");
+}
+
+#[test]
+fn a_killed_script_leaves_joints_whose_feedback_froze_where_they_were_held() {
+    let (sim, hand) = sim_on_tcp(&[]);
+    let mut client = Client::of(&hand);
+    let mut script = Script::moving(&hand);
+    sim.signal(Signal::SIGUSR2);
+    assert_eq!(script.until("disarmed")["kind"], "frozen_feedback");
+    let frozen_at = client.read(INDEX[1], 1)[0];
+    // All that can be done is done by then.
+    sleep(Duration::from_secs(1));
+    script.child.kill().unwrap();
+    sleep(Duration::from_secs(2));
+    sim.signal(Signal::SIGUSR2);
+    let begun = Instant::now();
+    let mut angle = client.read(INDEX[1], 1)[0];
+    while angle == frozen_at && begun.elapsed() < Duration::from_secs(1) {
+        angle = client.read(INDEX[1], 1)[0];
+    }
+    assert!(angle + 40 < frozen_at, "{angle}, frozen at {frozen_at}");
 }
 
 #[test]
