@@ -65,7 +65,7 @@ impl MotionGuard {
         }
     }
 
-    /// The hand rests by feedback, or is left in good order.
+    /// The hand rests by feedback, or is left in good order: also where its feedback froze and it was told all that can be told.
     pub(crate) fn rests(&self) {
         if self.moves.swap(false, Ordering::Relaxed)
             && let Some(tie) = lock(&self.tie).as_ref()

@@ -25,7 +25,7 @@ struct Bench {
     /// What the hand holds of what it was told.
     holds: Cell<Option<Setpoints>>,
     /// Until a joint is told something, its ANGLE_SET holds "no action" (-1), as a stop without a known pose leaves it.
-    keeps_leave: Cell<bool>,
+    begins_left_alone: Cell<bool>,
     /// Another controller writes so to its little finger: an angle, and a speed.
     foreign: Cell<[Option<i16>; 2]>,
     end: Option<oneshot::Sender<()>>,
@@ -57,7 +57,7 @@ impl Bench {
         Self {
             hand,
             holds: Cell::new(None),
-            keeps_leave: Cell::new(false),
+            begins_left_alone: Cell::new(false),
             foreign: Cell::new([None; 2]),
             end: Some(end),
             task,
@@ -154,7 +154,7 @@ impl Bench {
     fn taken(&self, told: &Setpoints, known: Option<&Setpoints>) -> Setpoints {
         let mut taken = known.copied().unwrap_or(*told);
         for dof in Dof::ALL {
-            let leave = self.keeps_leave.get().then_some(Target::Leave);
+            let leave = self.begins_left_alone.get().then_some(Target::Leave);
             let known = known.and_then(|known| known.angle[dof]);
             taken.angle[dof] = told.angle[dof].or(known).or(leave);
             taken.speed[dof] = told.speed[dof].or(taken.speed[dof]);
@@ -355,7 +355,7 @@ async fn one_wrong_reading_and_a_hand_that_rounds_end_nothing() {
 #[tokio::test(start_paused = true)]
 async fn a_hand_that_holds_no_action_where_it_was_told_nothing_is_not_another_controller() {
     let bench = Bench::start();
-    bench.keeps_leave.set(true);
+    bench.begins_left_alone.set(true);
     bench.moves(true);
     // The maker's fist: the thumb turns out before the fingers open, so that each joint is left alone once.
     let fist = PerDof::new([0, 0, 0, 0, 400, 600]);
