@@ -2,7 +2,7 @@ if ! { command -v Xvfb && command -v xdotool; } >/dev/null && ! apt_install "$wi
   skipped "the real window" "no Xvfb here and none to be had"
   exit
 fi
-Xvfb :77 -screen 0 1440x900x24 >"$out/xvfb.txt" 2>&1 &
+Xvfb :77 -noreset -screen 0 1440x900x24 >"$out/xvfb.txt" 2>&1 &
 xvfb=$!
 sleep 2
 status=0

@@ -22,7 +22,7 @@ wait_for() { for _ in $(seq 200); do [ ! -s "$1" ] || return 0; sleep 0.05; done
 
 unzip -q "$zip"
 x86_64-w64-mingw32-gcc-win32 -O1 -o console.exe "$tests/console.c"
-Xvfb $DISPLAY -screen 0 1600x1000x24 >xvfb.txt 2>&1 &
+Xvfb $DISPLAY -noreset -screen 0 1600x1000x24 >xvfb.txt 2>&1 &
 started=$!
 wineboot -i >wineboot.txt 2>&1
 # Keeps wine's server running: where it ends, it writes to the standard error of the program that started it.

@@ -52,7 +52,9 @@ impl Display {
         let folder = tempfile::tempdir().unwrap();
         let screen = format!("{}x{}x24", size.0, size.1);
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0"])
+            // Without -noreset it turns clients away for a moment whenever its last one has left, as when the window has closed.
+            .args(["-noreset", "-displayfd", "1", "-nolisten", "tcp"])
+            .args(["-screen", "0"])
             .args([&screen, "-fbdir", folder.path().to_str().unwrap()])
             .args(more)
             .stdout(Stdio::piped())
