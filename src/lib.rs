@@ -63,29 +63,11 @@
 //!   a fault that needs the user ends that.
 //! * While a recording is shown, nothing is sent but a stop of the live hand.
 pub mod app;
-pub mod checkup;
 pub mod cli;
-pub mod codec;
-pub mod exhibit;
-pub mod hand;
-pub mod history;
-pub mod inputs;
-pub mod link;
-pub mod manual;
-pub mod model;
-pub mod params;
-pub mod poses;
-pub mod printable;
-pub mod record;
-pub mod share;
 pub mod shell;
-pub mod sim;
-#[cfg(test)]
-#[path = "../tests/it/setup/soak.rs"]
-mod soak;
-pub mod store;
-pub mod system;
-pub mod tasks;
-pub mod transport;
-pub mod trials;
 pub mod ui;
+
+pub use handscope_core::{
+    checkup, codec, exhibit, hand, history, inputs, link, manual, model, params, poses, printable,
+    record, share, sim, store, system, tasks, transport, trials,
+};

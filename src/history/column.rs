@@ -180,7 +180,6 @@ impl Column {
     }
 
     /// Bytes held.
-    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.values.bytes()
             + self.levels.iter().map(RowRing::bytes).sum::<usize>()

@@ -20,6 +20,6 @@ pub use crate::history::reading::{Reading, Summary};
 pub use crate::history::series::{CHANNEL_ROWS, HISTORY_ROWS, HISTORY_SECONDS, History, Series};
 pub use crate::history::status::StatusRun;
 pub use crate::history::table::Table;
-pub(crate) use crate::history::table::TableGroup;
+pub use crate::history::table::TableGroup;
 pub use crate::history::trace::Trace;
 pub use crate::history::track::decimated;

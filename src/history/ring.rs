@@ -68,7 +68,6 @@ impl<T: Copy> RowRing<T> {
     }
 
     /// Bytes held.
-    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         let entries: usize = self.kept.iter().map(Vec::capacity).sum();
         entries * size_of::<T>()

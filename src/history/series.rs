@@ -353,8 +353,7 @@ impl History {
     }
 
     /// Memory held, in bytes.
-    #[cfg(test)]
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         self.tracks.iter().map(HistoryTrack::bytes).sum()
     }
 

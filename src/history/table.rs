@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 
 /// Lines that were read together.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TableGroup {
+pub struct TableGroup {
     /// Times of the rows, in seconds, never falling.
-    pub(crate) times: Vec<f64>,
+    pub times: Vec<f64>,
     /// Head and values of each column; NaN = not known.
-    pub(crate) columns: Vec<(String, Vec<f32>)>,
+    pub columns: Vec<(String, Vec<f32>)>,
 }
 
 /// A copy of measurements, free of the history it came from.
@@ -33,7 +33,7 @@ impl Table {
     }
 
     /// The same with more columns, and more that happened.
-    pub(crate) fn with(mut self, group: TableGroup, marks: Vec<(f64, String)>) -> Self {
+    pub fn with(mut self, group: TableGroup, marks: Vec<(f64, String)>) -> Self {
         self.groups.push(group);
         self.marks.extend(marks);
         self.marks.sort_by(|one, two| one.0.total_cmp(&two.0));

@@ -44,7 +44,7 @@ impl Trace {
     }
 
     /// Lets the last value stand until a time.
-    pub(crate) fn hold_until(&mut self, time_s: f64) {
+    pub fn hold_until(&mut self, time_s: f64) {
         let last = self.segments.last_mut();
         if let Some((segment, [last_s, value])) =
             last.and_then(|segment| segment.last().copied().map(|point| (segment, point)))

@@ -94,7 +94,6 @@ impl HistoryTrack {
     }
 
     /// Bytes held.
-    #[cfg(test)]
     pub(crate) fn bytes(&self) -> usize {
         self.times.bytes() + self.columns.iter().map(Column::bytes).sum::<usize>()
     }

@@ -9,7 +9,7 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// What is wrong with a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
-pub(crate) enum FieldFault {
+pub enum FieldFault {
     #[error("is there twice")]
     Twice,
     #[error("has another type")]
@@ -18,14 +18,14 @@ pub(crate) enum FieldFault {
 
 /// Fields that were not taken yet.
 #[derive(Debug, Default)]
-pub(crate) struct Fields(Vec<(String, Value)>);
+pub struct Fields(Vec<(String, Value)>);
 
 impl Fields {
     /// Reads an object.
     ///
     /// # Errors
     /// As the reader of JSON says it.
-    pub(crate) fn parse(text: &[u8]) -> Result<Self, serde_json::Error> {
+    pub fn parse(text: &[u8]) -> Result<Self, serde_json::Error> {
         serde_json::from_slice(text)
     }
 
@@ -33,7 +33,7 @@ impl Fields {
     ///
     /// # Errors
     /// [`FieldFault::Twice`]: nothing tells which of them counts.
-    pub(crate) fn take(&mut self, name: &str) -> Result<Option<Value>, FieldFault> {
+    pub fn take(&mut self, name: &str) -> Result<Option<Value>, FieldFault> {
         let mut found = self.0.extract_if(.., |(own, _)| own == name);
         let (first, second) = (found.next(), found.next());
         if second.is_some() {
@@ -45,12 +45,12 @@ impl Fields {
     }
 
     /// Whether a field of this name is there.
-    pub(crate) fn has(&self, name: &str) -> bool {
+    pub fn has(&self, name: &str) -> bool {
         self.0.iter().any(|(own, _)| own == name)
     }
 
     /// A field that was not taken.
-    pub(crate) fn other(&self) -> Option<&str> {
+    pub fn other(&self) -> Option<&str> {
         self.0.first().map(|(name, _)| name.as_str())
     }
 }
@@ -79,7 +79,7 @@ impl<'de> Deserialize<'de> for Fields {
 ///
 /// # Errors
 /// [`FieldFault::Type`] for everything else.
-pub(crate) fn whole(value: &Value) -> Result<i64, FieldFault> {
+pub fn whole(value: &Value) -> Result<i64, FieldFault> {
     if let Some(number) = value.as_i64() {
         return Ok(number);
     }
@@ -99,7 +99,7 @@ const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 ///
 /// # Errors
 /// [`FieldFault::Type`] for everything else.
-pub(crate) fn number(value: &Value) -> Result<f64, FieldFault> {
+pub fn number(value: &Value) -> Result<f64, FieldFault> {
     value.as_f64().ok_or(FieldFault::Type)
 }
 

@@ -5,7 +5,7 @@ use crate::inputs::scan::{Token, pieces, unmarked};
 use crate::inputs::stop::{TextEnd, is_stop};
 
 /// Longest line that is kept whole: a stop may be anywhere in it.
-pub(crate) const LONGEST: usize = 64 * 1024;
+pub const LONGEST: usize = 64 * 1024;
 /// Up to here a line that is not whole yet is looked through whenever more of it came, and an object may go over several lines.
 /// Of longer ones this would cost more than they are worth: whoever sends them byte by byte must not keep the hand waiting.
 const SHORT: usize = 2048;
@@ -14,7 +14,7 @@ const KEPT: usize = 256;
 
 /// What came in.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Cut {
+pub enum Cut {
     /// A line without its line feed, or the beginning of one that is longer than they may be. An object whose first line is `{` alone
     /// is one line, however many it is written on.
     Line {
@@ -28,7 +28,7 @@ pub(crate) enum Cut {
 
 /// Cuts bytes into lines.
 #[derive(Debug)]
-pub(crate) struct LineCutter {
+pub struct LineCutter {
     longest: usize,
     rest: Vec<u8>,
     has_stopped: bool,
@@ -40,7 +40,7 @@ pub(crate) struct LineCutter {
 
 impl LineCutter {
     /// For lines of at most so many bytes.
-    pub(crate) const fn new(longest: usize) -> Self {
+    pub const fn new(longest: usize) -> Self {
         Self {
             longest,
             rest: Vec::new(),
@@ -51,7 +51,7 @@ impl LineCutter {
     }
 
     /// What these bytes complete, in order.
-    pub(crate) fn push(&mut self, bytes: &[u8]) -> Vec<Cut> {
+    pub fn push(&mut self, bytes: &[u8]) -> Vec<Cut> {
         let mut cuts = Vec::new();
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
             let is_whole = piece.ends_with(b"\n");
@@ -94,7 +94,7 @@ impl LineCutter {
     }
 
     /// Nothing more comes: a stop counts without the end of its line.
-    pub(crate) fn end(mut self) -> Option<Cut> {
+    pub fn end(mut self) -> Option<Cut> {
         is_stop(self.unfinished(), TextEnd::Whole).then(|| self.cut())
     }
 

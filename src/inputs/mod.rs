@@ -1,19 +1,19 @@
 //! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
 
 pub mod dds;
-pub(crate) mod fields;
+pub mod fields;
 pub mod follow;
 #[cfg(test)]
 mod follow_tests;
 pub mod intake;
 pub mod line;
-pub(crate) mod lines;
+pub mod lines;
 pub mod mirror;
 pub mod offer;
 pub mod pad;
 mod pinch;
-pub(crate) mod scan;
-pub(crate) mod stop;
+pub mod scan;
+pub mod stop;
 pub mod stream;
 
 pub use offer::{Offer, OfferLimits};

@@ -66,7 +66,7 @@ pub(crate) fn not_finite_at(text: &[u8]) -> Option<Option<String>> {
 }
 
 /// The number or the string that the outermost object has under a name, as far as it can be told; else `null`.
-pub(crate) fn value_at(text: &[u8], name: &str) -> Value {
+pub fn value_at(text: &[u8], name: &str) -> Value {
     let all = pieces(text);
     let mut depth = 0_usize;
     for (nth, token) in all.iter().enumerate() {
@@ -88,7 +88,7 @@ pub(crate) fn value_at(text: &[u8], name: &str) -> Value {
 }
 
 /// A text without what some systems put before it: a mark of its encoding, blanks, bytes of zero.
-pub(crate) fn unmarked(text: &[u8]) -> &[u8] {
+pub fn unmarked(text: &[u8]) -> &[u8] {
     let is_before =
         |byte: &u8| byte.is_ascii_whitespace() || b"\0\xef\xbb\xbf\xff\xfe".contains(byte);
     let begin = text.iter().position(|byte| !is_before(byte));

@@ -14,7 +14,7 @@ const NO: [&str; 8] = ["false", "null", "none", "nil", "undefined", "no", "off",
 
 /// What ends a motion, the strongest last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum EndWord {
+pub enum EndWord {
     /// The sender gives up its right to move the hand.
     Disarm,
     /// The same, and the hand stops unless another sender moves it.
@@ -25,7 +25,7 @@ pub(crate) enum EndWord {
 
 /// Whether more of a text may follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TextEnd {
+pub enum TextEnd {
     /// This is all of it.
     Whole,
     /// A value at its end may be only the beginning of one.
@@ -38,7 +38,7 @@ pub(crate) fn is_stop(text: &[u8], end: TextEnd) -> bool {
 }
 
 /// The strongest word of a message that ends a motion.
-pub(crate) fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
+pub fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
     let text = without_zeros(text);
     let found = word_in(&text, end);
     // A quote too many turns what is a name into part of a string. In JSON that is whole there is none.
@@ -85,7 +85,7 @@ fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
 }
 
 /// Whether a dead-man is let go by a message, whatever else is wrong with it.
-pub(crate) fn lets_go(text: &[u8]) -> bool {
+pub fn lets_go(text: &[u8]) -> bool {
     let text = without_zeros(text);
     let all = pieces(&text);
     all.windows(3).any(|three| match three {

@@ -404,7 +404,7 @@ impl LinkHandle {
     }
 
     /// The clock of this link.
-    pub(crate) fn clock(&self) -> Clock {
+    pub fn clock(&self) -> Clock {
         self.0.clock
     }
 

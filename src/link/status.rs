@@ -235,7 +235,7 @@ impl ArmRequest {
     };
 
     /// The same for a hand that is armed already.
-    pub(crate) fn setpoints(&self, epoch: ArmEpoch) -> Setpoints {
+    pub fn setpoints(&self, epoch: ArmEpoch) -> Setpoints {
         Setpoints {
             speed: self.speed.map(Some),
             force: self.force.map(Some),

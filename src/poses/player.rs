@@ -239,7 +239,7 @@ pub struct PlayView {
 
 impl PlayView {
     /// The first step, at its begin.
-    pub(crate) const fn first(now: Moment) -> Self {
+    pub const fn first(now: Moment) -> Self {
         Self {
             at: 0,
             phase: PlayPhase::Moving { since: now },

@@ -4,7 +4,8 @@
 pub mod desktop;
 pub mod headless;
 pub(crate) mod interrupt;
-pub mod raster;
+
+pub use handscope_raster as raster;
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;

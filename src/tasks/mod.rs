@@ -103,7 +103,7 @@ pub enum Consent {
 
 impl Consent {
     /// Fails if there is a risk that nobody agreed to.
-    pub(crate) fn check(&self, risks: &Risks) -> Result<(), TaskError> {
+    pub fn check(&self, risks: &Risks) -> Result<(), TaskError> {
         let is_meant = match self {
             Self::Given => true,
             Self::To(agreed) => {

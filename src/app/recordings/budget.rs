@@ -152,8 +152,9 @@ pub(crate) fn told_path(folder: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use crate::hand::Moment;
-    use crate::record::file::tests::parts::Parts;
-    use crate::record::file::{Counts, Opening};
+    use crate::record::file::writer::RecordingWriter;
+    use crate::record::file::{Counts, Opening, Part};
+    use crate::record::{Entry, LinkState, Record};
     use std::sync::Arc;
 
     const DAY_S: u64 = 24 * 3600;
@@ -275,10 +276,28 @@ mod tests {
 
     #[test]
     fn all_files_of_a_recording_go_and_only_if_none_changed() {
-        let parts = Parts::new();
-        let another = parts.path("another.mcap");
+        let folder = tempfile::tempdir().unwrap();
+        for (number, name) in (1..).zip(["a.mcap", "a-2.mcap", "a-3.mcap"]) {
+            let at = Moment::from_micros(u64::from(number) * 1_000_000);
+            let mut writer = RecordingWriter::new(&Opening {
+                began: at,
+                part: Some(Part {
+                    recording_began: Moment::from_micros(1_000_000),
+                    number,
+                }),
+                ..Opening::unknown(0)
+            })
+            .unwrap();
+            let state = LinkState::Monitoring;
+            writer
+                .push(&Entry::Heard(Record::State { at, state }))
+                .unwrap();
+            writer.finish().unwrap();
+            std::fs::write(folder.path().join(name), writer.take_bytes()).unwrap();
+        }
+        let another = folder.path().join("another.mcap");
         std::fs::write(&another, "abc").unwrap();
-        let (item, unread) = RecordingItem::read(&super::parts::of(&parts.path("a.mcap")));
+        let (item, unread) = RecordingItem::read(&super::parts::of(&folder.path().join("a.mcap")));
         let item = item.unwrap();
         assert_eq!((item.files.len(), unread.len()), (3, 0));
         let mut planned = told("", item.bytes - 1, 0);

@@ -56,7 +56,7 @@ pub struct CheckupReport {
 }
 
 #[derive(Template)]
-#[template(path = "report.html", config = "src/checkup/report/askama.toml")]
+#[template(path = "report.html", config = "checkup/report/askama.toml")]
 struct ReportPage<'a> {
     report: &'a CheckupReport,
 }

@@ -8,7 +8,7 @@ use askama::Template;
 
 /// What the template is filled with.
 #[derive(Template)]
-#[template(path = "page.html", config = "src/exhibit/report/askama.toml")]
+#[template(path = "page.html", config = "exhibit/report/askama.toml")]
 struct DayPage<'a> {
     report: &'a DayReport,
 }

@@ -201,11 +201,7 @@ pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
 }
 
 /// Why a hand in this state and with these readings must not be armed; `None` if it may be, or is.
-pub(crate) fn arm_refusal(
-    state: LinkState,
-    sample: &HandSample,
-    now: Moment,
-) -> Option<ArmRefusal> {
+pub fn arm_refusal(state: LinkState, sample: &HandSample, now: Moment) -> Option<ArmRefusal> {
     match state {
         LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),
         LinkState::Holding => return Some(ArmRefusal::Holding),

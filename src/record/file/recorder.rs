@@ -26,7 +26,7 @@ pub struct RecorderInput {
 }
 
 impl RecorderInput {
-    pub(crate) fn new(room: usize) -> (Self, Receiver<Given>) {
+    pub fn new(room: usize) -> (Self, Receiver<Given>) {
         let (given, taken) = sync_channel(room);
         let lost = Arc::new(AtomicU64::new(0));
         (Self { given, lost }, taken)
@@ -65,7 +65,7 @@ impl RecorderInput {
     }
 
     /// Entries that were lost since the last one that was taken.
-    pub(crate) fn take_lost(&self) -> u64 {
+    pub fn take_lost(&self) -> u64 {
         match self.lost.load(Ordering::Relaxed) {
             0 => 0,
             _ => self.lost.swap(0, Ordering::Relaxed),

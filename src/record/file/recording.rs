@@ -139,9 +139,9 @@ pub(crate) struct Now {
 
 /// An entry, and how many before it found no room.
 #[derive(Debug)]
-pub(crate) struct Given {
-    pub(crate) entry: Entry,
-    pub(crate) lost_before: u64,
+pub struct Given {
+    pub entry: Entry,
+    pub lost_before: u64,
     /// Closed once this entry is taken; for whoever waits for that.
     pub(crate) _taken: Option<SyncSender<()>>,
 }

@@ -1,5 +1,5 @@
 //! Endpoints: where a hand is, in one spelling for command line, config, window and files. Opens nothing.
-pub(crate) mod error;
+pub mod error;
 mod parse;
 pub mod route;
 pub mod typed;

@@ -37,7 +37,7 @@ struct TrialCurves {
 
 /// What the template is filled with.
 #[derive(Template)]
-#[template(path = "report.html", config = "src/trials/report/askama.toml")]
+#[template(path = "report.html", config = "trials/report/askama.toml")]
 struct ReportPage<'a> {
     head: &'a SessionHead,
     plan: &'a TrialPlan,

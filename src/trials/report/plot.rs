@@ -32,7 +32,7 @@ struct PlotMark {
 #[derive(Debug, Template)]
 #[template(
     path = "plot.svg",
-    config = "src/trials/report/askama.toml",
+    config = "trials/report/askama.toml",
     escape = "html"
 )]
 pub(crate) struct Plot {

@@ -188,7 +188,7 @@ impl SearchGoal {
     clippy::cast_possible_truncation,
     reason = "a float cast saturates, which is what is wanted"
 )]
-pub(crate) fn whole(value: f64) -> i16 {
+pub fn whole(value: f64) -> i16 {
     value.round() as i16
 }
 

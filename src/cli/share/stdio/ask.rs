@@ -244,6 +244,8 @@ fn rated_force(fields: &mut Fields) -> Result<Option<Force>, String> {
 mod tests {
     use super::*;
 
+    include!("../../../../tests/odd_stops.rs");
+
     fn parse(line: &str) -> Result<Ask, String> {
         Asked::parse(line.as_bytes(), Side::Right).what
     }
@@ -366,7 +368,7 @@ mod tests {
 
     #[test]
     fn what_ends_a_motion_is_obeyed_whatever_else_is_in_its_line() {
-        for text in crate::inputs::stop::tests::odd_stops() {
+        for text in odd_stops() {
             let asked = Asked::parse(&text, Side::Right);
             let shown = String::from_utf8_lossy(&text);
             assert_eq!(asked.what, Ok(Ask::Stop), "{shown}");

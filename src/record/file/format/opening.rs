@@ -44,7 +44,7 @@ impl Opening {
     pub const IMPORTED: &'static str = "(imported)";
 
     /// Of a file that says nothing of itself, whose first message is of this time: neither the hand nor its side is known.
-    pub(crate) const fn unknown(first_nanos: u64) -> Self {
+    pub const fn unknown(first_nanos: u64) -> Self {
         Self {
             base_nanos: first_nanos,
             began: Moment::ZERO,

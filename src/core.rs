@@ -1,0 +1,26 @@
+//! The FTP series tactile dexterous hand: what it is, its wires, and what is done with it, without a window. `handscope` hands on
+//! all of it, and its documentation has the map.
+
+pub mod checkup;
+pub mod codec;
+pub mod exhibit;
+pub mod hand;
+pub mod history;
+pub mod inputs;
+pub mod link;
+pub mod manual;
+pub mod model;
+pub mod params;
+pub mod poses;
+pub mod printable;
+pub mod record;
+pub mod share;
+pub mod sim;
+#[cfg(test)]
+#[path = "../tests/it/setup/soak.rs"]
+mod soak;
+pub mod store;
+pub mod system;
+pub mod tasks;
+pub mod transport;
+pub mod trials;
