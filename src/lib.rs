@@ -25,9 +25,13 @@
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, check-up, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
+//! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, the rasteriser |
 //! | 7 | [`ui`] | the window: reads state, returns actions |
 //! | 8 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
 //! | 9 | [`cli`] | the command line |
+//!
+//! Floors 0 to 5 are a crate of their own, `src/core.rs`, and so is [`draw`]: they are optimised in tests, and an edit of the window
+//! does not build them again.
 //!
 //! # Threads
 //!
@@ -66,6 +70,8 @@ pub mod app;
 pub mod cli;
 pub mod shell;
 pub mod ui;
+
+pub use handscope_draw as draw;
 
 pub use handscope_core::{
     checkup, codec, exhibit, hand, history, inputs, link, manual, model, params, poses, printable,

@@ -29,14 +29,14 @@ pub enum GestureRoute {
 /// [`Setting`](crate::hand::Setting) and [`Trigger`](crate::hand::Trigger).
 ///
 /// ```
-/// use handscope::hand::{Angle, Dof, HandCommand, PerDof, Target};
+/// use handscope_core::hand::{Angle, Dof, HandCommand, PerDof, Target};
 ///
 /// let mut targets = PerDof::splat(None);
 /// targets[Dof::Index] = Some(Target::Go(Angle::new(500)?));
 /// let writes = HandCommand::Angles(targets).writes();
 /// assert_eq!(writes[0].address(), 1492);
 /// assert_eq!(writes[0].bytes(), [0xF4, 0x01]);
-/// # Ok::<(), handscope::hand::OutOfRange>(())
+/// # Ok::<(), handscope_core::hand::OutOfRange>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]

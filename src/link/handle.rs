@@ -35,9 +35,9 @@ const ARM_TIMEOUT: Duration = Duration::from_secs(5);
 ///
 /// ```no_run
 /// # async fn example() -> Result<(), Box<dyn std::error::Error>> {
-/// use handscope::hand::register;
-/// use handscope::link::{self, Clock, LinkConfig, PollRates};
-/// use handscope::transport::SystemDial;
+/// use handscope_core::hand::register;
+/// use handscope_core::link::{self, Clock, LinkConfig, PollRates};
+/// use handscope_core::transport::SystemDial;
 /// use std::sync::Arc;
 ///
 /// let config = LinkConfig {

@@ -5,8 +5,6 @@ pub mod desktop;
 pub mod headless;
 pub(crate) mod interrupt;
 
-pub use handscope_raster as raster;
-
 use crate::app::action::Action;
 use crate::app::files::export::Export;
 use crate::app::hands::{Hand, Mover};

@@ -22,8 +22,8 @@ pub const MARGIN: i16 = 40;
 /// A series of grasp trials. In files it is the table `plan` of `session.toml` and `trial_plan` of the settings.
 ///
 /// ```
-/// use handscope::hand::{Angle, Dof, Speed};
-/// use handscope::trials::TrialPlan;
+/// use handscope_core::hand::{Angle, Dof, Speed};
+/// use handscope_core::trials::TrialPlan;
 ///
 /// let mut plan = TrialPlan::default();
 /// plan.grid.speeds = vec![Speed::new(100)?, Speed::new(400)?];
@@ -33,7 +33,7 @@ pub const MARGIN: i16 = 40;
 /// // Too short a way cannot be told from noise.
 /// plan.close[Dof::Index] = Some(Angle::new(990)?);
 /// assert!(plan.check().is_err());
-/// # Ok::<(), handscope::hand::OutOfRange>(())
+/// # Ok::<(), handscope_core::hand::OutOfRange>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialPlan {

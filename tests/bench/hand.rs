@@ -4,7 +4,7 @@ use crate::clock::{Sorted, cpu_ms, wall_and_cpu_ms};
 use crate::report::{Aim, Failure, Report};
 use crate::scene::{Scene, Time};
 use egui::{Context, RawInput, Rect, pos2, vec2};
-use handscope::shell::raster::Raster;
+use handscope::draw::raster::Raster;
 use handscope::ui::Window;
 use std::time::Duration;
 

@@ -87,12 +87,12 @@ impl Gap {
     /// Where all six joints are with this gap. Rounding to counts changes it by less than 0.2 mm.
     ///
     /// ```
-    /// use handscope::hand::gap::{Gap, pad_distance};
+    /// use handscope_core::hand::gap::{Gap, pad_distance};
     ///
     /// let angles = Gap::new(30.0)?.angles();
     /// let counts = angles.map(|angle| f32::from(angle.get()));
     /// assert!((pad_distance(&counts) - 30.0).abs() < 0.2);
-    /// # Ok::<(), handscope::hand::gap::GapOutOfRange>(())
+    /// # Ok::<(), handscope_core::hand::gap::GapOutOfRange>(())
     /// ```
     pub fn angles(self) -> PerDof<Angle> {
         let [index, bend] = on_path(self.share());
@@ -205,13 +205,13 @@ pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
 /// What the model makes of a hand whose thumb and index are near the path; `None` where the pads do not face each other.
 ///
 /// ```
-/// use handscope::hand::gap::{Gap, pinch_gap};
+/// use handscope_core::hand::gap::{Gap, pinch_gap};
 ///
 /// let angles = Gap::new(24.5)?.angles();
 /// let gap = pinch_gap(&angles.map(|angle| f32::from(angle.get()))).unwrap();
 /// assert!((gap.mm - 24.5).abs() < 0.2);
 /// assert!((gap.ball_mm.unwrap() - 28.0).abs() < 0.3);
-/// # Ok::<(), handscope::hand::gap::GapOutOfRange>(())
+/// # Ok::<(), handscope_core::hand::gap::GapOutOfRange>(())
 /// ```
 pub fn pinch_gap(counts: &PerDof<f32>) -> Option<PinchGap> {
     let mm = gap_on_path(counts)?;

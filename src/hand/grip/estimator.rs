@@ -13,8 +13,8 @@ use crate::hand::moment::Moment;
 /// Follows the grip of one hand. It is given each reading with its moment; the same readings give the same states.
 ///
 /// ```
-/// use handscope::hand::grip::{GripEstimator, GripState};
-/// use handscope::hand::{Groups, HandSample, Moment};
+/// use handscope_core::hand::grip::{GripEstimator, GripState};
+/// use handscope_core::hand::{Groups, HandSample, Moment};
 ///
 /// let mut estimator = GripEstimator::default();
 /// let grip = estimator.take(&HandSample::default(), Groups::default(), Moment::ZERO);

@@ -85,8 +85,8 @@ impl From<io::Error> for OpenError {
 /// An open recording file, and those that follow it in its recording.
 ///
 /// ```no_run
-/// use handscope::record::file::RecordingFile;
-/// use handscope::record::file::reader::Stretch;
+/// use handscope_core::record::file::RecordingFile;
+/// use handscope_core::record::file::reader::Stretch;
 /// use std::ops::ControlFlow;
 ///
 /// let file = RecordingFile::open("recording.mcap".as_ref())?;

@@ -1,6 +1,6 @@
 //! The window's pixels without OpenGL: what egui drew goes through the rasteriser to the display. Knows no program.
 
-use crate::shell::raster::{Changed, Raster};
+use crate::draw::raster::{Changed, Raster};
 use egui::epaint::ClippedShape;
 use egui_winit::winit::window::Window;
 use softbuffer::{Context, SoftBufferError, Surface};

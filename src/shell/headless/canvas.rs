@@ -7,8 +7,8 @@ use egui::epaint::ClippedShape;
 use egui::{Context, RawInput, Rect, Theme, Ui, ViewportId, ViewportInfo, pos2, vec2};
 use serde_json::Value;
 
+use crate::draw::raster::Raster;
 use crate::shell::headless::labels::labels_json;
-use crate::shell::raster::Raster;
 
 /// Passes a picture may take to settle. Layout is final at the second; a live view asks for more for ever.
 const MAX_PASSES: usize = 4;

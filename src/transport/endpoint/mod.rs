@@ -36,12 +36,12 @@ pub const SCENARIOS: [&str; 9] = [
 /// Where a hand is and how it is spoken to. The spelling is that of [`fmt::Display`] and `FromStr`.
 ///
 /// ```
-/// use handscope::transport::Endpoint;
+/// use handscope_core::transport::Endpoint;
 ///
 /// let hand: Endpoint = "tcp:192.168.11.210".parse()?;
 /// assert_eq!(hand.to_string(), "tcp:192.168.11.210:6000?unit=255");
 /// assert!("tcp:192.168.11.210?baud=115200".parse::<Endpoint>().is_err());
-/// # Ok::<(), handscope::transport::EndpointError>(())
+/// # Ok::<(), handscope_core::transport::EndpointError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Endpoint {

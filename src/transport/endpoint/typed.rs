@@ -32,11 +32,11 @@ pub enum TypedError {
 /// What a typed text most likely means; `ports` are those that the system lists.
 ///
 /// ```
-/// use handscope::transport::endpoint::typed::recognise;
+/// use handscope_core::transport::endpoint::typed::recognise;
 ///
 /// let hand = recognise("192.168.11.210", &[])?;
 /// assert_eq!(hand.to_string(), "tcp:192.168.11.210:6000?unit=255");
-/// # Ok::<(), handscope::transport::endpoint::typed::TypedError>(())
+/// # Ok::<(), handscope_core::transport::endpoint::typed::TypedError>(())
 /// ```
 ///
 /// # Errors

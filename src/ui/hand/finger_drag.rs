@@ -1,9 +1,9 @@
 //! A finger that is dragged in the picture: which angle brings the place that was taken hold of to the pointer.
 
+use crate::draw::figure::camera::Camera;
+use crate::draw::figure::render::SeenPlace;
 use crate::hand::Dof;
 use crate::hand::kinematics::{Segment, SegmentFrames};
-use crate::ui::hand::camera::Camera;
-use crate::ui::hand::render::SeenPlace;
 use crate::ui::hand::scene::HandPicture;
 use egui::Pos2;
 use glam::Vec3;

@@ -5,18 +5,12 @@
 //! what is to be seen, [`view`] from where, [`tile`] keeps small pictures; [`panel`] alone knows the program's state.
 
 pub(crate) mod aim;
-mod bars;
-mod camera;
 pub(crate) mod figures;
 mod finger_drag;
 pub(crate) mod fingertip;
-mod light;
 pub(crate) mod panel;
 pub(crate) mod pointed;
-mod render;
 mod scene;
-mod shape;
-mod solid;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tile;

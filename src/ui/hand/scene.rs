@@ -1,9 +1,9 @@
 //! What is to be seen of the hand: where its joints are and shall be, what its fingertips feel, what it holds.
 
+use crate::draw::figure::light::{Coat, Part};
+use crate::draw::figure::shape::{self, Held};
 use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
-use crate::ui::hand::light::{Coat, Part};
-use crate::ui::hand::shape::{self, Held};
 use crate::ui::theme::Palette;
 use arrayvec::ArrayVec;
 use egui::Color32;

@@ -1,16 +1,16 @@
 //! The drawn hand, looked at by its mesh.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
 use crate::app::settings::Theme;
+use crate::draw::figure::camera::Turn;
+use crate::draw::figure::render::{SeenPlace, Sketch};
+use crate::draw::figure::shape::{self, Held};
 use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
 use crate::sim::object::Object;
-use crate::ui::hand::camera::Turn;
 use crate::ui::hand::figures::{Figure, picture_place};
 use crate::ui::hand::finger_drag::FingerDrag;
-use crate::ui::hand::render::{SeenPlace, Sketch};
 use crate::ui::hand::scene::{HandPicture, Hurt};
-use crate::ui::hand::shape::{self, Held};
 use crate::ui::hand::view::{DrawSettings, HandStage, HandUse, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{

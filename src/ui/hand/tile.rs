@@ -1,11 +1,11 @@
 //! Poses alone, for tiles: each drawn once and kept from frame to frame as long as it is the same.
 
 use crate::app::settings::Theme;
+use crate::draw::figure::camera::{Camera, Turn};
+use crate::draw::figure::light::Light;
+use crate::draw::figure::render::{Model, Sketch};
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
-use crate::ui::hand::camera::{Camera, Turn};
-use crate::ui::hand::light::Light;
-use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, TURN, draw, fade_out};
 use crate::ui::kit::{Label, Look};

@@ -2,12 +2,12 @@
 //! when something of it changed.
 
 use crate::app::settings::Theme;
+use crate::draw::figure::camera::{Camera, REACH, Turn};
+use crate::draw::figure::light::Light;
+use crate::draw::figure::render::{Model, Sketch};
 use crate::hand::kinematics::{Segment, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
-use crate::ui::hand::camera::{Camera, REACH, Turn};
 use crate::ui::hand::finger_drag::FingerDrag;
-use crate::ui::hand::light::Light;
-use crate::ui::hand::render::{Model, Sketch};
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::theme::Palette;
 use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui};

@@ -1,14 +1,12 @@
 //! The one visual language: colours, sizes, type, icons. Nothing here knows what is drawn with them.
 
 mod fonts;
-mod hand;
 mod icons;
 mod palette;
 mod sizes;
 mod style;
 
 pub(crate) use fonts::*;
-pub(crate) use hand::*;
 pub(crate) use icons::*;
 pub(crate) use palette::Palette;
 pub(crate) use sizes::*;

@@ -1,8 +1,8 @@
 //! Every colour of the window, dark and light, by what it is for. No sizes.
 
 use crate::app::settings::Theme;
+use crate::draw::figure::studio::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
 use crate::hand::{Fault, PerDof, Status};
-use crate::ui::theme::hand::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
 use egui::{Color32, Rgba};
 
 /// White and black are read equally well on a ground of this luminance.

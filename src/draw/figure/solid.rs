@@ -27,21 +27,21 @@ pub(crate) type LoftRing = [f32; 6];
 
 /// A corner of a finished shape.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Corner {
-    pub(crate) at: Vec3,
+pub struct Corner {
+    pub at: Vec3,
     pub(crate) normal: Vec3,
     pub(crate) skin: Skin,
 }
 
 /// A triangle of a finished shape.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Face {
+pub struct Face {
     pub(crate) corners: [u16; 3],
     /// The faces of the same skin beyond its sides; [`NONE`] where there is none.
     pub(crate) beyond: [u16; 3],
     /// It is seen from where this way counts more than the offset.
-    pub(crate) normal: Vec3,
-    pub(crate) offset: f32,
+    pub normal: Vec3,
+    pub offset: f32,
     /// See [`Shard`].
     pub(crate) lift: f32,
     pub(crate) aside: Vec3,
@@ -49,10 +49,10 @@ pub(crate) struct Face {
 
 /// A finished shape in the frame of its segment, and a ball that holds it.
 #[derive(Debug)]
-pub(crate) struct Solid {
-    pub(crate) corners: Vec<Corner>,
-    pub(crate) faces: Vec<Face>,
-    pub(crate) middle: Vec3,
+pub struct Solid {
+    pub corners: Vec<Corner>,
+    pub faces: Vec<Face>,
+    pub middle: Vec3,
     pub(crate) radius: f32,
 }
 

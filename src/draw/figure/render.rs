@@ -1,12 +1,12 @@
 //! Solids on their way to the screen: back faces, order, smooth edges. One plain mesh comes out.
 
-use crate::hand::kinematics::Segment;
-use crate::ui::hand::camera::{Camera, EYE_MM};
-use crate::ui::hand::light::{Light, Part};
-use crate::ui::hand::solid::Face;
+use crate::figure::camera::{Camera, EYE_MM};
+use crate::figure::light::{Light, Part};
+use crate::figure::solid::Face;
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2};
 use glam::{Mat3, Vec3};
+use handscope_core::hand::kinematics::Segment;
 
 /// Depth before and behind the middle that is told apart, and steps in a millimetre.
 const DEPTH_MM: f32 = 300.0;
@@ -25,27 +25,27 @@ struct Seen {
 
 /// A place of the hand that is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SeenPlace {
-    pub(crate) segment: Segment,
+pub struct SeenPlace {
+    pub segment: Segment,
     /// How near to the eye it is.
-    pub(crate) depth: f32,
+    pub depth: f32,
 }
 
 /// What is drawn, and how it is seen.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Model<'a> {
+pub struct Model<'a> {
     /// Where the eye is.
-    pub(crate) camera: &'a Camera,
+    pub camera: &'a Camera,
     /// How it is lit.
-    pub(crate) light: &'a Light,
-    pub(crate) parts: &'a [Part<'a>],
+    pub light: &'a Light,
+    pub parts: &'a [Part<'a>],
     /// Width of a soft edge in points.
-    pub(crate) feather: f32,
+    pub feather: f32,
 }
 
 /// Draws parts into a mesh; keeps its buffers from frame to frame.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sketch {
+pub struct Sketch {
     seen: Vec<Seen>,
     /// Depth in the upper half, number of the triangle in the lower.
     order: Vec<u32>,
@@ -58,7 +58,7 @@ pub(crate) struct Sketch {
 
 impl Sketch {
     /// Draws all parts into the mesh, the farthest triangles first.
-    pub(crate) fn draw(&mut self, model: Model<'_>, mesh: &mut Mesh) {
+    pub fn draw(&mut self, model: Model<'_>, mesh: &mut Mesh) {
         mesh.clear();
         self.seen.clear();
         self.order.clear();
@@ -140,7 +140,7 @@ impl Sketch {
     }
 
     /// What of the hand is seen at a place of the mesh drawn last.
-    pub(crate) fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<SeenPlace> {
+    pub fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<SeenPlace> {
         let corner = |at: u32| {
             let vertex = mesh.vertices.get(at as usize);
             vertex.map_or(Pos2::ZERO, |vertex| vertex.pos)

@@ -1,9 +1,9 @@
 //! The segments as round bars, which keep light from what is near: folds get darker, and shadows fall. Four at a time.
 
-use crate::hand::kinematics::{Segment, SegmentFrames};
-use crate::ui::hand::camera::Camera;
+use crate::figure::camera::Camera;
 use arrayvec::ArrayVec;
 use glam::{Vec3, Vec4};
+use handscope_core::hand::kinematics::{Segment, SegmentFrames};
 
 use Segment::{
     Index1, Index2, Little1, Little2, Middle1, Middle2, Ring1, Ring2, Thumb2, Thumb3, Thumb4,

@@ -1,14 +1,14 @@
 //! What is not the hand: what it holds, and the arrow of a force.
 
-use crate::ui::hand::shape::rings::{disc, frame};
-use crate::ui::hand::solid::{LoftRing, Skin, Solid, Soup};
+use crate::figure::shape::rings::{disc, frame};
+use crate::figure::solid::{LoftRing, Skin, Solid, Soup};
 use glam::{Affine3, Vec3};
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
 /// What waits before the simulated hand, drawn where its fingers meet it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Held {
+pub enum Held {
     /// A soft ball.
     Ball,
     /// A hard block.
@@ -17,7 +17,7 @@ pub(crate) enum Held {
 }
 
 /// The shape of what is held, in the frame of the palm of a right hand.
-pub(crate) fn held(held: Held) -> &'static Solid {
+pub fn held(held: Held) -> &'static Solid {
     static SHAPES: LazyLock<[Solid; 3]> = LazyLock::new(|| {
         let ball = |step: u8| (f32::from(step) / 12.0 * PI).sin_cos();
         let ball: [LoftRing; 13] = std::array::from_fn(|step| {
@@ -65,7 +65,7 @@ const CUP: [[f32; 2]; 9] = [
 ];
 
 /// An arrow along y, 1 long.
-pub(crate) fn arrow() -> &'static Solid {
+pub fn arrow() -> &'static Solid {
     static SHAPE: LazyLock<Solid> = LazyLock::new(|| {
         let mut soup = Soup::new(false);
         let rings = [

@@ -1,48 +1,48 @@
 //! What is drawn, solids with their coats, and the light on them: one key light, a soft fill, the sky, and what they lose in
 //! folds and shadows.
 
-use crate::hand::kinematics::{Segment, SegmentFrames};
-use crate::ui::hand::bars::{Bars, Near};
-use crate::ui::hand::camera::{Camera, EYE_MM};
-use crate::ui::hand::shape::rings::step;
-use crate::ui::hand::solid::{Skin, Solid};
-use crate::ui::theme::{self, Material, Studio};
+use crate::figure::bars::{Bars, Near};
+use crate::figure::camera::{Camera, EYE_MM};
+use crate::figure::shape::rings::step;
+use crate::figure::solid::{Skin, Solid};
+use crate::figure::studio::{self, Material, Studio, linear};
 use egui::Color32;
 use glam::{Affine3, Vec3};
+use handscope_core::hand::kinematics::{Segment, SegmentFrames};
 
 /// How the key light falls off to the right and downwards, per millimetre.
 const FALL_PER_MM: f32 = 0.0016;
 
 /// One solid to be drawn.
 #[derive(Debug)]
-pub(crate) struct Part<'a> {
-    pub(crate) solid: &'a Solid,
+pub struct Part<'a> {
+    pub solid: &'a Solid,
     /// Whose it is: for the pointer and the shadows. None for what is no part of the hand.
-    pub(crate) segment: Option<Segment>,
-    pub(crate) frame: Affine3,
-    pub(crate) coat: Coat,
+    pub segment: Option<Segment>,
+    pub frame: Affine3,
+    pub coat: Coat,
 }
 
 /// How a part is coated.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Coat {
+pub struct Coat {
     /// How much it covers where one looks straight onto it; 0 stands for all.
-    pub(crate) glass: f32,
+    pub glass: f32,
     /// Light of this colour in it, and how much.
-    pub(crate) glow: Option<(Color32, f32)>,
+    pub glow: Option<(Color32, f32)>,
     /// Heat of its pad, and how much of the pad's own colour that covers.
-    pub(crate) heat: Option<(Color32, f32)>,
+    pub heat: Option<(Color32, f32)>,
     /// The colour of what is plain.
-    pub(crate) color: Option<Color32>,
+    pub color: Option<Color32>,
 }
 
 /// The light of one picture.
 #[derive(Debug)]
-pub(crate) struct Light {
+pub struct Light {
     studio: &'static Studio,
     bars: Bars,
     /// Old values: everything fades towards this colour.
-    pub(crate) veil: Option<(Color32, f32)>,
+    pub veil: Option<(Color32, f32)>,
 }
 
 /// The light on one part.
@@ -54,7 +54,7 @@ pub(crate) struct Shade<'a> {
 
 impl Light {
     /// The light on a hand in this pose.
-    pub(crate) fn new(studio: &'static Studio, camera: &Camera, pose: &SegmentFrames) -> Self {
+    pub fn new(studio: &'static Studio, camera: &Camera, pose: &SegmentFrames) -> Self {
         Self {
             studio,
             bars: Bars::new(camera, pose, studio.key),
@@ -96,7 +96,7 @@ impl Shade<'_> {
         let plus = spark * material.shine * key + rim.max(0.0) * 0.25;
         let mut rgb = material.base * (light + around) + plus;
         let mut blend = |color: Color32, strength: f32, share: f32| {
-            rgb = rgb.lerp(theme::linear(color) * strength, share);
+            rgb = rgb.lerp(linear(color) * strength, share);
         };
         if let Some((color, share)) = self.coat.heat.filter(|_| skin == Skin::Pad) {
             // Heat is read by its colour: shade takes little of it.
@@ -114,7 +114,7 @@ impl Shade<'_> {
         } else {
             1.0
         };
-        theme::lit(rgb, alpha)
+        studio::lit(rgb, alpha)
     }
 
     fn material(&self, skin: Skin) -> Material {
@@ -128,7 +128,7 @@ impl Shade<'_> {
         };
         let own = self.coat.color.filter(|_| skin == Skin::Plain);
         Material {
-            base: own.map_or(like.base, theme::linear),
+            base: own.map_or(like.base, linear),
             ..like
         }
     }

@@ -1,9 +1,9 @@
 //! The picture being drawn, its textures and its threads. Which pixels a triangle covers is not decided here.
 
-use crate::number::{coordinate, floor, index};
-use crate::texture::Texture;
-use crate::tiles::{TILE, TileRows, Tiles};
-use crate::triangle::{Scissor, Strip, Triangle};
+use crate::raster::number::{coordinate, floor, index};
+use crate::raster::texture::Texture;
+use crate::raster::tiles::{TILE, TileRows, Tiles};
+use crate::raster::triangle::{Scissor, Strip, Triangle};
 use egui::epaint::{ImageDelta, Primitive, Vertex};
 use egui::{ClippedPrimitive, Mesh, Rect, TextureId, TexturesDelta};
 use foldhash::fast::FixedState;

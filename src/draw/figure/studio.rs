@@ -17,7 +17,7 @@ pub(crate) struct Material {
 
 /// Lamps and materials of one theme. Ways are as the eye sees them: x right, y up, z near.
 #[derive(Debug)]
-pub(crate) struct Studio {
+pub struct Studio {
     /// The way to the key light, and its strength.
     pub(crate) key: Vec3,
     pub(crate) key_power: f32,
@@ -82,17 +82,17 @@ const LIGHT: Studio = Studio {
     pad: material([0x66, 0x6D, 0x78], 0.05, 10, 0.2),
 };
 
-pub(crate) static DARK_STUDIO: Studio = DARK;
-pub(crate) static LIGHT_STUDIO: Studio = LIGHT;
+pub static DARK_STUDIO: Studio = DARK;
+pub static LIGHT_STUDIO: Studio = LIGHT;
 
 /// For small pictures: fingers as light as the palm, which are read at the size of a button.
-pub(crate) static DARK_SIGNS: Studio = Studio {
+pub static DARK_SIGNS: Studio = Studio {
     rubber: DARK.metal,
     hinge: material([0x8C, 0x94, 0x9F], 0.14, 20, 0.3),
     pad: DARK.metal,
     ..DARK
 };
-pub(crate) static LIGHT_SIGNS: Studio = Studio {
+pub static LIGHT_SIGNS: Studio = Studio {
     rubber: LIGHT.metal,
     hinge: material([0x86, 0x8E, 0x99], 0.12, 20, 0.3),
     pad: LIGHT.metal,

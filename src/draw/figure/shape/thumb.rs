@@ -1,8 +1,8 @@
 //! The thumb: its foot that turns on the palm, and three segments.
 
-use crate::ui::hand::shape::finger::{bone, fork, pad, pin, plate};
-use crate::ui::hand::shape::rings::{disc, frame};
-use crate::ui::hand::solid::{LoftRing, Skin, Soup};
+use crate::figure::shape::finger::{bone, fork, pad, pin, plate};
+use crate::figure::shape::rings::{disc, frame};
+use crate::figure::solid::{LoftRing, Skin, Soup};
 use glam::{Affine3, Vec3};
 
 /// Middle plane of the thumb.

@@ -3,7 +3,7 @@
 use egui::epaint::ImageDelta;
 use egui::{ImageData, TextureFilter, TextureOptions, TextureWrapMode};
 
-use crate::number::{coordinate, floor, index, texels};
+use crate::raster::number::{coordinate, floor, index, texels};
 
 /// One texture, RGBA8 with premultiplied alpha, row-major.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! Which parts of a picture differ from the one before: a fingerprint of all that falls on each tile. Draws nothing.
 
-use crate::number::{coordinate, index};
-use crate::triangle::Scissor;
+use crate::raster::number::{coordinate, index};
+use crate::raster::triangle::Scissor;
 use std::ops::Range;
 
 /// The side of a tile in pixels.

@@ -1,7 +1,7 @@
 //! The four fingers, and the parts that they share with the thumb: joints between forks, pads.
 
-use crate::ui::hand::shape::rings::{disc, dome, frame, ring_at, rounded};
-use crate::ui::hand::solid::{LoftRing, Skin, Soup, point};
+use crate::figure::shape::rings::{disc, dome, frame, ring_at, rounded};
+use crate::figure::solid::{LoftRing, Skin, Soup, point};
 use glam::{Affine3, Vec3};
 
 /// Points around a finger.

@@ -1,10 +1,10 @@
 //! From where the hand is looked at, and where on the screen its places are then.
 
-use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
-use crate::hand::{Dof, Finger, PerDof};
-use crate::ui::hand::shape;
+use crate::figure::shape;
 use egui::{Pos2, Rect, vec2};
 use glam::{Affine3, Mat3, Vec3};
+use handscope_core::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
+use handscope_core::hand::{Dof, Finger, PerDof};
 use std::sync::LazyLock;
 
 /// Distance of the eye from the middle of the hand, and that middle.
@@ -13,18 +13,18 @@ const MIDDLE: Vec3 = Vec3::new(0.0, 15.0, 125.0);
 
 /// From where the hand is looked at, in radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turn {
+pub struct Turn {
     /// Around the hand's long axis: above 0 shows the side of a right hand's little finger.
-    pub(crate) yaw: f32,
+    pub yaw: f32,
     /// Above 0 looks from above.
-    pub(crate) pitch: f32,
+    pub pitch: f32,
     /// Above 0 turns the picture to the left.
-    pub(crate) roll: f32,
+    pub roll: f32,
 }
 
 impl Turn {
     /// From where the other hand looks the same.
-    pub(crate) fn of(self, side: Side) -> Self {
+    pub fn of(self, side: Side) -> Self {
         match side {
             Side::Right => self,
             Side::Left => Self {
@@ -38,19 +38,19 @@ impl Turn {
 
 /// From places in the hand to places on the screen.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Camera {
+pub struct Camera {
     /// The hand as the eye sees it: x right, y up, z near.
-    pub(crate) hand: Affine3,
+    pub hand: Affine3,
     center: Pos2,
     /// Points of a millimetre in the middle of the hand.
-    pub(crate) per_mm: f32,
+    pub per_mm: f32,
     /// What the places of the reach fill on the screen.
-    pub(crate) bounds: Rect,
+    pub bounds: Rect,
 }
 
 impl Camera {
     /// Fits the places of `reach` into a rectangle.
-    pub(crate) fn new(turn: Turn, rect: Rect, reach: impl Iterator<Item = Vec3>) -> Self {
+    pub fn new(turn: Turn, rect: Rect, reach: impl Iterator<Item = Vec3>) -> Self {
         // The eye looks against y, with z up.
         let upright = Mat3::from_cols(Vec3::NEG_X, Vec3::Z, Vec3::Y);
         let turned = Mat3::from_rotation_z(turn.roll)
@@ -75,18 +75,18 @@ impl Camera {
     }
 
     /// Where on the screen a place of the hand is.
-    pub(crate) fn place(&self, at: Vec3) -> Pos2 {
+    pub fn place(&self, at: Vec3) -> Pos2 {
         self.project(self.hand.transform_point3(at))
     }
 
     /// What the eye sees at this depth on a place of the screen.
-    pub(crate) fn seen_at(&self, place: Pos2, depth: f32) -> Vec3 {
+    pub fn seen_at(&self, place: Pos2, depth: f32) -> Vec3 {
         let by = (place - self.center) * ((EYE_MM - depth) / (self.per_mm * EYE_MM));
         Vec3::new(by.x, -by.y, depth)
     }
 
     /// Where on the screen a place is that the eye sees there.
-    pub(crate) fn project(&self, seen: Vec3) -> Pos2 {
+    pub fn project(&self, seen: Vec3) -> Pos2 {
         let scale = self.per_mm * EYE_MM / (EYE_MM - seen.z);
         self.center + vec2(seen.x, -seen.y) * scale
     }
@@ -97,7 +97,7 @@ const STEPS: u8 = 4;
 const ROUND_MM: f32 = 10.0;
 
 /// Where a right hand gets to in all poses: a picture that holds these never jumps while the hand moves.
-pub(crate) static REACH: LazyLock<Vec<Vec3>> = LazyLock::new(|| {
+pub static REACH: LazyLock<Vec<Vec3>> = LazyLock::new(|| {
     let palm = [
         [30.0, -24.0, -13.0],
         [30.0, 20.0, -13.0],

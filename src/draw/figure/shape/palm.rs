@@ -1,7 +1,7 @@
 //! The palm: a lower shell with the motor of the thumb, a seam, an upper shell with a plate, and the wrist.
 
-use crate::ui::hand::shape::rings::{dome, frame, ring_at, rounded, step};
-use crate::ui::hand::solid::{LoftRing, Skin, Soup};
+use crate::figure::shape::rings::{dome, frame, ring_at, rounded, step};
+use crate::figure::solid::{LoftRing, Skin, Soup};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 

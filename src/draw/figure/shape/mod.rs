@@ -1,9 +1,9 @@
 //! The shapes, modelled from the lengths of the hand: rings of lofts in millimetres, each in the frame of its segment.
 
-use crate::hand::Finger;
-use crate::hand::kinematics::Segment;
-use crate::ui::hand::solid::{Solid, Soup};
+use crate::figure::solid::{Solid, Soup};
 use glam::Vec3;
+use handscope_core::hand::Finger;
+use handscope_core::hand::kinematics::Segment;
 use std::sync::LazyLock;
 
 mod finger;
@@ -12,7 +12,7 @@ mod palm;
 pub(crate) mod rings;
 mod thumb;
 
-pub(crate) use held::{Held, arrow, held};
+pub use held::{Held, arrow, held};
 
 use Segment::{Index1, Index2, Little2, Middle2, Palm, Thumb1, Thumb2, Thumb3, Thumb4};
 
@@ -44,14 +44,14 @@ fn model(segment: Segment, is_small: bool) -> Solid {
 }
 
 /// The shape of a segment.
-pub(crate) fn solid(segment: Segment, is_small: bool) -> Option<&'static Solid> {
+pub fn solid(segment: Segment, is_small: bool) -> Option<&'static Solid> {
     let [large, small] = &SHAPES;
     let mut all = if is_small { small } else { large }.iter();
     all.find(|(own, _)| *own == segment).map(|(_, solid)| solid)
 }
 
 /// Out of a fingertip's pad, and along it to the tip: in the frame of [`Segment::tip`].
-pub(crate) const fn pad_ways(finger: Finger) -> [Vec3; 2] {
+pub const fn pad_ways(finger: Finger) -> [Vec3; 2] {
     match finger {
         Finger::Thumb => [Vec3::new(-0.176, 0.984, 0.0), Vec3::new(0.984, 0.176, 0.0)],
         _ => [Vec3::NEG_X, Vec3::Y],

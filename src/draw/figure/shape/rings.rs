@@ -1,6 +1,6 @@
 //! Rings and frames of lofts, and how patches lie on them.
 
-use crate::ui::hand::solid::LoftRing;
+use crate::figure::solid::LoftRing;
 use glam::{Affine3, Vec3};
 
 /// A square as a round one: shares from -1 to 1 stay inside a ring that is so square.

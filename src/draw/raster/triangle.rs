@@ -1,9 +1,9 @@
 //! One triangle into a strip of rows: which pixels, which colour, how it blends. No textures are kept here.
 
-use crate::number::{
+use crate::raster::number::{
     HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real, texels,
 };
-use crate::texture::Texture;
+use crate::raster::texture::Texture;
 use egui::Color32;
 use egui::epaint::Vertex;
 use std::hash::Hasher;

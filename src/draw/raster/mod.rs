@@ -6,4 +6,4 @@ pub(crate) mod texture;
 pub(crate) mod tiles;
 pub(crate) mod triangle;
 
-pub use crate::surface::{Changed, Raster};
+pub use crate::raster::surface::{Changed, Raster};

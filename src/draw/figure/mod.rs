@@ -1,0 +1,10 @@
+//! The hand as a shaded figure: solids for each segment, a camera, lamps and materials, one mesh for egui. Knows no theme and no
+//! panel.
+
+mod bars;
+pub mod camera;
+pub mod light;
+pub mod render;
+pub mod shape;
+pub mod solid;
+pub mod studio;
