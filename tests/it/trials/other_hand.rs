@@ -305,6 +305,8 @@ impl OtherHand {
 
     pub(crate) fn read(&mut self, span: Span, now: Moment) -> Vec<u8> {
         self.advance_to(now);
+        let from = usize::from(span.address);
+        let reads_tips = from + usize::from(span.len) > TACTILE;
         for (n, dof) in Dof::ALL.into_iter().enumerate() {
             let joint = self.joints[dof].clone();
             self.put(ANGLE + 2 * n, joint.at);
@@ -319,7 +321,7 @@ impl OtherHand {
                 Doing::Held => 3,
             };
             self.memory[TEMPERATURE + n] = 30;
-            if n < 5 {
+            if n < 5 && reads_tips {
                 let normal = (joint.force_g * N_PER_G) as f32;
                 let at = TACTILE + TIP_BYTES * n;
                 self.memory[at + 32..at + 36].copy_from_slice(&normal.to_le_bytes());
@@ -329,7 +331,6 @@ impl OtherHand {
                 self.memory[at + 54..at + 56].copy_from_slice(&sum.to_le_bytes());
             }
         }
-        let from = usize::from(span.address);
         self.memory[from..from + usize::from(span.len)].to_vec()
     }
 

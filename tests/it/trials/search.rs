@@ -101,20 +101,24 @@ fn other_bodies() -> Vec<OtherBody> {
     both.collect()
 }
 
-#[test]
-fn an_offset_that_the_drive_counts_or_not_breaks_nothing_and_is_told() {
+/// Searches on all bodies of one kind of drive: nothing breaks, no close is more than twice as fast as the fastest before, and the
+/// finding says what the drive compares.
+fn is_tuned_whatever_its_offset(counts_offset: bool) {
+    let right = if counts_offset {
+        Compared::AsRead
+    } else {
+        Compared::AboveRest
+    };
     let (mut claims, mut told) = (0, 0);
     for (seed, body) in (0..).zip(other_bodies()) {
+        if body.counts_offset != counts_offset {
+            continue;
+        }
         let search = on_other_hand(body, seed);
         let (broke, highest) = (search.broke, search.highest);
         assert!(!broke && highest < 1.1, "{seed} {body:?}: {highest}");
         let finding = search.finding.unwrap();
         claims += usize::from(finding.result.is_ok());
-        let right = if body.counts_offset {
-            Compared::AsRead
-        } else {
-            Compared::AboveRest
-        };
         let compared = finding.compared[0].compared;
         let is_wrong = compared.is_some_and(|own| own != right);
         assert!(
@@ -122,8 +126,26 @@ fn an_offset_that_the_drive_counts_or_not_breaks_nothing_and_is_told() {
             "{seed} {body:?}: {compared:?}"
         );
         told += usize::from(compared == Some(right));
+        let speeds = finding.tried.iter().map(|own| own.setting.speed.get());
+        let speeds: Vec<i16> = speeds.collect();
+        let mut fastest = speeds[0];
+        for speed in speeds {
+            assert!(speed <= 2 * fastest, "{seed}: {speed} after {fastest}");
+            fastest = fastest.max(speed);
+        }
     }
-    assert!(claims >= 34 && told >= 28, "{claims} {told} of 36");
+    println!("{claims} claims, {told} told, of 18");
+    assert!(claims >= 17 && told >= 13, "{claims} {told} of 18");
+}
+
+#[test]
+fn a_drive_that_counts_the_offset_breaks_nothing_and_is_told() {
+    is_tuned_whatever_its_offset(true);
+}
+
+#[test]
+fn a_drive_that_does_not_count_the_offset_breaks_nothing_and_is_told() {
+    is_tuned_whatever_its_offset(false);
 }
 
 #[test]
@@ -156,19 +178,6 @@ fn a_drive_that_stops_in_the_air_by_its_offset_gets_a_higher_threshold() {
         words.contains("FORCE_ACT as read") && words.contains("g at rest"),
         "{words}"
     );
-}
-
-#[test]
-fn no_rise_is_more_than_twice_the_fastest_close_before() {
-    for (seed, body) in (0..).zip(other_bodies().into_iter().step_by(5)) {
-        let tried = on_other_hand(body, seed).finding.unwrap().tried;
-        let speeds: Vec<i16> = tried.iter().map(|own| own.setting.speed.get()).collect();
-        let mut fastest = speeds[0];
-        for speed in speeds {
-            assert!(speed <= 2 * fastest, "{seed}: {speed} after {fastest}");
-            fastest = fastest.max(speed);
-        }
-    }
 }
 
 #[test]
