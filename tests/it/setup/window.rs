@@ -35,6 +35,8 @@ pub(crate) use egui::accesskit::Role;
 pub(crate) const LARGE: Vec2 = vec2(1440.0, 900.0);
 /// Virtual time of one frame.
 pub(crate) const FRAME_MS: u64 = 20;
+/// While a person only waits, one frame of so many is drawn, and all of the last ones.
+const DRAWN_EACH: u64 = 4;
 
 /// ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and the gesture number (manual 2.6).
 pub(crate) const ANGLE_SET: u16 = 1486;
@@ -373,8 +375,20 @@ impl Bench {
     }
 
     pub(crate) fn run(&mut self, millis: u64) {
-        for _ in 0..millis.div_ceil(FRAME_MS) {
+        for left in (0..millis.div_ceil(FRAME_MS)).rev() {
+            self.pass(left < DRAWN_EACH || left.is_multiple_of(DRAWN_EACH));
+        }
+    }
+
+    /// One frame's time goes by.
+    fn pass(&mut self, is_drawn: bool) {
+        if is_drawn {
+            let now = self.harness.state().program.now();
+            let since = now.since(Moment::ZERO) + Duration::from_millis(FRAME_MS);
+            self.harness.input_mut().time = Some(since.as_secs_f64());
             self.harness.step();
+        } else {
+            self.harness.state_mut().tick();
         }
     }
 
@@ -389,12 +403,19 @@ impl Bench {
     /// Frames until something is so; the virtual time that it took.
     pub(crate) fn until(&mut self, within_ms: u64, so: impl Fn(&Self) -> bool) -> u64 {
         let start = self.now();
+        let (mut frames, mut is_drawn) = (0_u64, true);
         while !so(self) {
             let took = self.now().since(start).as_millis();
             assert!(took < u128::from(within_ms), "not within {within_ms} ms");
-            self.harness.step();
+            is_drawn = frames.is_multiple_of(DRAWN_EACH);
+            self.pass(is_drawn);
+            frames += 1;
         }
-        u64::try_from(self.now().since(start).as_millis()).unwrap()
+        let took = u64::try_from(self.now().since(start).as_millis()).unwrap();
+        if !is_drawn {
+            self.pass(true);
+        }
+        took
     }
 
     // --- what a person does -------------------------------------------------------------------
