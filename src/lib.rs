@@ -26,9 +26,9 @@
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, check-up, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
 //! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, the rasteriser |
-//! | 7 | [`ui`] | the window: reads state, returns actions |
-//! | 8 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
-//! | 9 | [`cli`] | the command line |
+//! | 8 | [`ui`] | the window: reads state, returns actions |
+//! | 9 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
+//! | 10 | [`cli`] | the command line |
 //!
 //! Floors 0 to 5 are a crate of their own, `src/core.rs`, and so is [`draw`]: they are optimised in tests, and an edit of the window
 //! does not build them again.
