@@ -68,18 +68,22 @@ impl TactileBlock {
 
     fn with_check(&self, check: impl Fn(&[u8]) -> u16) -> [u8; BLOCK_LEN] {
         let mut bytes = arrayvec::ArrayVec::<u8, BLOCK_LEN>::new();
+        // Whole slices: one by one, the simulated hand would spend most of its time here.
+        let put = |bytes: &mut arrayvec::ArrayVec<u8, BLOCK_LEN>, part: &[u8]| {
+            let _fits = bytes.try_extend_from_slice(part);
+        };
         for channel in self.raw {
-            bytes.extend(channel.to_le_bytes());
+            put(&mut bytes, &channel.to_le_bytes());
         }
-        bytes.extend(self.normal_n.to_le_bytes());
-        bytes.extend(self.normal_delta.to_le_bytes());
-        bytes.extend(self.tangential_n.to_le_bytes());
-        bytes.extend(self.tangential_delta.to_le_bytes());
-        bytes.extend(self.direction_raw.to_le_bytes());
-        bytes.extend(self.proximity.to_le_bytes());
+        put(&mut bytes, &self.normal_n.to_le_bytes());
+        put(&mut bytes, &self.normal_delta.to_le_bytes());
+        put(&mut bytes, &self.tangential_n.to_le_bytes());
+        put(&mut bytes, &self.tangential_delta.to_le_bytes());
+        put(&mut bytes, &self.direction_raw.to_le_bytes());
+        put(&mut bytes, &self.proximity.to_le_bytes());
         let check = check(&bytes);
-        bytes.extend(check.to_le_bytes());
-        bytes.extend(self.reserved);
+        put(&mut bytes, &check.to_le_bytes());
+        put(&mut bytes, &self.reserved);
         bytes.into_inner().unwrap_or([0; BLOCK_LEN])
     }
 

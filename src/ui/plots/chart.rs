@@ -1,8 +1,8 @@
 //! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
 
+use crate::draw::plot_line;
 use crate::history::{History, Series, Trace};
 use crate::ui::kit::{self, Label, Look, format};
-use crate::ui::plots::bars;
 use crate::ui::plots::scales::{self, ScaleAxis, Scales};
 use crate::ui::plots::time_window::{TimeSpan, TimeWindow};
 use crate::ui::plots::times::{Times, marks};
@@ -240,7 +240,7 @@ impl<'a> Chart<'a> {
         let mut mesh = Mesh::default();
         for (curve, piece) in &dense {
             let places = curve.places(piece, &shown.transform);
-            bars::add(&mut mesh, curve.stroke, 1.0 / ui.pixels_per_point(), places);
+            plot_line::add(&mut mesh, curve.stroke, 1.0 / ui.pixels_per_point(), places);
         }
         ui.painter()
             .with_clip_rect(frame.intersect(ui.clip_rect()))

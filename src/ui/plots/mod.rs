@@ -1,5 +1,4 @@
 //! The stacked plots over one time: what was measured, what happened, and what lies between two cursors.
-pub(crate) mod bars;
 pub(crate) mod chart;
 pub(crate) mod cursors;
 pub(crate) mod drives;

@@ -107,8 +107,10 @@ fn a_web_page_moves_no_hand_through_any_socket_of_the_program() {
     let mut sender = TcpStream::connect(address).unwrap();
     sender.write_all(&lines()).unwrap();
     running.until(|line| phase(line) == "following" || line.contains("\"taken\":20"));
+    running.signal(nix::sys::signal::Signal::SIGINT);
+    running.end().ok();
     let mut client = TcpStream::connect(&own).unwrap();
     client.write_all(&requests()).unwrap();
-    client.read_exact(&mut [0; 12]).unwrap();
+    client.read_exact(&mut [0; 12 * MESSAGES]).unwrap();
     assert_eq!(setpoint(&hand), 0);
 }

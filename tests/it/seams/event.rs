@@ -52,6 +52,14 @@ impl<'a> Witness<'a> {
             witness.index(),
             witness.mover.said()
         );
+        let said = witness.mover.said();
+        let has_lost = ["lost: ", "link was lost", "LinkLost"]
+            .iter()
+            .any(|words| said.contains(words));
+        assert!(
+            !moves || !has_lost,
+            "the link was lost before the event: {said}"
+        );
         witness.event = witness.mover.hand().now();
         witness
     }

@@ -1,7 +1,6 @@
 //! Whatever ends a program that moves a hand: a hand in this process is the judge, over real sockets and pseudo-terminals. It must
 //! be held at once, rest where it stands, and nothing of the program may stay.
 
-use crate::session::{alone, beside_others};
 use crate::setup::hand::free;
 use crate::setup::process::{Running, handscope, listen, start};
 use crate::setup::time::Time;
@@ -183,7 +182,6 @@ fn trial(endpoint: &str) -> Running {
 
 #[test]
 fn a_hand_is_held_when_the_program_that_moves_it_is_killed_on_every_wire() {
-    let _beside = beside_others();
     std::thread::scope(|all| {
         for kind in ["tcp", "rs485", "rtu", "slcan"] {
             all.spawn(move || {
@@ -220,7 +218,6 @@ fn a_hand_is_held_when_the_program_that_moves_it_is_killed_on_every_wire() {
 
 #[test]
 fn a_hand_is_held_when_follow_is_killed() {
-    let _beside = beside_others();
     let witness = Witness::start();
     let endpoint = witness.endpoint("tcp");
     let mut follow = start(&[
@@ -261,7 +258,6 @@ fn a_hand_is_held_when_follow_is_killed() {
 
 #[test]
 fn a_program_that_ends_by_itself_leaves_nothing_and_writes_nothing_more() {
-    let _beside = beside_others();
     let witness = Witness::start();
     let endpoint = witness.endpoint("rs485");
     let trial = start(&[
@@ -293,7 +289,6 @@ enum End {
 #[test]
 fn a_hand_is_held_whatever_ends_the_window() {
     use crate::session::display::Display;
-    let _alone = alone();
     let home = tempfile::tempdir().unwrap();
     for (drawn, end, status) in [
         ("--software", End::Signal(Signal::SIGINT), Some(0)),

@@ -1,6 +1,5 @@
 //! The real window as a booth has it: every way out that a visitor could try leads nowhere, and it comes back after a kill.
 
-use crate::session::alone;
 use crate::session::display::Display;
 use crate::session::program::{Hand, Window};
 use crate::session::twin::Twin;
@@ -78,7 +77,6 @@ fn write_booth(file: &Path) {
 
 #[test]
 fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
-    let _alone = alone();
     let Some(display) = Display::start() else {
         return;
     };
@@ -159,7 +157,6 @@ fn unlock(display: &Display, page: &mut Twin) {
 
 #[test]
 fn the_page_has_the_size_of_its_screen_both_ways_also_without_a_window_manager() {
-    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("booth.toml");
     write_booth(&file);

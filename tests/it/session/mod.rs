@@ -14,19 +14,3 @@ mod tuning;
 #[cfg(all(target_os = "linux", feature = "desktop"))]
 mod twin;
 mod wires;
-
-use std::sync::{PoisonError, RwLock, RwLockReadGuard};
-
-/// Real time wants processors that are free: a window that is drawn there takes them all.
-static PROCESSORS: RwLock<()> = RwLock::new(());
-
-/// For tests of this folder that draw a window: none of the others runs meanwhile.
-#[cfg(all(target_os = "linux", feature = "desktop"))]
-fn alone() -> std::sync::RwLockWriteGuard<'static, ()> {
-    PROCESSORS.write().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// For the others, which may run beside each other.
-fn beside_others() -> RwLockReadGuard<'static, ()> {
-    PROCESSORS.read().unwrap_or_else(PoisonError::into_inner)
-}

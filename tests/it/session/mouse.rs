@@ -1,7 +1,6 @@
 //! The real window with a real mouse, on a display in memory and in front of a hand in another process: what is pressed
 //! reaches the hand, and each step looks as the headless pictures say. Where Xvfb or xdotool is missing this is skipped.
 
-use crate::session::alone;
 use crate::session::display::Display;
 use crate::session::program::{Hand, REST, Window};
 use crate::session::twin::Twin;
@@ -110,7 +109,6 @@ impl Session {
 }
 
 fn session(more: &[&str]) {
-    let _alone = alone();
     let Some(display) = Display::start() else {
         return;
     };
@@ -219,7 +217,6 @@ fn a_session_with_the_mouse_in_the_window_without_opengl() {
 
 #[test]
 fn a_recording_is_scrubbed_with_the_mouse() {
-    let _alone = alone();
     let Some(display) = Display::start() else {
         return;
     };
@@ -256,7 +253,6 @@ fn a_recording_is_scrubbed_with_the_mouse() {
 
 #[test]
 fn where_opengl_does_not_start_the_window_opens_without_it_and_says_so() {
-    let _alone = alone();
     let Some(display) = Display::start_without_opengl() else {
         return;
     };

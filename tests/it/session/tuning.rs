@@ -1,7 +1,6 @@
 //! From the plan of trials to a hand that wakes up tuned, by a person with a mouse: on a cup that breaks, over each wire,
 //! the hand in another process, in real time. What the window then says, other programs read from the hand.
 
-use crate::session::beside_others;
 use crate::setup::process::{Running, Wires, run, sim_on_all};
 use crate::setup::program::{InFolder, Program, env};
 use crate::setup::time::Time;
@@ -223,7 +222,6 @@ fn power_cycle(sim: &mut Running, person: &mut Person) {
 
 /// The whole way on one wire of a hand that serves all of them.
 fn walk(choose: fn(&Wires) -> &str) {
-    let _beside = beside_others();
     let folder = tempfile::tempdir().unwrap();
     let (mut sim, wires) = sim_on_all(folder.path(), &["--scenario", "fragile"]);
     let hand = choose(&wires);

@@ -2,7 +2,6 @@
 //! hand says and writes nothing. CAN is tried where this machine has `vcan0`.
 
 #[cfg(target_os = "linux")]
-use crate::session::beside_others;
 use crate::setup::hand::free;
 use crate::setup::program::{Program, env};
 use crate::setup::skipped::can_interface;
@@ -118,7 +117,6 @@ fn shown<'a>(labels: &'a [Value], name: &str) -> Option<&'a str> {
 
 #[test]
 fn the_window_shows_the_hand_on_every_wire_and_writes_nothing() {
-    let _beside = beside_others();
     let servers = Time::Real.runtime();
     let folder = tempfile::tempdir().unwrap();
     let inside = servers.enter();

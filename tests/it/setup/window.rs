@@ -35,8 +35,10 @@ pub(crate) use egui::accesskit::Role;
 pub(crate) const LARGE: Vec2 = vec2(1440.0, 900.0);
 /// Virtual time of one frame.
 pub(crate) const FRAME_MS: u64 = 20;
-/// While a person only waits, one frame of so many is drawn, and all of the last ones.
-const DRAWN_EACH: u64 = 4;
+/// While a person only waits, one frame of so many is drawn.
+const DRAWN_EACH: u64 = 8;
+/// And so many of the last ones: what one frame brings, the next shows.
+const LAST_DRAWN: u64 = 2;
 
 /// ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and the gesture number (manual 2.6).
 pub(crate) const ANGLE_SET: u16 = 1486;
@@ -376,7 +378,7 @@ impl Bench {
 
     pub(crate) fn run(&mut self, millis: u64) {
         for left in (0..millis.div_ceil(FRAME_MS)).rev() {
-            self.pass(left < DRAWN_EACH || left.is_multiple_of(DRAWN_EACH));
+            self.pass(left < LAST_DRAWN || left.is_multiple_of(DRAWN_EACH));
         }
     }
 

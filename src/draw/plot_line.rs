@@ -1,5 +1,5 @@
-//! Lines with more points than pixels, as upright bars, one a pixel: what such a line covers anyway, and far cheaper
-//! than a path whose every corner is cut and smoothed. Each spike is a whole pixel wide, which the bands of
+//! Plot lines with more points than pixels, as upright bars of one pixel each: they cover what such a line covers anyway, and are
+//! far cheaper than a path whose every corner is cut and smoothed. Each spike is a whole pixel wide, which the bands of
 //! `egui_plot` make thin. Knows no hand and no time.
 
 use egui::epaint::{Vertex, WHITE_UV};
@@ -34,7 +34,7 @@ impl PixelBar {
 }
 
 /// Adds a line of many points to a mesh; a bar is one pixel wide, in points.
-pub(crate) fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<Item = Pos2>) {
+pub fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<Item = Pos2>) {
     let mut wide: Option<PixelBar> = None;
     let mut bar: Option<PixelBar> = None;
     let mut before: Option<Pos2> = None;
