@@ -116,6 +116,8 @@ pub struct SimHand {
     rng: fastrand::Rng,
     pub(crate) now_ms: u64,
     published_ms: Option<u64>,
+    /// Fingertips that were published then, too.
+    published_tips: PerFinger<bool>,
     pub(crate) calibration_due_ms: Option<u64>,
     /// When the SAVE under way is in flash, on a hand that takes its time.
     pub(crate) flash_due_ms: Option<u64>,
@@ -161,6 +163,7 @@ impl SimHand {
             rng,
             now_ms: 0,
             published_ms: None,
+            published_tips: PerFinger::splat(false),
             calibration_due_ms: None,
             flash_due_ms: None,
             saves: VecDeque::new(),
@@ -206,7 +209,7 @@ impl SimHand {
         if self.config.personality.gap == GapAnswer::Refused && overlaps(span, GAP) {
             return Err(AccessError::Gap);
         }
-        self.publish();
+        self.publish(|block| overlaps(span, block));
         if self.config.personality.stamp_gap {
             self.memory.put(STAMP.address, &now.micros().to_le_bytes());
         }
@@ -409,7 +412,7 @@ impl SimHand {
     /// setpoints are taken and read back, and every frame is valid. A power cycle ends it.
     pub fn freeze_feedback(&mut self, frozen: bool, now: Moment) {
         self.advance_to(now);
-        self.publish();
+        self.publish(|_| true);
         self.frozen = frozen;
         self.published_ms = None;
     }
@@ -418,7 +421,7 @@ impl SimHand {
     /// all joints live on. A power cycle ends it.
     pub fn freeze_angles(&mut self, frozen: PerDof<bool>, now: Moment) {
         self.advance_to(now);
-        self.publish();
+        self.publish(|_| false);
         self.frozen_angles = PerDof::from_fn(|dof| {
             let shown = self.memory.short(&ANGLE_ACT, element(dof));
             frozen[dof].then_some(shown)
@@ -513,7 +516,7 @@ impl SimHand {
             way.abs() >= FREEZES_AFTER
         };
         if Dof::ALL.iter().any(has_moved) {
-            self.publish();
+            self.publish(|_| true);
             self.frozen = true;
         }
     }
@@ -632,34 +635,45 @@ impl SimHand {
         self.memory.put(check, &sum.to_le_bytes());
     }
 
-    /// Puts the live values of this millisecond into the memory.
-    fn publish(&mut self) {
-        if self.follows_recording || self.frozen || self.published_ms == Some(self.now_ms) {
+    /// Puts the live values of this millisecond into the memory; of the fingertips, those whose blocks are wanted.
+    fn publish(&mut self, wants: impl Fn(Span) -> bool) {
+        if self.follows_recording || self.frozen {
             return;
         }
-        self.published_ms = Some(self.now_ms);
-        live::publish_drives(&mut self.memory, &self.body);
-        for (dof, angle) in self.frozen_angles.iter() {
-            if let Some(angle) = angle {
-                self.memory.put_short(&ANGLE_ACT, element(dof), *angle);
+        if self.published_ms != Some(self.now_ms) {
+            self.published_ms = Some(self.now_ms);
+            self.published_tips = PerFinger::splat(false);
+            live::publish_drives(&mut self.memory, &self.body);
+            for (dof, angle) in self.frozen_angles.iter() {
+                if let Some(angle) = angle {
+                    self.memory.put_short(&ANGLE_ACT, element(dof), *angle);
+                }
+            }
+            if self.config.scenario == Scenario::Extremes {
+                extremes::overlay(&mut self.memory, self.now_ms);
+                self.published_tips = PerFinger::splat(true);
             }
         }
+        for finger in Finger::ALL {
+            if !self.published_tips[finger] && wants(Group::Tactile(finger).span()) {
+                self.published_tips[finger] = true;
+                self.publish_tip(finger);
+            }
+        }
+    }
+
+    fn publish_tip(&mut self, finger: Finger) {
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
         let slip = self.slip(measured_ms);
-        for finger in Finger::ALL {
-            let mut press = live::press(&self.body, finger);
-            press.force_g += scenario::touched_g(self.config.scenario, finger, measured_ms);
-            press.force_g += self.pressed_g[finger];
-            let block = self
-                .touch
-                .block(finger, press, slip, number::seconds(measured_ms));
-            let at = Group::Tactile(finger).span().address;
-            self.memory.put(at, &block.encode());
-            self.put_check(at);
-        }
-        if self.config.scenario == Scenario::Extremes {
-            extremes::overlay(&mut self.memory, self.now_ms);
-        }
+        let mut press = live::press(&self.body, finger);
+        press.force_g += scenario::touched_g(self.config.scenario, finger, measured_ms);
+        press.force_g += self.pressed_g[finger];
+        let block = self
+            .touch
+            .block(finger, press, slip, number::seconds(measured_ms));
+        let at = Group::Tactile(finger).span().address;
+        self.memory.put(at, &block.encode());
+        self.put_check(at);
     }
 }
 

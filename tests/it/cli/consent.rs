@@ -1,6 +1,7 @@
 //! Whether a hand may be moved again is answered after it was asked, by a person: at a terminal, or where they said so.
 
 use crate::cli::follow::{Sender, phase, setpoint};
+use crate::setup::busy::unless_busy;
 use crate::setup::process::{Running, handscope, listen, sim_on_tcp};
 use nix::pty::openpty;
 use serde_json::Value;
@@ -63,29 +64,33 @@ fn asks_and_is_answered(hand: &str, running: &mut Running, place: &str, person: 
 
 #[test]
 fn an_enter_that_was_typed_before_the_question_is_no_consent() {
-    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
-    let terminal = openpty(None, None).unwrap();
-    let mut person = File::from(terminal.master);
-    let (mut running, place) = following(&hand, terminal.slave, &[]);
-    person.write_all(b"\n\n").unwrap();
-    asks_and_is_answered(&hand, &mut running, &place, &mut person);
+    unless_busy(|| {
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+        let terminal = openpty(None, None).unwrap();
+        let mut person = File::from(terminal.master);
+        let (mut running, place) = following(&hand, terminal.slave, &[]);
+        person.write_all(b"\n\n").unwrap();
+        asks_and_is_answered(&hand, &mut running, &place, &mut person);
+    });
 }
 
 #[test]
 fn a_program_answers_over_standard_input_only_if_a_person_said_so_and_each_question_anew() {
-    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
-    let (input, mut person) = std::io::pipe().unwrap();
-    let (mut running, place) = following(&hand, input, &["--consent", "stdin"]);
-    asks_and_is_answered(&hand, &mut running, &place, &mut person);
-    running.until(|line| question(line).is_string());
-    drop(person);
-    let ended = running.end();
-    assert_eq!(ended.code, Some(1), "{}", ended.err);
-    assert!(
-        ended.err.contains("ended without an answer"),
-        "{}",
-        ended.err
-    );
+    unless_busy(|| {
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+        let (input, mut person) = std::io::pipe().unwrap();
+        let (mut running, place) = following(&hand, input, &["--consent", "stdin"]);
+        asks_and_is_answered(&hand, &mut running, &place, &mut person);
+        running.until(|line| question(line).is_string());
+        drop(person);
+        let ended = running.end();
+        assert_eq!(ended.code, Some(1), "{}", ended.err);
+        assert!(
+            ended.err.contains("ended without an answer"),
+            "{}",
+            ended.err
+        );
+    });
 }
 
 /// Enters lines for as long as somebody reads.
@@ -95,24 +100,26 @@ fn always(mut to: PipeWriter) {
 
 #[test]
 fn lines_that_come_whether_one_is_asked_or_not_are_no_consent() {
-    for (more, words) in [
-        (&[][..], "nobody can press Enter here"),
-        (&["--consent", "stdin"], "does not pause"),
-    ] {
-        let (input, person) = std::io::pipe().unwrap();
-        always(person);
-        let (mut running, place) = following("sim:?scenario=free", input, more);
-        let sends = Sender::start(&place);
-        running.until(|line| phase(line) == "following");
-        drop(sends);
-        let ended = running.end();
-        assert_eq!(ended.code, Some(1), "{}", ended.err);
-        assert!(
-            ended.err.contains("fell silent: the hand was stopped"),
-            "{}",
-            ended.err
-        );
-        assert!(ended.err.contains(words), "{}", ended.err);
-        assert!(ended.took > Duration::from_secs(1));
-    }
+    unless_busy(|| {
+        for (more, words) in [
+            (&[][..], "nobody can press Enter here"),
+            (&["--consent", "stdin"], "does not pause"),
+        ] {
+            let (input, person) = std::io::pipe().unwrap();
+            always(person);
+            let (mut running, place) = following("sim:?scenario=free", input, more);
+            let sends = Sender::start(&place);
+            running.until(|line| phase(line) == "following");
+            drop(sends);
+            let ended = running.end();
+            assert_eq!(ended.code, Some(1), "{}", ended.err);
+            assert!(
+                ended.err.contains("fell silent: the hand was stopped"),
+                "{}",
+                ended.err
+            );
+            assert!(ended.err.contains(words), "{}", ended.err);
+            assert!(ended.took > Duration::from_secs(1));
+        }
+    });
 }

@@ -2,6 +2,7 @@
 //! writes nothing, and its connection ends.
 
 use crate::cli::follow::{phase, setpoint};
+use crate::setup::busy::unless_busy;
 use crate::setup::process::{Running, run, sim_on_tcp, start};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
@@ -67,50 +68,52 @@ fn serve(args: &[&str], ready: &str) -> (Running, String) {
 
 #[test]
 fn a_web_page_moves_no_hand_through_any_socket_of_the_program() {
-    let folder = tempfile::tempdir().unwrap();
-    let recorded = folder.path().join("rest.mcap");
-    let recorded = recorded.to_str().unwrap();
-    run(&[
-        "record", "--hand", "sim:", "--for", "0.5", "--out", recorded,
-    ])
-    .ok();
-    let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
-    let own = hand.strip_prefix("tcp:").unwrap().to_owned();
-    let before = setpoint(&hand);
-    let any = "127.0.0.1:0";
-    let follow = ["follow", "--hand", &hand, "--arm", "--json", "--tcp", any];
-    let share = ["share", "--hand", &hand, "--writers", "--tcp", any];
-    let show = ["share", "--hand", &hand, "--foxglove", any];
-    let replay = ["replay", recorded, "--tcp", any];
-    for (args, ready, body) in [
-        (&follow[..], "ready tcp ", lines()),
-        (&share, "ready tcp ", requests()),
-        (&show, "ready foxglove ", lines()),
-        (&replay, "ready tcp ", requests()),
-    ] {
-        let (mut running, address) = serve(args, ready);
-        for _ in 0..3 {
-            assert!(post(&address, &body), "{args:?} goes on to listen");
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let recorded = folder.path().join("rest.mcap");
+        let recorded = recorded.to_str().unwrap();
+        run(&[
+            "record", "--hand", "sim:", "--for", "0.5", "--out", recorded,
+        ])
+        .ok();
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+        let own = hand.strip_prefix("tcp:").unwrap().to_owned();
+        let before = setpoint(&hand);
+        let any = "127.0.0.1:0";
+        let follow = ["follow", "--hand", &hand, "--arm", "--json", "--tcp", any];
+        let share = ["share", "--hand", &hand, "--writers", "--tcp", any];
+        let show = ["share", "--hand", &hand, "--foxglove", any];
+        let replay = ["replay", recorded, "--tcp", any];
+        for (args, ready, body) in [
+            (&follow[..], "ready tcp ", lines()),
+            (&share, "ready tcp ", requests()),
+            (&show, "ready foxglove ", lines()),
+            (&replay, "ready tcp ", requests()),
+        ] {
+            let (mut running, address) = serve(args, ready);
+            for _ in 0..3 {
+                assert!(post(&address, &body), "{args:?} goes on to listen");
+            }
+            if args == follow {
+                let told = running.until(|line| line.contains("malformed\":3"));
+                assert!(told.contains("\"taken\":0"), "{told}");
+                assert_eq!(phase(&told), "waiting");
+            }
+            drop(running);
+            assert_eq!(setpoint(&hand), before, "{args:?}");
         }
-        if args == follow {
-            let told = running.until(|line| line.contains("malformed\":3"));
-            assert!(told.contains("\"taken\":0"), "{told}");
-            assert_eq!(phase(&told), "waiting");
-        }
-        drop(running);
-        assert_eq!(setpoint(&hand), before, "{args:?}");
-    }
-    assert!(post(&own, &requests()), "the simulated hand");
-    assert_eq!(setpoint(&hand), before);
-    // The same without a head is what moves a hand: the bodies are good.
-    let (mut running, address) = serve(&follow, "ready tcp ");
-    let mut sender = TcpStream::connect(address).unwrap();
-    sender.write_all(&lines()).unwrap();
-    running.until(|line| phase(line) == "following" || line.contains("\"taken\":20"));
-    running.signal(nix::sys::signal::Signal::SIGINT);
-    running.end().ok();
-    let mut client = TcpStream::connect(&own).unwrap();
-    client.write_all(&requests()).unwrap();
-    client.read_exact(&mut [0; 12 * MESSAGES]).unwrap();
-    assert_eq!(setpoint(&hand), 0);
+        assert!(post(&own, &requests()), "the simulated hand");
+        assert_eq!(setpoint(&hand), before);
+        // The same without a head is what moves a hand: the bodies are good.
+        let (mut running, address) = serve(&follow, "ready tcp ");
+        let mut sender = TcpStream::connect(address).unwrap();
+        sender.write_all(&lines()).unwrap();
+        running.until(|line| phase(line) == "following" || line.contains("\"taken\":20"));
+        running.signal(nix::sys::signal::Signal::SIGINT);
+        running.end().ok();
+        let mut client = TcpStream::connect(&own).unwrap();
+        client.write_all(&requests()).unwrap();
+        client.read_exact(&mut [0; 12 * MESSAGES]).unwrap();
+        assert_eq!(setpoint(&hand), 0);
+    });
 }

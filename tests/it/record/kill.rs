@@ -2,7 +2,7 @@
 //! quarter of a second at most.
 
 use crate::record::journal::{Connection, Journal, Said, nanos_now, pass_on};
-use crate::setup::busy::unless_stalled;
+use crate::setup::busy::unless_busy;
 use crate::setup::hand;
 use crate::setup::process::{Running, listen};
 use crate::setup::soak;
@@ -246,7 +246,7 @@ fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
 
 #[test]
 fn a_killed_program_leaves_a_file_that_opens_and_lacks_a_quarter_of_a_second_at_most() {
-    unless_stalled(check_kills);
+    unless_busy(check_kills);
 }
 
 fn check_kills() {

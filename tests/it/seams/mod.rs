@@ -17,7 +17,7 @@ use crate::seams::process::{Place, Process};
 use crate::seams::table::{Cell, Column, Row, cell, cell_on};
 use crate::seams::window::Window;
 use crate::setup::body::Protocol;
-use crate::setup::busy::unless_stalled;
+use crate::setup::busy::unless_busy;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Mutex;
@@ -165,7 +165,7 @@ fn begun(cell: impl Fn() -> Seen) -> Seen {
 
 /// Tries a cell, again where this computer stalled meanwhile: what is wrong, if something is.
 fn told(cell: impl FnMut()) -> Result<(), String> {
-    let tried = catch_unwind(AssertUnwindSafe(|| unless_stalled(cell)));
+    let tried = catch_unwind(AssertUnwindSafe(|| unless_busy(cell)));
     tried.map_err(|panic| {
         let words = panic.downcast_ref::<String>().cloned();
         words.unwrap_or_else(|| "it did not come so far".into())

@@ -1,6 +1,7 @@
 //! Whatever ends a program that moves a hand: a hand in this process is the judge, over real sockets and pseudo-terminals. It must
 //! be held at once, rest where it stands, and nothing of the program may stay.
 
+use crate::setup::busy::unless_busy;
 use crate::setup::hand::free;
 use crate::setup::process::{Running, handscope, listen, start};
 use crate::setup::time::Time;
@@ -182,97 +183,103 @@ fn trial(endpoint: &str) -> Running {
 
 #[test]
 fn a_hand_is_held_when_the_program_that_moves_it_is_killed_on_every_wire() {
-    std::thread::scope(|all| {
-        for kind in ["tcp", "rs485", "rtu", "slcan"] {
-            all.spawn(move || {
-                let witness = Witness::start();
-                let endpoint = witness.endpoint(kind);
-                let trial = trial(&endpoint);
-                witness.moves_below(900);
-                let [holder] = holders(&endpoint)[..] else {
-                    panic!("{kind}: {:?}", holders(&endpoint));
-                };
-                // What a terminal or the system says to all is not for it.
-                for signal in [Signal::SIGINT, Signal::SIGHUP, Signal::SIGTERM] {
-                    kill(holder, signal).unwrap();
-                }
-                // A program that stands still is not dead.
-                trial.signal(Signal::SIGSTOP);
-                let stands = witness.hand.now();
-                sleep(Duration::from_millis(400));
-                assert_eq!(
-                    witness.set_after(stands),
-                    [],
-                    "{kind}: it only stands still"
-                );
-                let died = witness.hand.now();
-                trial.signal(Signal::SIGKILL);
-                witness.was_held(died, &format!("killed on {kind}"));
-                let ended = trial.end();
-                assert!(ended.err.contains("the hand was stopped"), "{}", ended.err);
-                no_holder_stays(&endpoint, kind);
-            });
-        }
+    unless_busy(|| {
+        std::thread::scope(|all| {
+            for kind in ["tcp", "rs485", "rtu", "slcan"] {
+                all.spawn(move || {
+                    let witness = Witness::start();
+                    let endpoint = witness.endpoint(kind);
+                    let trial = trial(&endpoint);
+                    witness.moves_below(900);
+                    let [holder] = holders(&endpoint)[..] else {
+                        panic!("{kind}: {:?}", holders(&endpoint));
+                    };
+                    // What a terminal or the system says to all is not for it.
+                    for signal in [Signal::SIGINT, Signal::SIGHUP, Signal::SIGTERM] {
+                        kill(holder, signal).unwrap();
+                    }
+                    // A program that stands still is not dead.
+                    trial.signal(Signal::SIGSTOP);
+                    let stands = witness.hand.now();
+                    sleep(Duration::from_millis(400));
+                    assert_eq!(
+                        witness.set_after(stands),
+                        [],
+                        "{kind}: it only stands still"
+                    );
+                    let died = witness.hand.now();
+                    trial.signal(Signal::SIGKILL);
+                    witness.was_held(died, &format!("killed on {kind}"));
+                    let ended = trial.end();
+                    assert!(ended.err.contains("the hand was stopped"), "{}", ended.err);
+                    no_holder_stays(&endpoint, kind);
+                });
+            }
+        });
     });
 }
 
 #[test]
 fn a_hand_is_held_when_follow_is_killed() {
-    let witness = Witness::start();
-    let endpoint = witness.endpoint("tcp");
-    let mut follow = start(&[
-        "follow",
-        "--hand",
-        &endpoint,
-        "--udp",
-        "127.0.0.1:0",
-        "--arm",
-        "--lead",
-        "500",
-        "--rate",
-        "300",
-    ]);
-    let ready = follow.line();
-    let place = ready.strip_prefix("ready udp ").expect(&ready).to_owned();
-    let ends = AtomicBool::new(false);
-    std::thread::scope(|all| {
-        all.spawn(|| {
-            let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-            for seq in 0.. {
-                if ends.load(Ordering::Relaxed) {
-                    return;
+    unless_busy(|| {
+        let witness = Witness::start();
+        let endpoint = witness.endpoint("tcp");
+        let mut follow = start(&[
+            "follow",
+            "--hand",
+            &endpoint,
+            "--udp",
+            "127.0.0.1:0",
+            "--arm",
+            "--lead",
+            "500",
+            "--rate",
+            "300",
+        ]);
+        let ready = follow.line();
+        let place = ready.strip_prefix("ready udp ").expect(&ready).to_owned();
+        let ends = AtomicBool::new(false);
+        std::thread::scope(|all| {
+            all.spawn(|| {
+                let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+                for seq in 0.. {
+                    if ends.load(Ordering::Relaxed) {
+                        return;
+                    }
+                    let line = format!("{{\"seq\":{seq},\"right\":[0,0,0,0,0,0]}}");
+                    let _sent = socket.send_to(line.as_bytes(), &place);
+                    sleep(Duration::from_millis(20));
                 }
-                let line = format!("{{\"seq\":{seq},\"right\":[0,0,0,0,0,0]}}");
-                let _sent = socket.send_to(line.as_bytes(), &place);
-                sleep(Duration::from_millis(20));
-            }
+            });
+            witness.moves_below(850);
+            let died = witness.hand.now();
+            follow.kill();
+            ends.store(true, Ordering::Relaxed);
+            witness.was_held(died, "follow killed");
         });
-        witness.moves_below(850);
-        let died = witness.hand.now();
-        follow.kill();
-        ends.store(true, Ordering::Relaxed);
-        witness.was_held(died, "follow killed");
+        no_holder_stays(&endpoint, "follow");
     });
-    no_holder_stays(&endpoint, "follow");
 }
 
 #[test]
 fn a_program_that_ends_by_itself_leaves_nothing_and_writes_nothing_more() {
-    let witness = Witness::start();
-    let endpoint = witness.endpoint("rs485");
-    let trial = start(&[
-        "trial", "--hand", &endpoint, "--joint", "index", "--close", "700", "--speed", "500",
-        "--force", "500", "--dwell", "0.3", "--arm",
-    ]);
-    trial.end().ok();
-    let ended = witness.hand.now();
-    no_holder_stays(&endpoint, "trial");
-    sleep(Duration::from_millis(300));
-    assert_eq!(witness.set_after(ended), [], "nothing is written after it");
-    // The port is free.
-    start(&["read", "ANGLE_ACT", "--hand", &endpoint])
-        .end()
-        .ok();
+    unless_busy(|| {
+        let witness = Witness::start();
+        let endpoint = witness.endpoint("rs485");
+        let trial = start(&[
+            "trial", "--hand", &endpoint, "--joint", "index", "--close", "700", "--speed", "500",
+            "--force", "500", "--dwell", "0.3", "--arm",
+        ]);
+        trial.end().ok();
+        let ended = witness.hand.now();
+        no_holder_stays(&endpoint, "trial");
+        sleep(Duration::from_millis(300));
+        assert_eq!(witness.set_after(ended), [], "nothing is written after it");
+        // The port is free.
+        start(&["read", "ANGLE_ACT", "--hand", &endpoint])
+            .end()
+            .ok();
+    });
 }
 
 /// What ends a window.
@@ -288,66 +295,68 @@ enum End {
 #[cfg(feature = "desktop")]
 #[test]
 fn a_hand_is_held_whatever_ends_the_window() {
-    use crate::session::display::Display;
-    let home = tempfile::tempdir().unwrap();
-    for (drawn, end, status) in [
-        ("--software", End::Signal(Signal::SIGINT), Some(0)),
-        ("--opengl", End::Signal(Signal::SIGTERM), Some(0)),
-        ("--software", End::Signal(Signal::SIGHUP), Some(0)),
-        ("--software", End::Signal(Signal::SIGKILL), None),
-        ("--software", End::Frozen(Signal::SIGTERM), Some(143)),
-        ("--software", End::DisplayGone, Some(1)),
-        ("--opengl", End::DisplayGone, Some(1)),
-    ] {
-        let Some(display) = Display::start() else {
-            return;
-        };
-        let witness = Witness::start();
-        let endpoint = witness.endpoint("tcp");
-        let mut command = handscope();
-        command.args(["--hand", &endpoint, "--no-record", drawn]);
-        command
-            .env("DISPLAY", display.name())
-            .env("HOME", home.path())
-            .env("XDG_CONFIG_HOME", home.path())
-            .env("HANDSCOPE_DOCUMENTS", home.path());
-        let window = listen(command);
-        let what = format!("{end:?} {drawn}");
-        display.waits_for("Handscope");
-        // On a machine with other work the feedback may have grown old and the hand be disarmed, as it should.
-        let begun = Instant::now();
-        while witness.angles()[INDEX] > 950 {
-            assert!(begun.elapsed() < 3 * WITHIN, "{what}: it does not move");
-            display.focus("Handscope");
-            display.shifted("a");
-            sleep(Duration::from_millis(300));
-            display.shifted("c");
-            sleep(Duration::from_millis(300));
+    unless_busy(|| {
+        use crate::session::display::Display;
+        let home = tempfile::tempdir().unwrap();
+        for (drawn, end, status) in [
+            ("--software", End::Signal(Signal::SIGINT), Some(0)),
+            ("--opengl", End::Signal(Signal::SIGTERM), Some(0)),
+            ("--software", End::Signal(Signal::SIGHUP), Some(0)),
+            ("--software", End::Signal(Signal::SIGKILL), None),
+            ("--software", End::Frozen(Signal::SIGTERM), Some(143)),
+            ("--software", End::DisplayGone, Some(1)),
+            ("--opengl", End::DisplayGone, Some(1)),
+        ] {
+            let Some(display) = Display::start() else {
+                return;
+            };
+            let witness = Witness::start();
+            let endpoint = witness.endpoint("tcp");
+            let mut command = handscope();
+            command.args(["--hand", &endpoint, "--no-record", drawn]);
+            command
+                .env("DISPLAY", display.name())
+                .env("HOME", home.path())
+                .env("XDG_CONFIG_HOME", home.path())
+                .env("HANDSCOPE_DOCUMENTS", home.path());
+            let window = listen(command);
+            let what = format!("{end:?} {drawn}");
+            display.waits_for("Handscope");
+            // On a machine with other work the feedback may have grown old and the hand be disarmed, as it should.
+            let begun = Instant::now();
+            while witness.angles()[INDEX] > 950 {
+                assert!(begun.elapsed() < 3 * WITHIN, "{what}: it does not move");
+                display.focus("Handscope");
+                display.shifted("a");
+                sleep(Duration::from_millis(300));
+                display.shifted("c");
+                sleep(Duration::from_millis(300));
+            }
+            assert_eq!(holders(&endpoint).len(), 1, "{what}");
+            if let End::Frozen(_) = end {
+                display.signal(Signal::SIGSTOP);
+                sleep(Duration::from_millis(100));
+            }
+            let since = witness.hand.now();
+            match end {
+                End::Signal(signal) | End::Frozen(signal) => window.signal(signal),
+                End::DisplayGone => display.signal(Signal::SIGKILL),
+            }
+            witness.was_held(since, &what);
+            let ended = window.end();
+            // A frame may take seconds where others want the processors, too: that is a window that hangs.
+            let hung = match end {
+                End::Signal(signal) if signal != Signal::SIGKILL => Some(128 + signal as i32),
+                _ => status,
+            };
+            assert!(
+                [status, hung].contains(&ended.code),
+                "{what}: {:?} {}",
+                ended.code,
+                ended.err
+            );
+            no_holder_stays(&endpoint, &what);
+            display.signal(Signal::SIGCONT);
         }
-        assert_eq!(holders(&endpoint).len(), 1, "{what}");
-        if let End::Frozen(_) = end {
-            display.signal(Signal::SIGSTOP);
-            sleep(Duration::from_millis(100));
-        }
-        let since = witness.hand.now();
-        match end {
-            End::Signal(signal) | End::Frozen(signal) => window.signal(signal),
-            End::DisplayGone => display.signal(Signal::SIGKILL),
-        }
-        witness.was_held(since, &what);
-        let ended = window.end();
-        // A frame may take seconds where others want the processors, too: that is a window that hangs.
-        let hung = match end {
-            End::Signal(signal) if signal != Signal::SIGKILL => Some(128 + signal as i32),
-            _ => status,
-        };
-        assert!(
-            [status, hung].contains(&ended.code),
-            "{what}: {:?} {}",
-            ended.code,
-            ended.err
-        );
-        no_holder_stays(&endpoint, &what);
-        display.signal(Signal::SIGCONT);
-    }
+    });
 }

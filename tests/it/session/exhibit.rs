@@ -3,6 +3,7 @@
 use crate::session::display::Display;
 use crate::session::program::{Hand, Window};
 use crate::session::twin::Twin;
+use crate::setup::busy::unless_busy;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::hand::Dof;
@@ -77,44 +78,46 @@ fn write_booth(file: &Path) {
 
 #[test]
 fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
-    let Some(display) = Display::start() else {
-        return;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("booth.toml");
-    write_booth(&file);
-    let (hand, other) = (Hand::start(), Hand::start());
-    let before = hand.read("ANGLE_SET");
-    let mut page = Twin::start(&other.endpoint);
-    page.exhibit(&file);
-    let window = Window::exhibit(display.name(), &hand, &file);
-    is_shown(&mut page, &display, (WITHIN, "begin"));
-    tries_every_way_out(&display, &mut page);
-    assert_eq!(hand.read("ANGLE_SET"), before, "nothing moved");
-    // Dropping kills, as SIGKILL does.
-    drop(window);
-    let window = Window::exhibit(display.name(), &hand, &file);
-    is_shown(&mut page, &display, (BACK_WITHIN, "after a kill"));
-    assert_eq!(hand.read("ANGLE_SET"), before, "nothing moved by itself");
-    unlock(&display, &mut page);
-    display.click(page.middle("Arm"));
-    act(&mut page, ExhibitAction::CloseStaff);
-    let fist = page.middle("Fist");
-    let armed = Instant::now();
-    while hand.is_soon_set_to(Dof::Index, &(0..=5)).is_none() {
-        assert!(
-            armed.elapsed() < BACK_WITHIN,
-            "a visitor saw no moving hand"
+    unless_busy(|| {
+        let Some(display) = Display::start() else {
+            return;
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("booth.toml");
+        write_booth(&file);
+        let (hand, other) = (Hand::start(), Hand::start());
+        let before = hand.read("ANGLE_SET");
+        let mut page = Twin::start(&other.endpoint);
+        page.exhibit(&file);
+        let window = Window::exhibit(display.name(), &hand, &file);
+        is_shown(&mut page, &display, (WITHIN, "begin"));
+        tries_every_way_out(&display, &mut page);
+        assert_eq!(hand.read("ANGLE_SET"), before, "nothing moved");
+        // Dropping kills, as SIGKILL does.
+        drop(window);
+        let window = Window::exhibit(display.name(), &hand, &file);
+        is_shown(&mut page, &display, (BACK_WITHIN, "after a kill"));
+        assert_eq!(hand.read("ANGLE_SET"), before, "nothing moved by itself");
+        unlock(&display, &mut page);
+        display.click(page.middle("Arm"));
+        act(&mut page, ExhibitAction::CloseStaff);
+        let fist = page.middle("Fist");
+        let armed = Instant::now();
+        while hand.is_soon_set_to(Dof::Index, &(0..=5)).is_none() {
+            assert!(
+                armed.elapsed() < BACK_WITHIN,
+                "a visitor saw no moving hand"
+            );
+            display.click(fist);
+        }
+        println!(
+            "a visitor's hand moves {:?} after it was armed",
+            armed.elapsed()
         );
-        display.click(fist);
-    }
-    println!(
-        "a visitor's hand moves {:?} after it was armed",
-        armed.elapsed()
-    );
-    unlock(&display, &mut page);
-    display.click(page.middle("Leave the exhibition"));
-    window.ends_well();
+        unlock(&display, &mut page);
+        display.click(page.middle("Leave the exhibition"));
+        window.ends_well();
+    });
 }
 
 fn tries_every_way_out(display: &Display, page: &mut Twin) {
@@ -157,34 +160,36 @@ fn unlock(display: &Display, page: &mut Twin) {
 
 #[test]
 fn the_page_has_the_size_of_its_screen_both_ways_also_without_a_window_manager() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("booth.toml");
-    write_booth(&file);
-    let hand = Hand::start();
-    for (width, height) in [(1024, 768), (800, 600), (1920, 1200)] {
-        let Some(display) = Display::start_sized((width, height)) else {
-            return;
-        };
-        let (width, height) = (
-            i32::try_from(width).unwrap(),
-            i32::try_from(height).unwrap(),
-        );
-        let _window = Window::exhibit(display.name(), &hand, &file);
-        display.waits_for("Handscope");
-        // Smaller and larger than the screen, as a window that lost its full screen.
-        for size in [None, Some(["500", "300"]), Some(["2000", "1500"])] {
-            if let Some(size) = size {
-                display.change("windowsize", "Handscope", size);
-            }
-            let begun = Instant::now();
-            while display.geometry("Handscope") != [0, 0, width, height] {
-                let is = display.geometry("Handscope");
-                assert!(
-                    begun.elapsed() < WITHIN,
-                    "{width}x{height}, {size:?}: {is:?}"
-                );
-                sleep(Duration::from_millis(100));
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("booth.toml");
+        write_booth(&file);
+        let hand = Hand::start();
+        for (width, height) in [(1024, 768), (800, 600), (1920, 1200)] {
+            let Some(display) = Display::start_sized((width, height)) else {
+                return;
+            };
+            let (width, height) = (
+                i32::try_from(width).unwrap(),
+                i32::try_from(height).unwrap(),
+            );
+            let _window = Window::exhibit(display.name(), &hand, &file);
+            display.waits_for("Handscope");
+            // Smaller and larger than the screen, as a window that lost its full screen.
+            for size in [None, Some(["500", "300"]), Some(["2000", "1500"])] {
+                if let Some(size) = size {
+                    display.change("windowsize", "Handscope", size);
+                }
+                let begun = Instant::now();
+                while display.geometry("Handscope") != [0, 0, width, height] {
+                    let is = display.geometry("Handscope");
+                    assert!(
+                        begun.elapsed() < WITHIN,
+                        "{width}x{height}, {size:?}: {is:?}"
+                    );
+                    sleep(Duration::from_millis(100));
+                }
             }
         }
-    }
+    });
 }

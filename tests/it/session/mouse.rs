@@ -4,6 +4,7 @@
 use crate::session::display::Display;
 use crate::session::program::{Hand, REST, Window};
 use crate::session::twin::Twin;
+use crate::setup::busy::unless_busy;
 use crate::setup::process;
 use handscope::app::action::Action;
 use handscope::app::recordings::RecordingAction;
@@ -207,62 +208,70 @@ fn session(more: &[&str]) {
 
 #[test]
 fn a_session_with_the_mouse_in_the_window_with_opengl() {
-    session(&["--opengl"]);
+    unless_busy(|| {
+        session(&["--opengl"]);
+    });
 }
 
 #[test]
 fn a_session_with_the_mouse_in_the_window_without_opengl() {
-    session(&["--software"]);
+    unless_busy(|| {
+        session(&["--software"]);
+    });
 }
 
 #[test]
 fn a_recording_is_scrubbed_with_the_mouse() {
-    let Some(display) = Display::start() else {
-        return;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("grasp.mcap");
-    let file = path.to_str().unwrap();
-    let hand = "sim:?scenario=grasp";
-    let recorded = process::run(&["record", "--hand", hand, "--for", "6", "--out", file]);
-    assert_eq!(recorded.code, Some(0), "{}", recorded.err);
-    let mut session = Session::start(display, &["--software", file]);
-    let open = RecordingAction::Open(path.clone());
-    session.twin.act(Action::Recording(open));
-    session.looks("replayed", View::Live, Language::En);
-    for share in [0.3, 0.9, 0.6] {
-        session.drag("Time line", 0.45, share);
-        session.twin.seek(share);
-        session.looks("scrubbed", View::Live, Language::En);
-    }
-    let stands = session.hand.read("ANGLE_SET");
-    session.click("Hand");
-    session.twin.view = View::Connection;
-    session.looks(
-        "another view of that moment",
-        View::Connection,
-        Language::En,
-    );
-    session.click("Back to live");
-    session.twin.act(Action::Recording(RecordingAction::Close));
-    session.looks("live again", View::Connection, Language::En);
-    assert_eq!(session.hand.read("ANGLE_SET"), stands, "nothing moved");
-    session.display.close("Handscope");
-    session.window.ends_well();
+    unless_busy(|| {
+        let Some(display) = Display::start() else {
+            return;
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("grasp.mcap");
+        let file = path.to_str().unwrap();
+        let hand = "sim:?scenario=grasp";
+        let recorded = process::run(&["record", "--hand", hand, "--for", "6", "--out", file]);
+        assert_eq!(recorded.code, Some(0), "{}", recorded.err);
+        let mut session = Session::start(display, &["--software", file]);
+        let open = RecordingAction::Open(path.clone());
+        session.twin.act(Action::Recording(open));
+        session.looks("replayed", View::Live, Language::En);
+        for share in [0.3, 0.9, 0.6] {
+            session.drag("Time line", 0.45, share);
+            session.twin.seek(share);
+            session.looks("scrubbed", View::Live, Language::En);
+        }
+        let stands = session.hand.read("ANGLE_SET");
+        session.click("Hand");
+        session.twin.view = View::Connection;
+        session.looks(
+            "another view of that moment",
+            View::Connection,
+            Language::En,
+        );
+        session.click("Back to live");
+        session.twin.act(Action::Recording(RecordingAction::Close));
+        session.looks("live again", View::Connection, Language::En);
+        assert_eq!(session.hand.read("ANGLE_SET"), stands, "nothing moved");
+        session.display.close("Handscope");
+        session.window.ends_well();
+    });
 }
 
 #[test]
 fn where_opengl_does_not_start_the_window_opens_without_it_and_says_so() {
-    let Some(display) = Display::start_without_opengl() else {
-        return;
-    };
-    let hand = Hand::start();
-    let window = Window::start_without_drivers(display.name(), &hand);
-    let mut session = Session::with(display, hand, window);
-    session.looks("without OpenGL", View::Live, Language::En);
-    let arguments = session.window.arguments();
-    assert!(arguments.contains("--software-because"), "{arguments}");
-    assert!(arguments.contains(&session.hand.endpoint), "{arguments}");
-    session.display.close("Handscope");
-    session.window.ends_well();
+    unless_busy(|| {
+        let Some(display) = Display::start_without_opengl() else {
+            return;
+        };
+        let hand = Hand::start();
+        let window = Window::start_without_drivers(display.name(), &hand);
+        let mut session = Session::with(display, hand, window);
+        session.looks("without OpenGL", View::Live, Language::En);
+        let arguments = session.window.arguments();
+        assert!(arguments.contains("--software-because"), "{arguments}");
+        assert!(arguments.contains(&session.hand.endpoint), "{arguments}");
+        session.display.close("Handscope");
+        session.window.ends_well();
+    });
 }

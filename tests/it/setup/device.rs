@@ -131,12 +131,15 @@ pub(crate) fn crc(bytes: &[u8]) -> [u8; 2] {
     let mut register = 0xFFFFu16;
     for byte in bytes {
         register ^= u16::from(*byte);
-        for _ in 0..8 {
+        // Not `for`: without optimisation that takes ten times as long.
+        let mut bits = 8;
+        while bits > 0 {
             let out = register % 2 == 1;
             register /= 2;
             if out {
                 register ^= 0xA001;
             }
+            bits -= 1;
         }
     }
     register.to_le_bytes()
@@ -183,26 +186,27 @@ fn rtu_request(held: &[u8]) -> Option<(Vec<u8>, usize)> {
     })
 }
 
+fn swap_pairs(bytes: &mut [u8]) {
+    bytes.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
+}
+
 fn modbus_answer(hand: &SharedHand, quirks: &Quirks, pdu: &[u8]) -> Vec<u8> {
     let word = |at: usize| u16::from_be_bytes([pdu[at], pdu[at + 1]]);
     match pdu[0] {
         3 => {
-            let Some(bytes) = memory(hand, quirks, Span::new(word(1), word(3) * 2)) else {
+            let Some(mut bytes) = memory(hand, quirks, Span::new(word(1), word(3) * 2)) else {
                 return vec![0x83, 2];
             };
-            let mut answer = vec![3, u8::try_from(bytes.len()).unwrap()];
-            answer.extend(bytes.chunks(2).flat_map(|pair| [pair[1], pair[0]]));
-            answer
+            swap_pairs(&mut bytes);
+            [&[3, u8::try_from(bytes.len()).unwrap()], bytes.as_slice()].concat()
         }
         6 => {
             let _taken = hand.with(|hand, now| hand.write(word(1), &[pdu[4]], now));
             pdu.to_vec()
         }
         16 => {
-            let bytes: Vec<u8> = pdu[6..]
-                .chunks(2)
-                .flat_map(|pair| [pair[1], pair[0]])
-                .collect();
+            let mut bytes = pdu[6..].to_vec();
+            swap_pairs(&mut bytes);
             let _taken = hand.with(|hand, now| hand.write(word(1), &bytes, now));
             pdu[..5].to_vec()
         }

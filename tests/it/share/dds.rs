@@ -1,5 +1,6 @@
 //! A hand on DDS: told and followed by Unitree's own stack, and by nobody unless a person wants it.
 
+use crate::setup::busy::unless_busy;
 use crate::setup::hand;
 use crate::setup::link::{config, to_hand};
 use crate::setup::process::{Running, handscope, listen, start};
@@ -117,18 +118,20 @@ async fn the_grip_is_told_as_a_recording_has_it() {
 
 #[test]
 fn an_interface_that_is_not_there_is_named() {
-    for interface in ["nowhere0", "203.0.113.7", "::1"] {
-        let place = DdsPlace {
-            interface: interface.into(),
-            domain: 42,
-        };
-        let error = DdsNode::open(&place).unwrap_err();
-        assert!(matches!(error, DdsError::NoInterface { .. }), "{error}");
-        assert!(error.to_string().contains(interface), "{error}");
-    }
-    let mut named = place(42);
-    named.interface = "lo".into();
-    assert!(DdsNode::open(&named).unwrap().address().is_loopback());
+    unless_busy(|| {
+        for interface in ["nowhere0", "203.0.113.7", "::1"] {
+            let place = DdsPlace {
+                interface: interface.into(),
+                domain: 42,
+            };
+            let error = DdsNode::open(&place).unwrap_err();
+            assert!(matches!(error, DdsError::NoInterface { .. }), "{error}");
+            assert!(error.to_string().contains(interface), "{error}");
+        }
+        let mut named = place(42);
+        named.interface = "lo".into();
+        assert!(DdsNode::open(&named).unwrap().address().is_loopback());
+    });
 }
 
 /// Ports of DDS in a domain (RTPS 9.6.2.3) that somebody listens at.
@@ -140,15 +143,17 @@ fn listened(domain: u16) -> usize {
 
 #[test]
 fn nobody_listens_before_it_is_opened_or_after_it_is_closed() {
-    assert_eq!(listened(43), 0);
-    let node = DdsNode::open(&place(43)).unwrap();
-    assert!(listened(43) > 0);
-    drop(node);
-    let patience = Instant::now() + PATIENCE;
-    while listened(43) > 0 {
-        assert!(Instant::now() < patience, "somebody listens");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    unless_busy(|| {
+        assert_eq!(listened(43), 0);
+        let node = DdsNode::open(&place(43)).unwrap();
+        assert!(listened(43) > 0);
+        drop(node);
+        let patience = Instant::now() + PATIENCE;
+        while listened(43) > 0 {
+            assert!(Instant::now() < patience, "somebody listens");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    });
 }
 
 /// Where a process listens for UDP, as `ADDRESS:PORT` in hex of the machine's byte order.
@@ -169,20 +174,22 @@ fn udp_places(id: u32) -> Vec<String> {
 
 #[test]
 fn it_listens_at_its_interface_and_nowhere_else() {
-    if !Path::new("/proc/self/net/udp").exists() {
-        return skipped("sockets of a process", "this system does not list them");
-    }
-    let mut running = start(&["share", "--hand", "sim:", "--dds", "--domain", "47"]);
-    running.until(|line| line == "ready dds 127.0.0.1");
-    let places = udp_places(running.id());
-    assert_eq!(places.len(), 3, "{places:?}");
-    let own = u32::from_ne_bytes([127, 0, 0, 1]);
-    let group = u32::from_ne_bytes([239, 255, 0, 1]);
-    for place in &places {
-        let (address, _) = place.split_once(':').unwrap();
-        let address = u32::from_str_radix(address, 16).unwrap();
-        assert!([own, group].contains(&address), "{places:?}");
-    }
+    unless_busy(|| {
+        if !Path::new("/proc/self/net/udp").exists() {
+            return skipped("sockets of a process", "this system does not list them");
+        }
+        let mut running = start(&["share", "--hand", "sim:", "--dds", "--domain", "47"]);
+        running.until(|line| line == "ready dds 127.0.0.1");
+        let places = udp_places(running.id());
+        assert_eq!(places.len(), 3, "{places:?}");
+        let own = u32::from_ne_bytes([127, 0, 0, 1]);
+        let group = u32::from_ne_bytes([239, 255, 0, 1]);
+        for place in &places {
+            let (address, _) = place.split_once(':').unwrap();
+            let address = u32::from_str_radix(address, 16).unwrap();
+            assert!([own, group].contains(&address), "{places:?}");
+        }
+    });
 }
 
 /// Resident memory of a process in MB.
@@ -369,29 +376,31 @@ async fn dds_by_other_authors_hears_ours_and_is_heard() {
 
 #[test]
 fn it_is_off_unless_a_person_wants_it() {
-    if !Path::new("/proc/self/net/udp").exists() {
-        return skipped("sockets of a process", "this system does not list them");
-    }
-    let dds: &[&str] = &["--dds", "--domain", "44"];
-    for (words, ready) in [
-        (&["share", "--tcp", "127.0.0.1:0"][..], "ready tcp "),
-        (&["follow", "--tcp", "127.0.0.1:0"], "ready tcp "),
-    ] {
-        let mut running = start(&[words, &["--hand", "sim:"]].concat());
-        assert!(running.line().starts_with(ready));
-        assert_eq!(udp_places(running.id()), [""; 0], "{words:?}");
-    }
-    for words in [
-        &["share"][..],
-        &["share", "--tcp", "127.0.0.1:0"],
-        &["follow"],
-    ] {
-        let mut running = start(&[words, &["--hand", "sim:"], dds].concat());
-        running.until(|line| line == "ready dds 127.0.0.1");
-        assert!(!udp_places(running.id()).is_empty(), "{words:?}");
-        running.signal(Signal::SIGINT);
-        running.end().ok();
-    }
+    unless_busy(|| {
+        if !Path::new("/proc/self/net/udp").exists() {
+            return skipped("sockets of a process", "this system does not list them");
+        }
+        let dds: &[&str] = &["--dds", "--domain", "44"];
+        for (words, ready) in [
+            (&["share", "--tcp", "127.0.0.1:0"][..], "ready tcp "),
+            (&["follow", "--tcp", "127.0.0.1:0"], "ready tcp "),
+        ] {
+            let mut running = start(&[words, &["--hand", "sim:"]].concat());
+            assert!(running.line().starts_with(ready));
+            assert_eq!(udp_places(running.id()), [""; 0], "{words:?}");
+        }
+        for words in [
+            &["share"][..],
+            &["share", "--tcp", "127.0.0.1:0"],
+            &["follow"],
+        ] {
+            let mut running = start(&[words, &["--hand", "sim:"], dds].concat());
+            running.until(|line| line == "ready dds 127.0.0.1");
+            assert!(!udp_places(running.id()).is_empty(), "{words:?}");
+            running.signal(Signal::SIGINT);
+            running.end().ok();
+        }
+    });
 }
 
 /// Where Unitree's stack and our program meet: a network of their own if there can be one.
@@ -507,38 +516,40 @@ fn followed(told: &Value) -> f64 {
 
 #[test]
 fn unitrees_own_stack_reads_and_moves_the_hand_also_after_either_side_was_killed() {
-    let Some(meeting) = Meeting::new() else {
-        return skipped("cyclonedds", "no Python here has CycloneDDS 0.10.2");
-    };
-    let (mut ours, mut person) = meeting.follow();
-    let mut theirs = meeting.unitree(COMMANDS, 1);
-    let once = round(&mut ours, &mut theirs);
-    theirs.end().ok();
-    let all = COMMANDS as f64;
-    assert!(once >= ARRIVE * all, "{once}");
-    let stopped = "fell silent: the hand was stopped";
-    assert!(ours.complaint().contains(stopped));
-    // Theirs is killed in the middle, and the hand is stopped until a person lets it go on.
-    person.write_all(b"\n").unwrap();
-    let mut theirs = meeting.unitree(100_000, 1);
-    theirs.line();
-    ours.until(|line| object(line)["phase"] == "following");
-    theirs.kill();
-    let before = followed(&object(
-        &ours.until(|line| object(line)["phase"] == "waiting"),
-    ));
-    assert!(ours.complaint().contains(stopped));
-    person.write_all(b"\n").unwrap();
-    let mut theirs = meeting.unitree(COMMANDS, 2);
-    let again = round(&mut ours, &mut theirs) - before;
-    assert!(again >= ARRIVE * all, "{again}");
-    // Ours is killed; theirs goes on and meets the next.
-    ours.kill();
-    // Long enough for theirs to see that nobody tells states.
-    std::thread::sleep(Duration::from_secs(1));
-    let (mut ours, _person) = meeting.follow();
-    let last = round(&mut ours, &mut theirs);
-    theirs.end().ok();
-    assert!(last >= ARRIVE * all, "{last}");
-    println!("followed {once}, {again}, {last} of {all}");
+    unless_busy(|| {
+        let Some(meeting) = Meeting::new() else {
+            return skipped("cyclonedds", "no Python here has CycloneDDS 0.10.2");
+        };
+        let (mut ours, mut person) = meeting.follow();
+        let mut theirs = meeting.unitree(COMMANDS, 1);
+        let once = round(&mut ours, &mut theirs);
+        theirs.end().ok();
+        let all = COMMANDS as f64;
+        assert!(once >= ARRIVE * all, "{once}");
+        let stopped = "fell silent: the hand was stopped";
+        assert!(ours.complaint().contains(stopped));
+        // Theirs is killed in the middle, and the hand is stopped until a person lets it go on.
+        person.write_all(b"\n").unwrap();
+        let mut theirs = meeting.unitree(100_000, 1);
+        theirs.line();
+        ours.until(|line| object(line)["phase"] == "following");
+        theirs.kill();
+        let before = followed(&object(
+            &ours.until(|line| object(line)["phase"] == "waiting"),
+        ));
+        assert!(ours.complaint().contains(stopped));
+        person.write_all(b"\n").unwrap();
+        let mut theirs = meeting.unitree(COMMANDS, 2);
+        let again = round(&mut ours, &mut theirs) - before;
+        assert!(again >= ARRIVE * all, "{again}");
+        // Ours is killed; theirs goes on and meets the next.
+        ours.kill();
+        // Long enough for theirs to see that nobody tells states.
+        std::thread::sleep(Duration::from_secs(1));
+        let (mut ours, _person) = meeting.follow();
+        let last = round(&mut ours, &mut theirs);
+        theirs.end().ok();
+        assert!(last >= ARRIVE * all, "{last}");
+        println!("followed {once}, {again}, {last} of {all}");
+    });
 }

@@ -236,6 +236,8 @@ pub(crate) struct OtherHand {
     joints: PerDof<Joint>,
     memory: Vec<u8>,
     now_ms: u64,
+    /// When the joints, and the fingertips, were last put into the memory.
+    published_ms: [u64; 2],
     /// The highest true force of each close that is over, g, of all joints.
     pub(crate) peaks_g: Vec<f64>,
 }
@@ -256,6 +258,7 @@ impl OtherHand {
             joints: PerDof::from_fn(joint),
             memory: vec![0; 4096],
             now_ms: 0,
+            published_ms: [u64::MAX; 2],
             peaks_g: Vec::new(),
         };
         for n in 0..6 {
@@ -303,33 +306,48 @@ impl OtherHand {
         }
     }
 
-    pub(crate) fn read(&mut self, span: Span, now: Moment) -> Vec<u8> {
-        self.advance_to(now);
-        let from = usize::from(span.address);
-        let reads_tips = from + usize::from(span.len) > TACTILE;
+    fn publish_joints(&mut self) {
         for (n, dof) in Dof::ALL.into_iter().enumerate() {
-            let joint = self.joints[dof].clone();
-            self.put(ANGLE + 2 * n, joint.at);
-            self.put(POSITION + 2 * n, (1000.0 - joint.at) * 2.0);
-            self.put(FORCE + 2 * n, joint.reads_g());
-            self.put(CURRENT + 2 * n, 10.0 + joint.velocity.abs().min(100.0));
+            let joint = &self.joints[dof];
+            let (at, velocity, doing) = (joint.at, joint.velocity, joint.doing);
+            let reads_g = joint.reads_g();
+            self.put(ANGLE + 2 * n, at);
+            self.put(POSITION + 2 * n, (1000.0 - at) * 2.0);
+            self.put(FORCE + 2 * n, reads_g);
+            self.put(CURRENT + 2 * n, 10.0 + velocity.abs().min(100.0));
             self.memory[FAULTS + n] = 0;
-            self.memory[STATUS + n] = match joint.doing {
+            self.memory[STATUS + n] = match doing {
                 Doing::Opens => 0,
                 Doing::Closes => 1,
                 Doing::InPlace => 2,
                 Doing::Held => 3,
             };
             self.memory[TEMPERATURE + n] = 30;
-            if n < 5 && reads_tips {
-                let normal = (joint.force_g * N_PER_G) as f32;
-                let at = TACTILE + TIP_BYTES * n;
-                self.memory[at + 32..at + 36].copy_from_slice(&normal.to_le_bytes());
-                let tangential = normal * 0.2;
-                self.memory[at + 40..at + 44].copy_from_slice(&tangential.to_le_bytes());
-                let sum: u16 = self.memory[at..at + 54].iter().map(|b| u16::from(*b)).sum();
-                self.memory[at + 54..at + 56].copy_from_slice(&sum.to_le_bytes());
-            }
+        }
+    }
+
+    fn publish_tips(&mut self) {
+        for (n, dof) in Dof::ALL.into_iter().enumerate().take(5) {
+            let normal = (self.joints[dof].force_g * N_PER_G) as f32;
+            let at = TACTILE + TIP_BYTES * n;
+            self.memory[at + 32..at + 36].copy_from_slice(&normal.to_le_bytes());
+            let tangential = normal * 0.2;
+            self.memory[at + 40..at + 44].copy_from_slice(&tangential.to_le_bytes());
+            let sum: u16 = self.memory[at..at + 54].iter().map(|b| u16::from(*b)).sum();
+            self.memory[at + 54..at + 56].copy_from_slice(&sum.to_le_bytes());
+        }
+    }
+
+    pub(crate) fn read(&mut self, span: Span, now: Moment) -> Vec<u8> {
+        self.advance_to(now);
+        let from = usize::from(span.address);
+        if self.published_ms[0] != self.now_ms {
+            self.published_ms[0] = self.now_ms;
+            self.publish_joints();
+        }
+        if from + usize::from(span.len) > TACTILE && self.published_ms[1] != self.now_ms {
+            self.published_ms[1] = self.now_ms;
+            self.publish_tips();
         }
         self.memory[from..from + usize::from(span.len)].to_vec()
     }
