@@ -25,7 +25,7 @@
 //! | 4 | [`exhibit`] | a hand that strangers may touch: its file, PIN, heat, what happens when, the day's report |
 //! | 5 | [`tasks`] | what takes several steps at a hand, for window and command line: read, apply, save, relocate, reset, calibrate, series, check-up, play, follow, exhibit |
 //! | 6 | [`app`] | everything the program knows, without drawing |
-//! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, the rasteriser |
+//! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, plot lines, the rasteriser |
 //! | 8 | [`ui`] | the window: reads state, returns actions |
 //! | 9 | [`shell`] | program and window as one thing: the real window, with OpenGL or without; pictures without a display |
 //! | 10 | [`cli`] | the command line |

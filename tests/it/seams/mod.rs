@@ -163,7 +163,7 @@ fn begun(cell: impl Fn() -> Seen) -> Seen {
     (1..BEGINS).find_map(|_| tried()).unwrap_or_else(&cell)
 }
 
-/// Tries a cell, again where this computer stalled meanwhile: what is wrong, if something is.
+/// Tries a cell, again where this computer was busy meanwhile: what is wrong, if something is.
 fn told(cell: impl FnMut()) -> Result<(), String> {
     let tried = catch_unwind(AssertUnwindSafe(|| unless_busy(cell)));
     tried.map_err(|panic| {

@@ -1,10 +1,10 @@
 //! The window in front of a hand on every wire there is: real ports and sockets, real time, no display. It shows what the
 //! hand says and writes nothing. CAN is tried where this machine has `vcan0`.
 
-#[cfg(target_os = "linux")]
 use crate::setup::busy::unless_busy;
 use crate::setup::hand::free;
 use crate::setup::program::{Program, env};
+#[cfg(target_os = "linux")]
 use crate::setup::skipped::can_interface;
 use crate::setup::time::Time;
 use handscope::app::settings::Settings;

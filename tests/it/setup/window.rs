@@ -35,7 +35,7 @@ pub(crate) use egui::accesskit::Role;
 pub(crate) const LARGE: Vec2 = vec2(1440.0, 900.0);
 /// Virtual time of one frame.
 pub(crate) const FRAME_MS: u64 = 20;
-/// While a person only waits, one frame of so many is drawn: fewer, and a key that is held would count as let go by a window that hangs.
+/// While a person only waits, one frame of so many is drawn. With far fewer, the window would count as hung.
 const DRAWN_EACH: u64 = 12;
 /// And so many of the last ones: what one frame brings, the next shows.
 const LAST_DRAWN: u64 = 2;
