@@ -8,10 +8,9 @@ use crate::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandSample, Moment, PerDof, Setpoints,
     Target, TemperatureReading,
 };
-use crate::record::SetpointConflict;
+use crate::record::Abort;
 use crate::trials::Limits;
-use crate::trials::limits::{Abort, Feedback, LinkView, reason, warmest};
-use crate::trials::series::{Series, SeriesOrder};
+use crate::trials::limits::{Feedback, Stall, reason, warmest};
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -117,8 +116,6 @@ pub struct Checkup {
     figures: Figures,
     free: FreeForce,
     plan: CheckupPlan,
-    /// What another was seen to write until the hand was disarmed.
-    foreign: Option<SetpointConflict>,
     is_over: bool,
     aborted: Option<Abort>,
 }
@@ -130,7 +127,6 @@ impl Checkup {
         Self {
             epoch,
             plan,
-            foreign: None,
             total: left.len(),
             left,
             running: None,
@@ -181,14 +177,13 @@ impl Checkup {
         all.filter(|(dof, _)| !self.may_move(*dof)).collect()
     }
 
-    fn fail(&mut self, why: Abort) -> SeriesOrder {
+    fn fail(&mut self, why: Abort) {
         self.aborted.get_or_insert(why);
         self.is_over = true;
         self.running = None;
-        SeriesOrder::Stop
     }
 
-    fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
+    fn next(&mut self, now: Moment) -> Option<Setpoints> {
         let Some(step) = self.left.pop_front() else {
             self.is_over = true;
             return None;
@@ -219,14 +214,12 @@ impl Checkup {
             pose: None,
         });
         match stage {
-            Stage::Confirming { .. } => Some(SeriesOrder::Set(Setpoints {
+            Stage::Confirming { .. } => Some(Setpoints {
                 force: forces,
                 speed: targets.map(|target| target.map(|_| step.speed())),
                 ..Setpoints::none(self.epoch)
-            })),
-            // Nobody is to touch a hand that may move.
-            Stage::Pressing { .. } => Some(SeriesOrder::Disarm),
-            Stage::Moving | Stage::Resting => None,
+            }),
+            Stage::Pressing { .. } | Stage::Moving | Stage::Resting => None,
         }
     }
 
@@ -256,7 +249,7 @@ impl Checkup {
     }
 
     /// Begins the step anew with thresholds above the zero, for joints that their own offset stopped.
-    fn raise(&mut self, now: Moment) -> Option<SeriesOrder> {
+    fn raise(&mut self, now: Moment) -> Option<Setpoints> {
         let running = self.running.as_ref()?;
         let (step, (_, pose)) = (running.record.step, running.pose?);
         let stopped = |dof| self.stopped_by_offset(running, dof).unwrap_or_default();
@@ -276,7 +269,7 @@ impl Checkup {
         self.next(now)
     }
 
-    fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<SeriesOrder> {
+    fn confirm(&mut self, sample: &HandSample, since: Moment, now: Moment) -> Option<Setpoints> {
         let running = self.running.as_ref()?;
         let targets = running.targets;
         let speed = running.record.step.speed();
@@ -288,16 +281,18 @@ impl Checkup {
         };
         let mut moved = Dof::ALL.into_iter().filter(|dof| targets[*dof].is_some());
         if let Some(dof) = moved.find(|dof| !holds(*dof)) {
-            let is_late = now.since(since) >= CONFIRMS_WITHIN;
-            return is_late.then(|| self.fail(Abort::LimitsRefused { dof }));
+            if now.since(since) >= CONFIRMS_WITHIN {
+                self.fail(Abort::LimitsRefused { dof });
+            }
+            return None;
         }
         let running = self.running.as_mut()?;
         running.stage = Stage::Moving;
         running.record.told = now;
-        Some(SeriesOrder::Set(Setpoints {
+        Some(Setpoints {
             angle: targets.map(|target| target.map(Target::Go)),
             ..Setpoints::none(self.epoch)
-        }))
+        })
     }
 
     fn close_step(&mut self, sample: &HandSample) {
@@ -336,18 +331,15 @@ impl Checkup {
         })
     }
 
-    /// The same while fingertips are pressed: the hand is not armed, and nobody else may close it on who presses.
-    fn tick_press(&mut self, link: LinkView, now: Moment) -> Option<SeriesOrder> {
-        if !link.state.is_live() {
-            return Some(self.fail(Abort::LinkLost));
-        }
-        if link.armed.is_some_and(|epoch| epoch != self.epoch) {
-            return Some(self.fail(Abort::ArmedAnew));
-        }
-        if link.foreign_setpoint != self.foreign {
-            let wrote = link.foreign_setpoint;
-            return Some(self.fail(Abort::OtherController { wrote }));
-        }
+    /// True while fingertips are to be pressed: the hand must not be armed then, so that it cannot close on the user.
+    pub fn is_pressing(&self) -> bool {
+        matches!(
+            self.running.as_ref().map(|own| own.stage),
+            Some(Stage::Pressing { .. })
+        )
+    }
+
+    fn tick_press(&mut self, now: Moment) -> Option<Setpoints> {
         let running = self.running.as_ref()?;
         let Stage::Pressing { last } = running.stage else {
             return None;
@@ -359,11 +351,7 @@ impl Checkup {
         if let Some(running) = self.running.take() {
             self.figures.add(&running.record);
         }
-        match self.next(now) {
-            // It is not armed any more.
-            Some(SeriesOrder::Disarm) | None => None,
-            Some(order) => Some(order),
-        }
+        self.next(now)
     }
 
     /// Takes a reading of the fingertip that is to be pressed.
@@ -392,20 +380,26 @@ fn threshold(zero_g: f64) -> Force {
     Force::nearest(grams.clamp(LEAST_G, Force::GENTLE.get().into()))
 }
 
-impl Series for Checkup {
-    fn is_over(&self) -> bool {
+impl Checkup {
+    /// True once nothing is sent any more.
+    pub const fn is_over(&self) -> bool {
         self.is_over
     }
 
-    fn aborted(&self) -> Option<Abort> {
+    /// Why it ended early, if it did. The hand is to be stopped then.
+    pub const fn aborted(&self) -> Option<Abort> {
         self.aborted
     }
 
-    fn end(&mut self, why: Abort, _now: Moment) -> Option<SeriesOrder> {
-        (!self.is_over).then(|| self.fail(why))
+    /// Ends it early, if it is not over.
+    pub fn abort(&mut self, why: Abort) {
+        if !self.is_over {
+            self.fail(why);
+        }
     }
 
-    fn take(&mut self, sample: &HandSample, fresh: Groups) {
+    /// Receives readings.
+    pub fn read(&mut self, sample: &HandSample, fresh: Groups) {
         if fresh.contains(Group::Force)
             && let Some(force) = sample.force
         {
@@ -440,21 +434,28 @@ impl Series for Checkup {
         }
     }
 
-    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder> {
+    /// Advances the time. Returns what to send now, if anything. `stall` is the last time in which this program did not run.
+    pub fn tick(
+        &mut self,
+        sample: &HandSample,
+        stall: Option<Stall>,
+        now: Moment,
+    ) -> Option<Setpoints> {
         if self.is_over {
             return None;
         }
         if let Some(Step::Press(_)) = self.running.as_ref().map(|own| own.record.step) {
-            return self.tick_press(link, now);
+            return self.tick_press(now);
         }
-        self.foreign = link.foreign_setpoint;
         let seen = Feedback {
             sample,
             rest_g: &self.zero_g,
+            stall,
             now,
         };
-        if let Some(why) = reason(link, self.epoch, &seen, &LIMITS) {
-            return Some(self.fail(why));
+        if let Some(why) = reason(&seen, &LIMITS) {
+            self.fail(why);
+            return None;
         }
         if self.zero_g.iter().any(|(_, zero)| zero.is_none()) {
             return None;
@@ -463,11 +464,12 @@ impl Series for Checkup {
             let warm = warmest(sample).filter(|(_, celsius)| *celsius >= LIMITS.start_c);
             if let Some((dof, celsius)) = warm.filter(|_| self.left.len() == self.total) {
                 let limit = LIMITS.start_c;
-                return Some(self.fail(Abort::TooWarm {
+                self.fail(Abort::TooWarm {
                     dof,
                     celsius,
                     limit,
-                }));
+                });
+                return None;
             }
             return self.next(now);
         };
@@ -500,10 +502,12 @@ impl Series for Checkup {
         }
         if let Some(dof) = blocked {
             let target = Angle::MAX.get();
-            return Some(self.fail(Abort::Unreached { dof, target }));
+            self.fail(Abort::Unreached { dof, target });
+            return None;
         }
         if let Some(why) = self.met() {
-            return Some(self.fail(why));
+            self.fail(why);
+            return None;
         }
         self.close_step(sample);
         self.next(now)

@@ -1,20 +1,19 @@
 //! `grip`: a grip by size on any hand. It moves the hand, so it requires `--arm`.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{Out, say};
+use crate::cli::out::Out;
 use crate::cli::parse::{hand, moving_speed, rated_force};
 use crate::cli::session;
-use crate::cli::trial::drive::ArmedHand;
+use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::PerDof;
 use crate::hand::gap::{Gap, GripKind, HeldSize, SizeBlocks};
 use crate::hand::{Force, Speed};
 use crate::link::ArmRequest;
-use crate::link::Stop;
-use crate::poses::player::PlayEnd;
+use crate::record::Abort;
+use crate::tasks::drive::{STOP_LOST, stop_words};
 use crate::tasks::grip::{self, GripEnd, GripReport, GripStart};
-use crate::tasks::series::{STOP_LOST, stop_words};
+use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
-use crate::trials::limits::Abort;
 use anyhow::bail;
 use clap::Args;
 use serde_json::{Value, json};
@@ -91,17 +90,11 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
         gap: args.gap,
         speed: args.speed,
         force: args.force,
-        epoch: hand.epoch,
-        lease: hand.lease,
-        seen: hand.seen,
         grip: session::grip_estimator(&args.hand),
-        clock: hand.clock,
     };
-    let report = grip::grip(&hand.link, start, hand.interrupt.wished()).await;
-    if report.stop == Some(Stop::NotConfirmed) {
-        say(session::NOT_CONFIRMED);
-    }
-    hand.disarm().await;
+    let ends = by_user(&mut hand.interrupt);
+    let report = grip::grip(&hand.link, hand.armed, start, ends).await;
+    hand.let_go(report.stop).await;
     Ok(report)
 }
 
@@ -118,7 +111,7 @@ fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
     };
     let pads = format!("the pads are about {:.0} mm apart, by the model", gap.mm);
     match blocks.size(gap) {
-        _ if report.end != GripEnd::Held => pads,
+        _ if report.end != Ok(GripEnd::Held) => pads,
         HeldSize::Block(mm) => format!("about {mm:.0} mm, measured with two blocks"),
         HeldSize::Ball(mm) => format!("a ball would have about {mm:.0} mm; {pads}"),
         HeldSize::Pads(_) => format!("{pads}, and their edges may be what touches"),
@@ -129,75 +122,51 @@ fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
 fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<String, String> {
     let (asked, held) = (args.gap.mm(), held(report, blocks));
     match report.end {
-        GripEnd::Held => Ok(format!("holds something: {held}")),
-        GripEnd::Reached => Ok(format!("at {asked} mm and holds nothing: {held}")),
-        GripEnd::Stopped => Err(format!(
+        Ok(GripEnd::Held) => Ok(format!("holds something: {held}")),
+        Ok(GripEnd::Reached) => Ok(format!("at {asked} mm and holds nothing: {held}")),
+        Ok(GripEnd::Stopped) => Err(format!(
             "something stopped the hand before {asked} mm, and thumb and index do not hold it: {held}"
         )),
-        GripEnd::NotOpened => Err(
+        Ok(GripEnd::NotOpened) => Err(
             "something is in the way of thumb or fingers, so the hand did not open for the grip"
                 .into(),
         ),
-        GripEnd::Late => Err("the hand did not get there in time".into()),
-        GripEnd::Person => Err("ended by a person".into()),
-        GripEnd::OtherWrote => {
-            let wrote = report.foreign;
-            let other = Abort::OtherController { wrote };
-            Err(format!("{other}: let one of them move the hand"))
+        Ok(GripEnd::Late) => Err("the hand did not get there in time".into()),
+        Err(why @ Abort::OtherController { .. }) => {
+            Err(format!("{why}: let one of them move the hand"))
         }
-        GripEnd::Broken(why) => Err(match report.disarmed {
-            Some(disarmed) => format!("{}: {disarmed}", broken(why)),
-            None => broken(why).into(),
-        }),
+        Err(why @ Abort::Fault { .. }) => {
+            Err(format!("{why}: 'handscope doctor' says what it means"))
+        }
+        Err(Abort::LinkLost) => Err(STOP_LOST.into()),
+        Err(why) => Err(why.to_string()),
     }
 }
 
-const fn broken(why: PlayEnd) -> &'static str {
-    match why {
-        PlayEnd::Fault => "a drive reported a fault: 'handscope doctor' says which",
-        PlayEnd::LinkLost => STOP_LOST,
-        PlayEnd::TakenOver => "another moves the hand now",
-        PlayEnd::Finished
-        | PlayEnd::Person
-        | PlayEnd::NotHolding(_)
-        | PlayEnd::Locked
-        | PlayEnd::Disarmed => "the hand was disarmed meanwhile",
-    }
-}
-
-const fn end_name(end: GripEnd) -> &'static str {
+const fn end_name(end: Ended<GripEnd>) -> &'static str {
     match end {
-        GripEnd::Held => "held",
-        GripEnd::Reached => "reached",
-        GripEnd::Stopped => "stopped",
-        GripEnd::NotOpened => "not_opened",
-        GripEnd::Late => "late",
-        GripEnd::Person => "person",
-        GripEnd::OtherWrote => "taken_over",
-        GripEnd::Broken(PlayEnd::Fault) => "fault",
-        GripEnd::Broken(PlayEnd::LinkLost) => "link_lost",
-        GripEnd::Broken(PlayEnd::TakenOver) => "taken_over",
-        GripEnd::Broken(
-            PlayEnd::Finished
-            | PlayEnd::Person
-            | PlayEnd::NotHolding(_)
-            | PlayEnd::Locked
-            | PlayEnd::Disarmed,
-        ) => "disarmed",
+        Ok(GripEnd::Held) => "held",
+        Ok(GripEnd::Reached) => "reached",
+        Ok(GripEnd::Stopped) => "stopped",
+        Ok(GripEnd::NotOpened) => "not_opened",
+        Ok(GripEnd::Late) => "late",
+        Err(Abort::Person) => "person",
+        Err(Abort::OtherController { .. } | Abort::TakenOver) => "taken_over",
+        Err(Abort::Fault { .. }) => "fault",
+        Err(Abort::LinkLost) => "link_lost",
+        // The other reasons disarm, or are those of trials.
+        Err(_) => "disarmed",
     }
 }
 
 /// The result: `{"grip": {…}}`. What is not known is null.
 fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
-    let held = report.gap.filter(|_| report.end == GripEnd::Held);
+    let held = report.gap.filter(|_| report.end == Ok(GripEnd::Held));
     let size = held.map(|gap| match blocks.size(gap) {
         HeldSize::Block(mm) => (Some(mm), "blocks", Some("block")),
         HeldSize::Ball(mm) => (Some(mm), "model", Some("ball")),
         HeldSize::Pads(_) => (None, "model", None),
     });
-    let confirmed = report
-        .stop
-        .map(|stop| matches!(stop, Stop::Confirmed { .. }));
     json!({ "grip": {
         "hand": args.hand.to_string(),
         "kind": args.kind,
@@ -208,6 +177,6 @@ fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
         "size_by": size.map(|(_, by, _)| by),
         "size_of": size.and_then(|(.., shape)| shape),
         "state": report.grip.grasp.state,
-        "stop_confirmed": confirmed,
+        "stop": report.stop,
     }})
 }

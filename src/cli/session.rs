@@ -11,7 +11,7 @@ use crate::link::{
     Stop,
 };
 use crate::record::{Disarmed, LinkState};
-use crate::tasks::series::STOP_LOST;
+use crate::tasks::drive::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;

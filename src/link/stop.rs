@@ -2,6 +2,7 @@
 
 use crate::link::status::LinkStatus;
 use crate::record::Hold;
+use serde::ser::SerializeStruct as _;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
@@ -29,6 +30,20 @@ pub enum Stop {
     NotConfirmed,
     /// The link is gone, and did not come back in time.
     LinkLost,
+}
+
+/// The same in JSON everywhere: `{"confirmed": true, "after_s": 0.12}`.
+impl serde::Serialize for Stop {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let after_s = match self {
+            Self::Confirmed { after } => Some(after.as_secs_f64()),
+            Self::NotConfirmed | Self::LinkLost => None,
+        };
+        let mut fields = serializer.serialize_struct("Stop", 2)?;
+        fields.serialize_field("confirmed", &after_s.is_some())?;
+        fields.serialize_field("after_s", &after_s)?;
+        fields.end()
+    }
 }
 
 /// Waits until feedback says how a stop went that was asked for just now.

@@ -8,6 +8,7 @@ use crate::poses::library::{
 };
 use crate::poses::reaction::TouchForce;
 use crate::poses::way::{Targets, WayPart, pinch_way, way};
+use crate::record::Abort;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -178,20 +179,13 @@ impl PoseLibrary {
     }
 }
 
-/// Why a sequence is over. Nothing starts it again but the user.
+/// How a sequence ended that nothing aborted. The hand stays armed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlayEnd {
     /// Every step was played.
     Finished,
     /// The user ended it.
     Person,
-    /// Stop, or disarming.
-    Disarmed,
-    /// A drive reported a fault.
-    Fault,
-    LinkLost,
-    /// The user moved the hand in another way.
-    TakenOver,
     /// A step waited for a grip that did not come in time; this was the grip then.
     NotHolding(GripState),
     /// A joint is locked without which there is no grip by size.
@@ -211,8 +205,8 @@ pub enum PlayPhase {
     Dwelling { since: Moment },
     /// The user paused it, or the one step that was asked for is done.
     Paused,
-    /// Over.
-    Ended(PlayEnd),
+    /// Over. Only the user starts it again.
+    Ended(Result<PlayEnd, Abort>),
 }
 
 /// Whether a sequence goes on by itself.
@@ -269,7 +263,7 @@ impl Player {
     pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let mut view = PlayView::first(now);
         if cues.is_empty() {
-            view.phase = PlayPhase::Ended(PlayEnd::Finished);
+            view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
         }
         Self {
             parts: VecDeque::new(),
@@ -417,7 +411,7 @@ impl Player {
             self.view.phase = PlayPhase::Opening { since: now };
             self.due = true;
         } else if now.since(since) >= until.within.duration() {
-            self.end(PlayEnd::NotHolding(grasp.state));
+            self.end(Ok(PlayEnd::NotHolding(grasp.state)));
         }
     }
 
@@ -439,7 +433,7 @@ impl Player {
         } else if self.looped {
             self.view.at = 0;
         } else {
-            self.view.phase = PlayPhase::Ended(PlayEnd::Finished);
+            self.view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
             return;
         }
         self.view.retries = 0;
@@ -482,9 +476,9 @@ impl Player {
     }
 
     /// Ends it, for good. The first reason stays.
-    pub const fn end(&mut self, why: PlayEnd) {
+    pub const fn end(&mut self, how: Result<PlayEnd, Abort>) {
         if !self.is_over() {
-            self.view.phase = PlayPhase::Ended(why);
+            self.view.phase = PlayPhase::Ended(how);
             self.due = false;
         }
     }

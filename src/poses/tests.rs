@@ -10,6 +10,7 @@ use crate::poses::library::{
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, Player};
 use crate::poses::preview::Preview;
 use crate::poses::way::WayPart;
+use crate::record::Abort;
 use proptest::prelude::*;
 use std::time::Duration;
 
@@ -238,11 +239,11 @@ fn only_holding_ends_a_wait_and_what_is_there_instead_is_told() {
         match state {
             GripState::Holding => {
                 assert!(matches!(at_once, (false, PlayPhase::Dwelling { .. })));
-                assert_eq!(end.1, PlayPhase::Ended(PlayEnd::Finished));
+                assert_eq!(end.1, PlayPhase::Ended(Ok(PlayEnd::Finished)));
             }
             GripState::Empty => assert!(matches!(end.1, PlayPhase::Opening { .. })),
             _ => {
-                let why = PlayPhase::Ended(PlayEnd::NotHolding(state));
+                let why = PlayPhase::Ended(Ok(PlayEnd::NotHolding(state)));
                 assert_eq!((at_once.0, end), (false, (false, why)));
             }
         }
@@ -350,12 +351,12 @@ fn one_step_pauses_and_only_a_person_goes_on() {
         tick(&mut player, 100_500, 0).is_some(),
         "the same pose again"
     );
-    player.end(PlayEnd::Fault);
+    player.end(Err(Abort::LinkLost));
     player.resume(PlayMode::Through, ms(100_600));
-    player.end(PlayEnd::Person);
+    player.end(Ok(PlayEnd::Person));
     assert_eq!(
         player.view().phase,
-        PlayPhase::Ended(PlayEnd::Fault),
+        PlayPhase::Ended(Err(Abort::LinkLost)),
         "the first reason stays"
     );
     assert_eq!(tick(&mut player, 100_700, 1000), None);

@@ -1,5 +1,6 @@
 //! What happened at a hand, as typed values that a file can hold.
 
+pub mod abort;
 pub mod entry;
 pub mod export;
 pub mod file;
@@ -11,6 +12,7 @@ pub mod state;
 pub mod wire;
 pub mod write;
 
+pub use crate::record::abort::Abort;
 pub use crate::record::entry::{Entry, Event, EventKind, LinkReport};
 pub use crate::record::heard::Record;
 pub use crate::record::quirk_sheet::{Fact, QuirkSheet};

@@ -13,8 +13,8 @@ use crate::link::{Clock, LinkObserver};
 use crate::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use crate::store::calendar::{since_1970, stamp};
 use crate::store::{create_folder, replace};
+use crate::tasks::drive::{Driven, stop_words};
 use crate::tasks::recording::record;
-use crate::tasks::series::{SeriesReport, stop_words};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -130,10 +130,8 @@ pub struct CheckupRecording {
 /// A check-up that is over.
 #[derive(Debug)]
 pub struct EndedCheckup {
-    /// What was measured.
-    pub checkup: Checkup,
-    /// How it ended.
-    pub report: SeriesReport,
+    /// What was measured, and how it ended.
+    pub driven: Driven<Checkup>,
     /// Its recording.
     pub recording: Option<CheckupRecording>,
 }
@@ -151,8 +149,13 @@ impl CheckupFiles {
     /// Judges a check-up that is over, keeps it, and writes its report. Waits for the disk.
     pub fn conclude(&self, ended: EndedCheckup) -> ConcludedCheckup {
         let at = stamp(since_1970());
-        let measured = ended.checkup.measured();
-        let why = ended.report.aborted;
+        let Driven {
+            program: checkup,
+            end,
+            stop,
+        } = ended.driven;
+        let measured = checkup.measured();
+        let why = end.err();
         let recorded = ended.recording.is_some();
         if let Some(recording) = ended.recording {
             let _ended = recording.recorder.end();
@@ -165,11 +168,11 @@ impl CheckupFiles {
             hand: self.hand.to_string(),
             simulated: self.hand.is_sim(),
             aborted: why,
-            aborted_words: why.map(|why| format!("{why}{}", stop_words(ended.report.stop))),
+            aborted_words: why.map(|why| format!("{why}{}", stop_words(stop))),
             earlier: earlier.len(),
             checks: checks(measured.clone(), &at, &earlier),
             at,
-            left_alone: ended.checkup.left_alone(),
+            left_alone: checkup.left_alone(),
             keeping: Keeping::BuiltIn,
             usage: self.usage(),
             recorded,
@@ -178,7 +181,7 @@ impl CheckupFiles {
             Some(error) => Keeping::Failed {
                 error: error.to_string(),
             },
-            None => self.keep(&report, measured, ended.checkup.free_force()),
+            None => self.keep(&report, measured, checkup.free_force()),
         };
         let written = self
             .report

@@ -9,6 +9,7 @@ use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, Owner};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Disarmed, Record};
+use crate::tasks::drive::Armed;
 use crate::tasks::hand::TaskHand;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
@@ -218,11 +219,13 @@ impl<H: TaskHand> ExhibitTask<'_, H> {
         let start = PlayStart {
             plan,
             pace: PlayMode::Through,
+            locked: self.locked,
+            grip: self.grip.clone(),
+        };
+        let armed = Armed {
             epoch,
             lease,
-            locked: self.locked,
             seen: self.sample,
-            grip: self.grip.clone(),
             clock: self.clock,
         };
         let (commands, wanted) = mpsc::channel(1);
@@ -236,7 +239,7 @@ impl<H: TaskHand> ExhibitTask<'_, H> {
                     });
                 }
             };
-            let _end = play(&hand, start, wanted, tell).await;
+            let _end = play(&hand, armed, start, wanted, tell).await;
         });
         self.playing = Some(PlayingPiece { commands, task });
     }

@@ -7,20 +7,17 @@ use crate::hand::{
     Angle, AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
+use crate::link::Stop;
 use crate::link::session::watch::other_controller::OtherController;
-use crate::link::{Clock, Lease, Stop};
-use crate::poses::player::PlayEnd;
 use crate::poses::way::{WayPart, pinch_way};
-use crate::record::{Disarmed, Record, Rest, SetpointConflict};
+use crate::record::{Abort, Rest};
+use crate::tasks::drive::{Armed, drive};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::play::reason;
+use crate::tasks::program::{Ended, Order, Program, Seen};
+use futures::Stream;
 use std::collections::VecDeque;
-use std::pin::pin;
 use std::time::Duration;
-use tokio::time::timeout;
 
-/// How often time is looked at where nothing is read.
-const TICK: Duration = Duration::from_millis(5);
 /// A part of the way is not judged before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
 /// Setpoints that are read back sooner after they were written may be those of before.
@@ -39,48 +36,30 @@ pub struct GripStart {
     pub speed: Speed,
     /// Force threshold of all joints.
     pub force: Force,
-    /// The arming that the user gave for it.
-    pub epoch: ArmEpoch,
-    /// The right to move the hand.
-    pub lease: Lease,
-    /// What was read until now.
-    pub seen: HandSample,
     /// What tells the grip.
     pub grip: GripEstimator,
-    /// The program's clock.
-    pub clock: Clock,
 }
 
-/// How a grip ended.
+/// How a grip ended that nothing aborted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GripEnd {
     /// Thumb and index hold something.
     Held,
     /// At the gap, and nothing is held.
     Reached,
-    /// Something stopped a joint before the gap, but it is not held by thumb and index.
+    /// Something stopped a joint before the gap, but it is not held by thumb and index. The hand was stopped.
     Stopped,
-    /// Something stopped a joint before the hand was open for the grip.
+    /// Something stopped a joint before the hand was open for the grip. The hand was stopped.
     NotOpened,
     /// It took too long. The hand was stopped.
     Late,
-    /// The user ended it. The hand was stopped.
-    Person,
-    /// Another controller wrote where the joints go or how fast, or talks to the hand. The hand was stopped.
-    OtherWrote,
-    /// The arming ended, a drive reported a fault, the link was lost, or another moves the hand.
-    Broken(PlayEnd),
 }
 
-/// What came of a grip.
+/// The result of a grip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripReport {
     /// How it ended.
-    pub end: GripEnd,
-    /// Why the hand was not armed any more then, if it was not.
-    pub disarmed: Option<Disarmed>,
-    /// What another controller was seen to write.
-    pub foreign: Option<SetpointConflict>,
+    pub end: Ended<GripEnd>,
     /// What is between the pads then, by the model; `None` where they do not face each other, or angles are old.
     pub gap: Option<PinchGap>,
     /// What the hand gripped then.
@@ -89,161 +68,139 @@ pub struct GripReport {
     pub stop: Option<Stop>,
 }
 
-/// Grips. `ended` resolves when the user ends it. At the end the hand is not armed any more, and keeps what it was told: it goes
-/// on pressing what it holds, up to the force threshold.
+/// Grips. At the end the hand is not armed any more. Of a grip that was [held](GripEnd::Held) or [reached](GripEnd::Reached) it keeps its
+/// targets: it goes on pressing what it holds, up to the force threshold.
 pub async fn grip<H: TaskHand>(
     hand: &H,
+    armed: Armed,
     start: GripStart,
-    ended: impl Future<Output = ()>,
+    ends: impl Stream<Item = Abort>,
 ) -> GripReport {
-    let mut records = hand.records();
-    let mut run = GripRun {
-        hand,
-        sample: start.seen,
-        estimator: start.grip.clone(),
+    let program = GripRun {
         setpoints: SentSetpoints::default(),
         legs: None,
-        sent: start.clock.now(),
+        sent: armed.clock.now(),
+        epoch: armed.epoch,
+        angles: None,
+        end: None,
         start,
     };
-    let mut ended = pin!(ended);
-    let end = loop {
-        tokio::select! {
-            biased;
-            () = &mut ended => break GripEnd::Person,
-            record = timeout(TICK, records.next()) => {
-                if let Ok(Some(Record::Reading { sample, fresh })) = record {
-                    run.take(*sample, fresh);
-                }
-            }
-        }
-        if let Some(end) = run.go_on() {
-            break end;
-        }
-    };
-    let disarmed = hand.status().disarmed;
-    let end = match (end, disarmed) {
-        (GripEnd::Broken(PlayEnd::Disarmed), Some(Disarmed::OtherController)) => {
-            GripEnd::OtherWrote
-        }
-        (end, _) => end,
-    };
-    let stop = match end {
-        GripEnd::Held | GripEnd::Reached => {
-            hand.disarm();
-            None
-        }
-        // Who has the hand now moves it.
-        GripEnd::Broken(PlayEnd::TakenOver) => None,
-        // Nothing goes on pressing what is not held, and what another wrote is no reason to go on.
-        GripEnd::Stopped
-        | GripEnd::NotOpened
-        | GripEnd::Late
-        | GripEnd::Person
-        | GripEnd::OtherWrote
-        | GripEnd::Broken(_) => Some(hand.stopped().await),
-    };
-    let foreign = run.setpoints.others.foreign;
+    let driven = drive(hand, armed, program, ends, |_, _| true).await;
+    let angles = driven.program.angles;
     GripReport {
-        end,
-        disarmed,
-        foreign: foreign.or(hand.status().foreign_setpoint),
-        gap: run
-            .angles()
-            .and_then(|angles| pinch_gap(&angles.map(f32::from))),
-        grip: run.estimator.grip(),
-        stop,
+        end: driven.end,
+        gap: angles.and_then(|angles| pinch_gap(&angles.map(f32::from))),
+        grip: driven.program.start.grip.grip(),
+        stop: driven.stop,
     }
 }
 
-struct GripRun<'a, H> {
-    hand: &'a H,
+struct GripRun {
     start: GripStart,
-    sample: HandSample,
-    estimator: GripEstimator,
+    epoch: ArmEpoch,
     setpoints: SentSetpoints,
     /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
     legs: Option<VecDeque<WayPart>>,
     /// When the part under way was sent.
     sent: Moment,
+    /// Where the joints were in the last step, if that was known.
+    angles: Option<PerDof<i16>>,
+    end: Option<Ended<GripEnd>>,
 }
 
-impl<H: TaskHand> GripRun<'_, H> {
-    fn take(&mut self, sample: HandSample, fresh: Groups) {
-        self.sample = sample;
-        self.setpoints.read(&self.sample, fresh);
-        self.estimator
-            .take(&self.sample, fresh, self.start.clock.now());
+impl Program for GripRun {
+    type Input = Abort;
+    type Outcome = GripEnd;
+
+    fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
+        self.abort(why, seen.now);
+        None
     }
 
-    /// Angles that are fresh enough to go by.
-    fn angles(&self) -> Option<PerDof<i16>> {
-        let now = self.start.clock.now();
-        let angle = self.sample.angle;
-        let fresh_for = self.hand.status().fresh_for();
-        let angle = angle.filter(|angle| angle.age(now) <= fresh_for)?;
-        angle.value.map(AngleReading::documented).all()
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        self.setpoints.read(sample, fresh);
+        self.start.grip.take(sample, fresh, now);
     }
 
-    /// Does what is to be done now; how it ended, if it did.
-    fn go_on(&mut self) -> Option<GripEnd> {
-        if let Some(why) = reason(&self.hand.status(), self.start.epoch) {
-            return Some(GripEnd::Broken(why));
-        }
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         if self.setpoints.others.changes > 0 {
-            return Some(GripEnd::OtherWrote);
+            let wrote = self.setpoints.others.foreign;
+            self.abort(Abort::OtherController { wrote }, seen.now);
+            return None;
         }
-        let now = self.start.clock.now();
-        let Some(angles) = self.angles() else {
-            let is_late = now.since(self.sent) > SPARE;
-            return is_late.then_some(GripEnd::Late);
+        let angles = seen.angles();
+        self.angles = angles.and_then(|angles| angles.value.map(AngleReading::documented).all());
+        let since = seen.now.since(self.sent);
+        let Some(angles) = self.angles else {
+            return self.late(since, SPARE);
         };
         let Some(leg) = self.legs.as_ref().and_then(|legs| legs.front()).copied() else {
             let (gap, speed) = (self.start.gap, self.start.speed);
             let way = pinch_way(&angles.map(Some), gap, speed, &PerDof::splat(true));
             self.legs = Some(way.into());
-            return self.send();
+            return self.send(seen.now);
         };
         let arrived = leg.targets.iter().all(|(dof, to)| {
             to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_WITHIN)
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
-        let since = now.since(self.sent);
         // What another wrote meanwhile would be overwritten unseen.
         let is_unread = since >= SEEN_WITHIN && !self.setpoints.others.is_doubted();
         if arrived && !is_last {
             if self.setpoints.is_seen() || is_unread {
                 self.legs.as_mut().and_then(VecDeque::pop_front);
-                return self.send();
+                return self.send(seen.now);
             }
-            return (since > limit(&leg)).then_some(GripEnd::Late);
+            return self.late(since, limit(&leg));
         }
-        let status = self.hand.status();
-        let rests =
-            since >= BEGINS_WITHIN + status.slow_allowance() && status.rest == Rest::Resting;
+        let begins = BEGINS_WITHIN + seen.status.slow_allowance();
+        let rests = since >= begins && seen.status.rest == Rest::Resting;
         if rests && !self.setpoints.others.is_doubted() {
-            return Some(self.at_rest(leg, arrived));
+            return self.at_rest(seen.sample, leg, arrived);
         }
-        (since > limit(&leg)).then_some(GripEnd::Late)
+        self.late(since, limit(&leg))
     }
 
-    /// How it ended, where the hand rests now.
-    fn at_rest(&self, leg: WayPart, arrived: bool) -> GripEnd {
-        let angle = self.sample.angle.map(|angle| angle.value);
-        let grip = self.estimator.grip();
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        self.end.get_or_insert(Err(why));
+    }
+
+    fn ended(&self) -> Option<Ended<GripEnd>> {
+        self.end
+    }
+}
+
+impl GripRun {
+    fn late(&mut self, since: Duration, limit: Duration) -> Option<Order> {
+        (since > limit).then(|| self.end(GripEnd::Late))
+    }
+
+    /// Ends it where the hand rests now.
+    fn at_rest(&mut self, sample: &HandSample, leg: WayPart, arrived: bool) -> Option<Order> {
+        let angle = sample.angle.map(|angle| angle.value);
+        let grip = self.start.grip.grip();
         let gap = angle.and_then(|angle| held_gap(&grip, &angle));
-        match gap {
+        Some(self.end(match gap {
             Some(_) => GripEnd::Held,
             None if arrived => GripEnd::Reached,
             None if leg.is_pinching => GripEnd::Stopped,
             None => GripEnd::NotOpened,
+        }))
+    }
+
+    fn end(&mut self, end: GripEnd) -> Order {
+        self.end = Some(Ok(end));
+        match end {
+            GripEnd::Held | GripEnd::Reached => Order::Disarm,
+            // Nothing goes on pressing what is not held.
+            GripEnd::Stopped | GripEnd::NotOpened | GripEnd::Late => Order::Stop,
         }
     }
 
     /// Sends the first part of what is left.
-    fn send(&mut self) -> Option<GripEnd> {
+    fn send(&mut self, now: Moment) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front())?;
-        let mut setpoints = Setpoints::none(self.start.epoch);
+        let mut setpoints = Setpoints::none(self.epoch);
         for (dof, to) in leg.targets.iter() {
             if let Some(to) = *to {
                 setpoints.angle[dof] = Some(Target::Go(to));
@@ -251,10 +208,9 @@ impl<H: TaskHand> GripRun<'_, H> {
                 setpoints.force[dof] = Some(self.start.force);
             }
         }
-        self.sent = self.start.clock.now();
-        self.setpoints.sent(&setpoints, self.sent);
-        let set = self.hand.set(self.start.lease, &setpoints);
-        set.is_err().then_some(GripEnd::Broken(PlayEnd::TakenOver))
+        self.sent = now;
+        self.setpoints.sent(&setpoints, now);
+        Some(Order::Set(setpoints))
     }
 }
 

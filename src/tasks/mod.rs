@@ -5,6 +5,7 @@
 pub mod apply;
 pub mod calibrate;
 pub mod checkup;
+pub mod drive;
 pub mod exhibit;
 pub mod follow;
 pub mod grip;
@@ -12,6 +13,7 @@ pub mod hand;
 pub mod move_to;
 pub mod place;
 pub mod play;
+pub mod program;
 pub mod read;
 pub mod recording;
 pub mod reset;

@@ -3,18 +3,16 @@
 
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, Setpoints, Speed, Target};
-use crate::link::{ArmRequest, Clock, Lease};
-use crate::poses::player::PlayEnd;
+use crate::link::ArmRequest;
 use crate::poses::way::{Targets, way};
-use crate::record::{Record, Rest};
+use crate::record::{Abort, Rest};
+use crate::tasks::drive::{Armed, drive};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::play::reason;
+use crate::tasks::program::{Ended, Order, Program, Seen};
+use futures::stream::pending;
 use std::collections::VecDeque;
 use std::time::Duration;
-use tokio::time::timeout;
 
-/// How often time is looked at where nothing is read.
-const TICK: Duration = Duration::from_millis(5);
 /// A part of the way is not judged at rest before this: the hand acts late.
 const BEGINS_WITHIN: Duration = Duration::from_millis(500);
 /// A part of the way may take so much longer than its speed says.
@@ -29,19 +27,11 @@ pub struct MoveStart {
     pub limits: ArmRequest,
     /// Whether it is over only once the hand rests, so that it is known what it grips.
     pub settles: bool,
-    /// The arming that the user gave for it.
-    pub epoch: ArmEpoch,
-    /// The right to move the hand.
-    pub lease: Lease,
-    /// What was read until now.
-    pub seen: HandSample,
-    /// What is gripped, from that.
+    /// What is gripped, from what was read until now.
     pub grip: GripEstimator,
-    /// The program's clock.
-    pub clock: Clock,
 }
 
-/// How a motion ended. The hand is told nothing more: it stays armed, and keeps what it was told.
+/// How a motion ended that nothing aborted. No more is sent: the hand stays armed and keeps its targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MoveEnd {
     /// Every joint is at its target.
@@ -50,81 +40,69 @@ pub enum MoveEnd {
     Stopped,
     /// It took too long.
     Late,
-    /// The arming ended, a drive reported a fault, the link was lost, or another moves the hand.
-    Broken(PlayEnd),
 }
 
-/// What came of a motion.
+/// The result of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MoveReport {
     /// How it ended.
-    pub end: MoveEnd,
+    pub end: Ended<MoveEnd>,
     /// What the hand gripped then.
     pub grip: Grip,
 }
 
 /// Moves, until the joints are there or the hand rests elsewhere.
-pub async fn move_to<H: TaskHand>(hand: &H, start: MoveStart) -> MoveReport {
-    let mut records = hand.records();
-    let mut run = Moving {
-        hand,
-        sample: start.seen,
+pub async fn move_to<H: TaskHand>(hand: &H, armed: Armed, start: MoveStart) -> MoveReport {
+    let program = Moving {
+        epoch: armed.epoch,
         legs: None,
-        sent: start.clock.now(),
+        sent: armed.clock.now(),
         start,
+        end: None,
     };
-    let end = loop {
-        if let Some(end) = run.go_on() {
-            break end;
-        }
-        if let Ok(Some(Record::Reading { sample, fresh })) = timeout(TICK, records.next()).await {
-            run.take(*sample, fresh);
-        }
-    };
-    let grip = run
-        .start
-        .grip
-        .known(hand.status().is_believed(), run.start.clock.now());
-    MoveReport { end, grip }
+    let driven = drive(hand, armed, program, pending(), |_, _| true).await;
+    let estimator = &driven.program.start.grip;
+    MoveReport {
+        end: driven.end,
+        grip: estimator.known(hand.status().is_believed(), armed.clock.now()),
+    }
 }
 
-struct Moving<'a, H> {
-    hand: &'a H,
+struct Moving {
     start: MoveStart,
-    sample: HandSample,
+    epoch: ArmEpoch,
     /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
     legs: Option<VecDeque<Targets>>,
     /// When the part under way was sent.
     sent: Moment,
+    end: Option<Ended<MoveEnd>>,
 }
 
-impl<H: TaskHand> Moving<'_, H> {
-    fn take(&mut self, sample: HandSample, fresh: Groups) {
-        self.sample = sample;
-        let read = sample.newest(fresh).unwrap_or_default();
-        self.start.grip.take(&self.sample, fresh, read);
+impl Program for Moving {
+    type Input = Abort;
+    type Outcome = MoveEnd;
+    const STAYS_ARMED: bool = true;
+
+    fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
+        self.abort(why, seen.now);
+        None
     }
 
-    /// Does what is to be done now; how it ended, if it did.
-    fn go_on(&mut self) -> Option<MoveEnd> {
-        if self.hand.check(self.start.lease).is_err() {
-            let why = reason(&self.hand.status(), self.start.epoch);
-            return Some(MoveEnd::Broken(why.unwrap_or(PlayEnd::TakenOver)));
-        }
-        let status = self.hand.status();
-        if let Some(why) = reason(&status, self.start.epoch) {
-            return Some(MoveEnd::Broken(why));
-        }
-        let now = self.start.clock.now();
-        let since = now.since(self.sent);
-        let angle = self.sample.angle;
-        let Some(angle) = angle.filter(|angle| angle.age(now) <= status.fresh_for()) else {
-            return (since > SPARE).then_some(MoveEnd::Late);
+    fn read(&mut self, sample: &HandSample, fresh: Groups, _now: Moment) {
+        let read = sample.newest(fresh).unwrap_or_default();
+        self.start.grip.take(sample, fresh, read);
+    }
+
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let since = seen.now.since(self.sent);
+        let Some(angle) = seen.angles() else {
+            self.end_if(since > SPARE, MoveEnd::Late);
+            return None;
         };
         let angles = angle.value.map(|at| at.hold().map(Angle::get));
         let Some(leg) = self.legs.as_ref().and_then(|legs| legs.front()).copied() else {
             self.legs = Some(way(&angles, &self.start.targets).into());
-            return self.send();
+            return self.send(seen.now);
         };
         let arrived = leg.iter().all(|(dof, to)| {
             let is_there = |to: Angle, at: i16| at.abs_diff(to.get()) <= Angle::ARRIVED_WITHIN;
@@ -135,22 +113,36 @@ impl<H: TaskHand> Moving<'_, H> {
         let is_known = angle.asked >= self.sent;
         if arrived && is_known && !is_last {
             self.legs.as_mut().and_then(VecDeque::pop_front);
-            return self.send();
+            return self.send(seen.now);
         }
-        if arrived && is_known && !self.start.settles {
-            return Some(MoveEnd::Reached);
+        self.end_if(arrived && is_known && !self.start.settles, MoveEnd::Reached);
+        let begins = BEGINS_WITHIN + seen.status.slow_allowance();
+        if since >= begins && seen.status.rest == Rest::Resting {
+            self.end_if(arrived, MoveEnd::Reached);
+            self.end_if(!arrived, MoveEnd::Stopped);
         }
-        if since >= BEGINS_WITHIN + status.slow_allowance() && status.rest == Rest::Resting {
-            return Some(if arrived {
-                MoveEnd::Reached
-            } else {
-                MoveEnd::Stopped
-            });
-        }
-        (since > limit(self.slowest())).then_some(MoveEnd::Late)
+        self.end_if(since > limit(self.slowest()), MoveEnd::Late);
+        None
     }
 
-    /// The speed of the slowest joint that goes.
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        self.end.get_or_insert(Err(why));
+    }
+
+    fn ended(&self) -> Option<Ended<MoveEnd>> {
+        self.end
+    }
+}
+
+impl Moving {
+    /// The first end stays.
+    fn end_if(&mut self, is_over: bool, end: MoveEnd) {
+        if is_over {
+            self.end.get_or_insert(Ok(end));
+        }
+    }
+
+    /// The speed of the slowest joint that moves.
     fn slowest(&self) -> Speed {
         let goes = self.start.targets.iter().filter(|(_, to)| to.is_some());
         let speeds = goes.map(|(dof, _)| self.start.limits.speed[dof]);
@@ -158,9 +150,9 @@ impl<H: TaskHand> Moving<'_, H> {
     }
 
     /// Sends the first part of what is left.
-    fn send(&mut self) -> Option<MoveEnd> {
+    fn send(&mut self, now: Moment) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front())?;
-        let mut setpoints = Setpoints::none(self.start.epoch);
+        let mut setpoints = Setpoints::none(self.epoch);
         for (dof, to) in leg.iter() {
             if let Some(to) = *to {
                 setpoints.angle[dof] = Some(Target::Go(to));
@@ -168,9 +160,8 @@ impl<H: TaskHand> Moving<'_, H> {
                 setpoints.force[dof] = Some(self.start.limits.force[dof]);
             }
         }
-        self.sent = self.start.clock.now();
-        let set = self.hand.set(self.start.lease, &setpoints);
-        set.is_err().then_some(MoveEnd::Broken(PlayEnd::TakenOver))
+        self.sent = now;
+        Some(Order::Set(setpoints))
     }
 }
 

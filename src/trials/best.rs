@@ -143,7 +143,7 @@ fn rate(score: &Score, criterion: Criterion) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::hand::{Dof, Force, Speed};
-    use crate::trials::limits::Abort;
+    use crate::record::Abort;
     use crate::trials::measure::curve::JointCurves;
     use crate::trials::measure::metrics::{DwellSpan, measure_joint};
     use crate::trials::summary::{EarlyEnd, TrialKind};

@@ -26,12 +26,11 @@ pub mod session_writer;
 pub mod summary;
 
 pub use crate::trials::best::{Criterion, Score};
-pub use crate::trials::limits::{Abort, LinkView};
 pub use crate::trials::measure::metrics::{JointMetrics, measure};
 pub use crate::trials::plan::{
     Approach, Limits, PlanError, TrialGrid, TrialPlan, TrialSetting, Until,
 };
 pub use crate::trials::recording::{TrialEvent, TrialMark, TrialRecording};
 pub use crate::trials::runner::Stage;
-pub use crate::trials::series::{SeriesOrder, TrialSeries};
+pub use crate::trials::series::TrialSeries;
 pub use crate::trials::summary::{EarlyEnd, Trial, TrialKind, TrialSummary};

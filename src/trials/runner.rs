@@ -4,7 +4,8 @@ use crate::hand::{
     Angle, AngleReading, Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status, Target,
 };
 use crate::hand::{ArmEpoch, Setpoints};
-use crate::trials::limits::{Abort, Feedback, LinkView, reason};
+use crate::record::Abort;
+use crate::trials::limits::{Feedback, Stall, reason};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, TrialRecording};
 use std::time::Duration;
@@ -178,7 +179,12 @@ impl Runner {
     }
 
     /// Advances the time. Returns what to send now, if anything.
-    pub fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<Setpoints> {
+    pub fn tick(
+        &mut self,
+        sample: &HandSample,
+        stall: Option<Stall>,
+        now: Moment,
+    ) -> Option<Setpoints> {
         if self.ending.is_some() {
             return None;
         }
@@ -186,9 +192,10 @@ impl Runner {
         let seen = Feedback {
             sample,
             rest_g: &rest_g,
+            stall,
             now,
         };
-        if let Some(why) = reason(link, self.epoch, &seen, &self.plan.limits) {
+        if let Some(why) = reason(&seen, &self.plan.limits) {
             self.abort(why, now);
             return None;
         }

@@ -1,8 +1,8 @@
 //! A series of trials: which is next, the rest between two, and what ends the series. Sends nothing and reads no clock.
 
-use crate::hand::{Angle, Groups, HandSample, Moment, PerDof, Speed};
-use crate::hand::{ArmEpoch, Setpoints};
-use crate::trials::limits::{Abort, LinkView, Stall, warmest};
+use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, PerDof, Setpoints, Speed};
+use crate::record::Abort;
+use crate::trials::limits::{Stall, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
 use crate::trials::runner::{Runner, Stage};
@@ -17,33 +17,6 @@ pub const COOLING_MAX: Duration = Duration::from_secs(900);
 const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
 /// So often a trial is repeated whose readings stopped at its peak.
 const REPEATS_MAX: usize = 3;
-
-/// What moves a hand from its readings until it is over: a series of trials, a check-up.
-pub trait Series {
-    /// True once nothing is sent any more.
-    fn is_over(&self) -> bool;
-    /// Why it ended early, if it did.
-    fn aborted(&self) -> Option<Abort>;
-    /// Ends it. Returns the stop that has to follow, if it ran.
-    fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder>;
-    /// The program that runs it did not run for a while.
-    fn stalled(&mut self, _stall: Stall) {}
-    /// Takes readings.
-    fn take(&mut self, sample: &HandSample, fresh: Groups);
-    /// Advances the time. Returns what to send now, if anything.
-    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder>;
-}
-
-/// What to tell the link.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SeriesOrder {
-    /// New targets and limits.
-    Set(Setpoints),
-    /// Hold now, before anything else.
-    Stop,
-    /// Let no setpoint pass any more; the series goes on with a hand that does not move.
-    Disarm,
-}
 
 #[derive(Debug, Clone, Copy)]
 struct GridTrial {
@@ -183,16 +156,10 @@ impl TrialSeries {
     fn wait(
         &mut self,
         sample: &HandSample,
-        link: LinkView,
+        stall: Option<Stall>,
         until: Moment,
         now: Moment,
-    ) -> Option<SeriesOrder> {
-        if !link.state.is_live() {
-            return Some(self.fail(Abort::LinkLost));
-        }
-        if let Some(why) = link.arming_ended(self.epoch) {
-            return Some(self.fail(why));
-        }
+    ) -> Option<Setpoints> {
         if now < until {
             return None;
         }
@@ -200,14 +167,14 @@ impl TrialSeries {
         // Temperatures that are not known yet are waited for; the trial itself does not begin without them.
         let (dof, celsius) = warmest(sample)?;
         if celsius >= limit {
-            let waited = now.since(until) >= COOLING_MAX;
-            return waited.then(|| {
+            if now.since(until) >= COOLING_MAX {
                 self.fail(Abort::TooWarm {
                     dof,
                     celsius,
                     limit,
-                })
-            });
+                });
+            }
+            return None;
         }
         let Some(cell) = self.pop() else {
             self.phase = SeriesPhase::Over;
@@ -217,7 +184,7 @@ impl TrialSeries {
         self.stall = None;
         let runner = Runner::new(&cell.plan, cell.setting, &self.contact, self.epoch);
         self.phase = SeriesPhase::Running(Box::new(runner), Box::new(cell));
-        self.tick(sample, link, now)
+        self.tick(sample, stall, now)
     }
 
     /// The next trial, with the contact that its approach needs.
@@ -258,8 +225,10 @@ impl TrialSeries {
     }
 
     /// A trial ended normally.
-    fn next(&mut self, now: Moment) -> Option<SeriesOrder> {
-        let mut trial = self.close_trial()?;
+    fn next(&mut self, now: Moment) {
+        let Some(mut trial) = self.close_trial() else {
+            return;
+        };
         let again = self.again(&trial.summary);
         trial.summary.repeated = again;
         let missing = match &mut self.source {
@@ -272,7 +241,8 @@ impl TrialSeries {
         };
         self.done.push_back(trial);
         if let Some(why) = missing {
-            return Some(self.fail(why));
+            self.fail(why);
+            return;
         }
         let is_over = match &self.source {
             TrialSource::Grid(queue) => queue.is_empty(),
@@ -284,7 +254,6 @@ impl TrialSeries {
             let until = now.plus(self.plan.grid.rest);
             SeriesPhase::Waiting { until }
         };
-        None
     }
 
     /// Whether a trial is no evidence, as its readings stopped at its peak: of a grid it is tried again, and a search does so by
@@ -360,7 +329,7 @@ impl TrialSeries {
         keys.filter(|_| is_search).unwrap_or_default()
     }
 
-    fn fail(&mut self, why: Abort) -> SeriesOrder {
+    fn fail(&mut self, why: Abort) {
         let trial = self.close_trial();
         self.done.extend(trial);
         self.aborted.get_or_insert(why);
@@ -368,52 +337,61 @@ impl TrialSeries {
             queue.clear();
         }
         self.phase = SeriesPhase::Over;
-        SeriesOrder::Stop
     }
-}
 
-impl Series for TrialSeries {
-    fn is_over(&self) -> bool {
+    /// True once nothing is sent any more.
+    pub const fn is_over(&self) -> bool {
         matches!(self.phase, SeriesPhase::Over)
     }
 
-    fn aborted(&self) -> Option<Abort> {
+    /// Why it ended early, if it did. The hand is to be stopped then.
+    pub const fn aborted(&self) -> Option<Abort> {
         self.aborted
     }
 
-    fn end(&mut self, why: Abort, now: Moment) -> Option<SeriesOrder> {
+    /// Ends it early, if it is not over.
+    pub fn abort(&mut self, why: Abort, now: Moment) {
         if self.is_over() {
-            return None;
+            return;
         }
         if let SeriesPhase::Running(runner, _) = &mut self.phase {
             runner.abort(why, now);
         }
-        Some(self.fail(why))
+        self.fail(why);
     }
 
-    fn stalled(&mut self, stall: Stall) {
+    /// The program that runs it did not run for a while.
+    pub fn stalled(&mut self, stall: Stall) {
         self.stall = self.stall.max(Some(stall.lasted));
     }
 
-    fn take(&mut self, sample: &HandSample, fresh: Groups) {
+    /// Receives readings.
+    pub fn read(&mut self, sample: &HandSample, fresh: Groups) {
         if let SeriesPhase::Running(runner, _) = &mut self.phase {
             runner.take(sample, fresh);
         }
     }
 
-    fn tick(&mut self, sample: &HandSample, link: LinkView, now: Moment) -> Option<SeriesOrder> {
+    /// Advances the time. Returns what to send now, if anything. `stall` is the last time in which this program did not run.
+    pub fn tick(
+        &mut self,
+        sample: &HandSample,
+        stall: Option<Stall>,
+        now: Moment,
+    ) -> Option<Setpoints> {
         match &mut self.phase {
             SeriesPhase::Waiting { until } => {
                 let until = *until;
-                self.wait(sample, link, until, now)
+                self.wait(sample, stall, until, now)
             }
             SeriesPhase::Running(runner, _) => {
-                let setpoints = runner.tick(sample, link, now);
+                let setpoints = runner.tick(sample, stall, now);
                 match runner.ending() {
-                    None => setpoints.map(SeriesOrder::Set),
-                    Some(Err(why)) => Some(self.fail(why)),
+                    None => return setpoints,
+                    Some(Err(why)) => self.fail(why),
                     Some(Ok(())) => self.next(now),
                 }
+                None
             }
             SeriesPhase::Over => None,
         }

@@ -5,12 +5,12 @@ use crate::hand::{
     PerDof, Speed, Status, Target, TemperatureReading, Timed,
 };
 use crate::hand::{ArmEpoch, Setpoints};
-use crate::record::{Disarmed, LinkState};
+use crate::record::{Abort, Disarmed};
 use crate::trials::best::scores;
-use crate::trials::limits::{Abort, LinkView, Stall};
+use crate::trials::limits::Stall;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, seconds};
-use crate::trials::series::{Series, SeriesOrder, TrialSeries};
+use crate::trials::series::TrialSeries;
 use crate::trials::summary::{Trial, TrialKind};
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ struct Hand {
     rests_short: i16,
     /// Where something is in the way.
     blocked_at: i16,
-    link: LinkView,
+    stall: Option<Stall>,
 }
 
 impl Hand {
@@ -54,11 +54,7 @@ impl Hand {
             hides_force: false,
             rests_short: 0,
             blocked_at: -1,
-            link: LinkView {
-                state: LinkState::Armed,
-                armed: Some(EPOCH),
-                ..LinkView::default()
-            },
+            stall: None,
         }
     }
 
@@ -144,7 +140,7 @@ fn plan(speed: i16, repeats: usize) -> TrialPlan {
 
 /// What was sent, with its time, and how it went.
 struct Ran {
-    sent: Vec<(Moment, SeriesOrder)>,
+    sent: Vec<(Moment, Setpoints)>,
     trials: Vec<Trial>,
     aborted: Option<Abort>,
 }
@@ -170,13 +166,12 @@ fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
         } else {
             fresh
         };
-        series.take(&sample, fresh);
-        if let Some(order) = series.tick(&sample, hand.link, hand.now) {
-            sent.push((hand.now, order));
-            if let SeriesOrder::Set(setpoints) = order {
-                assert_eq!(setpoints.epoch, EPOCH);
-                hand.obey(&setpoints);
-            }
+        series.read(&sample, fresh);
+        if let Some(setpoints) = series.tick(&sample, hand.stall, hand.now) {
+            assert_eq!(series.aborted(), None, "nothing is sent after its end");
+            sent.push((hand.now, setpoints));
+            assert_eq!(setpoints.epoch, EPOCH);
+            hand.obey(&setpoints);
         }
     }
     assert!(series.is_over());
@@ -188,23 +183,10 @@ fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
     }
 }
 
-/// Ends by this reason, with one stop, and nothing after it.
+/// Ends by this reason.
 fn check(why: Abort, plan: TrialPlan, meanwhile: impl FnMut(&mut Hand)) {
     let ran = run(plan, meanwhile);
     assert_eq!(ran.aborted, Some(why));
-    let stops = ran
-        .sent
-        .iter()
-        .filter(|(_, order)| *order == SeriesOrder::Stop);
-    assert_eq!(stops.count(), 1, "{why}");
-    assert_eq!(ran.sent.last().unwrap().1, SeriesOrder::Stop, "{why}");
-}
-
-fn setpoints(order: &SeriesOrder) -> Setpoints {
-    match order {
-        SeriesOrder::Set(setpoints) => *setpoints,
-        SeriesOrder::Stop | SeriesOrder::Disarm => panic!("{order:?}"),
-    }
 }
 
 #[test]
@@ -214,7 +196,7 @@ fn each_trial_opens_sets_the_limits_closes_by_angle_alone_and_opens() {
     assert_eq!(ran.sent.len(), 8);
     let one: Vec<Setpoints> = ran.sent[..4]
         .iter()
-        .map(|(_, order)| setpoints(order))
+        .map(|(_, setpoints)| *setpoints)
         .collect();
     let index = |n: usize| {
         let set = one[n];
@@ -290,7 +272,7 @@ fn readings_are_awaited_after_a_stall_of_this_program_and_a_stall_is_named_as_th
                 begun = Some(now);
                 hand.now = now.plus(Duration::from_millis(800));
                 hand.force_at = Some(now);
-                hand.link.stall = Some(Stall {
+                hand.stall = Some(Stall {
                     lasted: Duration::from_millis(800),
                     ended: hand.now,
                 });
@@ -329,7 +311,7 @@ fn the_longest_stall_of_a_trial_is_kept_with_it() {
                 ended: hand.now,
             });
         }
-        if let Some(SeriesOrder::Set(set)) = series.tick(&hand.sample(), hand.link, hand.now) {
+        if let Some(set) = series.tick(&hand.sample(), hand.stall, hand.now) {
             hand.obey(&set);
         }
     }
@@ -424,56 +406,12 @@ fn a_trial_without_readings_at_its_peak_is_repeated_and_does_not_count() {
 }
 
 #[test]
-fn a_lost_or_changed_arming_ends_it_and_so_does_a_lost_link() {
-    let stale = Some(Disarmed::Stale);
-    for (link, why) in [
-        (
-            LinkView {
-                state: LinkState::Holding,
-                armed: None,
-                disarmed: stale,
-                ..LinkView::default()
-            },
-            Abort::Disarmed { why: stale },
-        ),
-        (
-            LinkView {
-                state: LinkState::Armed,
-                armed: Some(ArmEpoch(4)),
-                disarmed: stale,
-                ..LinkView::default()
-            },
-            Abort::ArmedAnew,
-        ),
-    ] {
-        check(why, plan(250, 2), |hand| {
-            if closing(hand) {
-                hand.link = link;
-            }
-        });
-        // Also in the rest between two trials, where nothing moves.
-        check(why, plan(250, 2), |hand| {
-            if hand.now > Moment::from_micros(9_000_000) {
-                hand.link = link;
-            }
-        });
-    }
-    check(Abort::LinkLost, plan(250, 2), |hand| {
-        if closing(hand) {
-            hand.link.state = LinkState::Offline;
-        }
-    });
-}
-
-#[test]
 fn no_finger_closes_before_the_hand_shows_the_limits() {
     let dof = Dof::Index;
     let ran = run(plan(250, 2), |hand| hand.takes_limits = false);
     assert_eq!(ran.aborted, Some(Abort::LimitsRefused { dof }));
-    let closed = ran.sent.iter().filter_map(|(_, order)| match order {
-        SeriesOrder::Set(set) => set.angle[dof].map(|target| target.raw()),
-        SeriesOrder::Stop | SeriesOrder::Disarm => None,
-    });
+    let sent = ran.sent.iter();
+    let closed = sent.filter_map(|(_, set)| set.angle[dof].map(|target| target.raw()));
     assert!(closed.into_iter().all(|angle| angle == 1000));
 }
 
@@ -576,22 +514,18 @@ fn a_hand_that_stays_warm_is_waited_for_a_quarter_of_an_hour() {
     let mut hand = Hand::new();
     hand.celsius = 55;
     let later = |s: u64| Moment::from_micros(s * 1_000_000);
-    assert_eq!(series.tick(&hand.sample(), hand.link, later(899)), None);
+    assert_eq!(series.tick(&hand.sample(), hand.stall, later(899)), None);
     assert!(!series.is_over());
-    let stop = series.tick(&hand.sample(), hand.link, later(901));
-    assert_eq!(stop, Some(SeriesOrder::Stop));
+    assert_eq!(series.tick(&hand.sample(), hand.stall, later(901)), None);
     assert!(matches!(series.aborted(), Some(Abort::TooWarm { .. })));
 }
 
 #[test]
 fn a_person_ends_it_at_any_time_and_only_once() {
     let mut series = TrialSeries::start(plan(250, 1), EPOCH, Moment::ZERO).unwrap();
-    assert_eq!(
-        series.end(Abort::Person, Moment::ZERO),
-        Some(SeriesOrder::Stop)
-    );
-    assert_eq!(series.end(Abort::Person, Moment::ZERO), None);
+    series.abort(Abort::Person, Moment::ZERO);
+    series.abort(Abort::NotKept, Moment::ZERO);
     let hand = Hand::new();
-    assert_eq!(series.tick(&hand.sample(), hand.link, hand.now), None);
+    assert_eq!(series.tick(&hand.sample(), hand.stall, hand.now), None);
     assert_eq!(series.aborted(), Some(Abort::Person));
 }

@@ -1,7 +1,7 @@
 //! What one trial was and came to, without its samples: a row of `session.toml`, of the window's table, of the report and of
 //! the command line's JSON.
 
-use crate::trials::limits::Abort;
+use crate::record::Abort;
 use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::measure::unseen::PeakDoubt;
 use crate::trials::plan::TrialSetting;

@@ -6,15 +6,15 @@ use crate::app::env::running::Running;
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
-use crate::app::trials::work::SeriesHand;
+use crate::app::trials::work::{SeriesHand, ends};
 use crate::checkup::free_file;
 use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan};
-use crate::hand::ArmEpoch;
+use crate::hand::{ArmEpoch, Setpoints};
 use crate::store::calendar::{day, since_1970, stamp};
 use crate::store::{BackgroundJob, create_folder, on_thread};
 use crate::tasks::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
-use crate::tasks::series::{self, SeriesStart};
+use crate::tasks::drive::{Armed, drive};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
@@ -54,17 +54,11 @@ impl CheckupRun {
     ) -> Self {
         let clock = ctx.env.clock;
         let (end, ended) = oneshot::channel();
-        let ended = async move {
-            match ended.await {
-                Ok(why) => why,
-                Err(_gone) => std::future::pending().await,
-            }
-        };
         let (epoch, link) = (hand.epoch, hand.link);
         let checkup = Checkup::start(epoch, plan);
         let view = checkup.view();
-        let start = SeriesStart {
-            series: checkup,
+        let armed = Armed {
+            epoch,
             lease: hand.lease,
             seen: hand.seen,
             clock,
@@ -81,19 +75,15 @@ impl CheckupRun {
                 }
             };
             let mut told = None;
-            let tell = |checkup: &mut Checkup| {
+            let tell = |checkup: &mut Checkup, _: Option<&Setpoints>| {
                 let view = checkup.view();
                 if told.replace(view) != Some(view) {
                     steps.tell(view);
                 }
                 true
             };
-            let (checkup, report) = series::run(&link, start, ended, tell).await;
-            let ended = EndedCheckup {
-                checkup,
-                report,
-                recording,
-            };
+            let driven = drive(&link, armed, checkup, ends(ended), tell).await;
+            let ended = EndedCheckup { driven, recording };
             on_thread(move || Ok(files.conclude(ended))).await
         });
         Self {

@@ -5,7 +5,9 @@ use crate::hand::Setpoints;
 use crate::hand::grip::GripThresholds;
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
+use crate::record::Abort;
 use crate::tasks::play::{PlayCommand, PlayStep};
+use crate::tasks::program::Ended;
 use tokio::sync::mpsc;
 
 /// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.
@@ -16,7 +18,7 @@ pub struct SequenceRun {
     pub view: PlayView,
     /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
-    pub(crate) task: Option<Running<PlayStep, PlayEnd>>,
+    pub(crate) task: Option<Running<PlayStep, Ended<PlayEnd>>>,
     /// What the grip of each step is told by; none once the user moves the hand in another way.
     pub(crate) thresholds: Vec<Option<GripThresholds>>,
 }
@@ -35,7 +37,7 @@ impl SequenceRun {
     /// What the grip is told by, as long as its step is what was asked for.
     pub(crate) fn thresholds(&self) -> GripThresholds {
         let is_asked = match self.view.phase {
-            PlayPhase::Ended(end) => end == PlayEnd::Finished,
+            PlayPhase::Ended(end) => end == Ok(PlayEnd::Finished),
             _ => true,
         };
         let own = self.thresholds.get(self.view.at).copied().flatten();
@@ -54,7 +56,7 @@ impl SequenceRun {
         self.thresholds.clear();
         if self.is_running() {
             self.commands = None;
-            self.view.phase = PlayPhase::Ended(PlayEnd::TakenOver);
+            self.view.phase = PlayPhase::Ended(Err(Abort::TakenOver));
         }
     }
 

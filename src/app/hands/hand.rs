@@ -27,10 +27,12 @@ use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LeaseRefusal, LinkStatus, RequestError};
 use crate::poses::player::{PlayMode, PlayPlan, PlayView};
+use crate::record::Abort;
 use crate::record::{ArmRefusal, LinkState, Record};
+use crate::tasks::drive::Armed;
 use crate::tasks::play::{self, PlayCommand, PlayStart};
 use crate::transport::Endpoint;
-use crate::trials::{Abort, TrialPlan};
+use crate::trials::TrialPlan;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
@@ -478,17 +480,19 @@ impl Hand {
         let start = PlayStart {
             plan,
             pace,
+            locked: self.controls.locked(),
+            grip: self.readings.grip.clone(),
+        };
+        let armed = Armed {
             epoch,
             lease: open.lend_lease(),
-            locked: self.controls.locked(),
             seen: self.readings.sample,
-            grip: self.readings.grip.clone(),
             clock: env.clock,
         };
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
         let link = open.link.clone();
         let task = Running::start(env, |steps| async move {
-            play::play(&link, start, wanted, |step| steps.tell(step)).await
+            play::play(&link, armed, start, wanted, |step| steps.tell(step)).await
         });
         self.sequence = Some(SequenceRun {
             entry,

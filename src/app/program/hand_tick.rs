@@ -45,7 +45,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     let thresholds = hand.sequence.as_ref().map(SequenceRun::thresholds);
     hand.readings.grip.judge_by(thresholds.unwrap_or_default());
     let phase = hand.sequence.as_ref().map(|run| run.view.phase);
-    if let Some(PlayPhase::Ended(PlayEnd::NotHolding(grip))) = phase.filter(|_| ran) {
+    if let Some(PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip)))) = phase.filter(|_| ran) {
         ctx.tell(NoticeKind::NotHolding { grip });
     }
     if !hand.sequence.as_ref().is_some_and(SequenceRun::is_running) {

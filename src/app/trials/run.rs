@@ -3,8 +3,8 @@
 use crate::app::env::running::Running;
 use crate::app::trials::state::SessionId;
 use crate::hand::{ArmEpoch, Moment};
+use crate::record::Abort;
 use crate::tasks::series::SeriesStep;
-use crate::trials::Abort;
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::Finding;
 use crate::trials::series::SeriesView;

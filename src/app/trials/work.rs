@@ -12,14 +12,18 @@ use crate::app::trials::state::{Search, SeriesPlan, SessionId, SessionOrigin, Tr
 use crate::hand::{ArmEpoch, Dof, HandSample, Moment};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
+use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::{self, SeriesStart, SeriesStep};
+use crate::tasks::drive::Armed;
+use crate::tasks::series::{self, SeriesStep};
 use crate::trials::overshoot_file::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::SettingsSearch;
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
-use crate::trials::{Abort, EarlyEnd, Stage, TrialPlan, estimate};
+use crate::trials::{EarlyEnd, Stage, TrialPlan, estimate};
+use futures::future::ready;
+use futures::{Stream, StreamExt as _, stream};
 use tokio::sync::oneshot;
 
 /// Why a series cannot begin, besides its plan.
@@ -123,6 +127,12 @@ pub(crate) struct SeriesNews {
     pub(crate) end: Option<NoticeKind>,
 }
 
+/// Ends a program with what the window sends; never where the window sends nothing.
+pub(crate) fn ends(ended: oneshot::Receiver<Abort>) -> impl Stream<Item = Abort> {
+    let sent = stream::once(ended).filter_map(|sent| ready(sent.ok()));
+    sent.chain(stream::pending())
+}
+
 impl SeriesRun {
     /// Begins a series; `None` if it makes no sense.
     pub(crate) fn begin(
@@ -140,14 +150,9 @@ impl SeriesRun {
         } = hand;
         let (plan, clock) = (wanted.trials(), ctx.env.clock);
         let (end, ended) = oneshot::channel();
-        let ended = async move {
-            match ended.await {
-                Ok(why) => why,
-                Err(_gone) => std::future::pending().await,
-            }
-        };
-        let start = SeriesStart {
-            series: wanted.begin(epoch, clock.now())?,
+        let series = wanted.begin(epoch, clock.now())?;
+        let armed = Armed {
+            epoch,
             lease,
             seen,
             clock,
@@ -157,10 +162,10 @@ impl SeriesRun {
                 steps.tell(step);
                 true
             };
-            let (ended, report) = series::trials(&link, start, ended, tell).await;
-            let search = ended.settings_search();
+            let driven = series::trials(&link, armed, series, ends(ended), tell).await;
+            let search = driven.program.settings_search();
             SeriesEnd {
-                aborted: report.aborted,
+                aborted: driven.end.err(),
                 finding: search.and_then(SettingsSearch::finding),
             }
         });

@@ -7,8 +7,8 @@ use crate::checkup::check::Check;
 use crate::checkup::subject::Light;
 use crate::checkup::usage::Usage;
 use crate::hand::Dof;
+use crate::record::Abort;
 use crate::store::calendar::day;
-use crate::trials::Abort;
 use askama::Template;
 use std::time::Duration;
 

@@ -31,7 +31,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     let files = files(args)?;
     prepare(&files)?;
     let mut hand = ArmedHand::ready(&args.hand, ArmRequest::GENTLE).await?;
-    let recording = match files.record(hand.link.observe(), hand.clock) {
+    let recording = match files.record(hand.link.observe(), hand.armed.clock) {
         Ok(recording) => recording,
         Err(error) => {
             hand.disarm().await;
@@ -39,9 +39,9 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
         }
     };
     let mut told = None;
-    let checkup = Checkup::start(hand.epoch, plan);
-    let (checkup, report) = hand
-        .run(checkup, |checkup: &mut Checkup| {
+    let checkup = Checkup::start(hand.armed.epoch, plan);
+    let driven = hand
+        .run(checkup, |checkup: &mut Checkup, _| {
             let view = checkup.view();
             if told.replace(view) != Some(view) && !args.json {
                 output::progress(view);
@@ -49,11 +49,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
             true
         })
         .await;
-    let ended = EndedCheckup {
-        checkup,
-        report,
-        recording,
-    };
+    let ended = EndedCheckup { driven, recording };
     let done = on_thread(move || Ok(files.conclude(ended))).await?;
     let report = done.report;
     out.result(args.json, &report.json(), output::lines(&report))?;

@@ -6,16 +6,19 @@ use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output::Outcome;
 use crate::cli::trial::results::{ResultsWanted, TrialResults};
-use crate::hand::{ArmEpoch, HandSample};
+use crate::hand::{HandSample, Setpoints};
 use crate::link::Stop;
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
+use crate::record::Abort;
 use crate::record::Record;
 use crate::shell::interrupt::Interrupt;
-use crate::tasks::series::{self, SeriesReport, SeriesStart, stop_words};
+use crate::tasks::drive::{self, Armed, Driven, stop_words};
+use crate::tasks::program::Program;
+use crate::tasks::series;
 use crate::transport::Endpoint;
-use crate::trials::series::Series;
-use crate::trials::{Abort, TrialPlan, TrialSeries};
+use crate::trials::{TrialPlan, TrialSeries};
 use anyhow::bail;
+use futures::{Stream, StreamExt as _, stream};
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
 
@@ -38,8 +41,8 @@ pub(crate) async fn drive(
     };
     let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(plan)).await?;
     let mut results = hand.results(out, wanted, plan).await?;
-    let series = TrialSeries::start(plan.clone(), hand.epoch, hand.clock.now())?;
-    let (_series, report) = hand.run_trials(series, &mut results).await;
+    let series = TrialSeries::start(plan.clone(), hand.armed.epoch, hand.armed.clock.now())?;
+    let report = hand.run_trials(series, &mut results).await.report();
     let trials = results.close(report.aborted, None)?;
     Ok(Outcome::of(trials, report, args.criterion()))
 }
@@ -47,10 +50,7 @@ pub(crate) async fn drive(
 /// A hand that the user armed on the command line.
 pub(crate) struct ArmedHand {
     pub(crate) link: LinkHandle,
-    pub(crate) epoch: ArmEpoch,
-    pub(crate) lease: Lease,
-    pub(crate) seen: HandSample,
-    pub(crate) clock: Clock,
+    pub(crate) armed: Armed,
     pub(crate) interrupt: Interrupt,
 }
 
@@ -76,10 +76,12 @@ impl ArmedHand {
         };
         Ok(Self {
             link,
-            epoch,
-            lease,
-            seen,
-            clock,
+            armed: Armed {
+                epoch,
+                lease,
+                seen,
+                clock,
+            },
             interrupt,
         })
     }
@@ -106,40 +108,30 @@ impl ArmedHand {
         &mut self,
         series: TrialSeries,
         results: &mut TrialResults<'_>,
-    ) -> (TrialSeries, SeriesReport) {
-        let start = self.start(series);
-        let take = |step| results.take(step);
-        let ended = by_user(&mut self.interrupt);
-        let ended = series::trials(&self.link, start, ended, take).await;
-        self.let_go(ended.1).await;
-        ended
+    ) -> Driven<TrialSeries> {
+        let ends = by_user(&mut self.interrupt);
+        let report = |step| results.take(step);
+        let driven = series::trials(&self.link, self.armed, series, ends, report).await;
+        self.let_go(driven.stop).await;
+        driven
     }
 
-    /// Runs a series to its end, says what the user must know of the stop, and waits until the hand is not armed any
-    /// more. `tell` as of [`series::run`].
-    pub(crate) async fn run<S: Series>(
+    /// Runs a program to its end, says what the user must know of the stop, and waits until the hand is not armed any
+    /// more. `report` as of [`drive`](drive::drive).
+    pub(crate) async fn run<P: Program<Input = Abort>>(
         &mut self,
-        series: S,
-        tell: impl FnMut(&mut S) -> bool,
-    ) -> (S, SeriesReport) {
-        let start = self.start(series);
-        let ended = by_user(&mut self.interrupt);
-        let ended = series::run(&self.link, start, ended, tell).await;
-        self.let_go(ended.1).await;
-        ended
+        program: P,
+        report: impl FnMut(&mut P, Option<&Setpoints>) -> bool,
+    ) -> Driven<P> {
+        let ends = by_user(&mut self.interrupt);
+        let driven = drive::drive(&self.link, self.armed, program, ends, report).await;
+        self.let_go(driven.stop).await;
+        driven
     }
 
-    const fn start<S>(&self, series: S) -> SeriesStart<S> {
-        SeriesStart {
-            series,
-            lease: self.lease,
-            seen: self.seen,
-            clock: self.clock,
-        }
-    }
-
-    async fn let_go(&self, report: SeriesReport) {
-        if report.stop == Some(Stop::NotConfirmed) {
+    /// Says what the user must know of the stop, and waits until the hand is not armed any more.
+    pub(crate) async fn let_go(&self, stop: Option<Stop>) {
+        if stop == Some(Stop::NotConfirmed) {
             say(session::NOT_CONFIRMED);
         }
         self.disarm().await;
@@ -155,9 +147,13 @@ impl ArmedHand {
     }
 }
 
-async fn by_user(interrupt: &mut Interrupt) -> Abort {
-    interrupt.wished().await;
-    Abort::Person
+/// Ends a program when the user interrupts it.
+pub(crate) fn by_user(interrupt: &mut Interrupt) -> impl Stream<Item = Abort> {
+    let once = stream::once(async {
+        interrupt.wished().await;
+        Abort::Person
+    });
+    once.chain(stream::pending())
 }
 
 /// Waits until the hand tells where it is, and arms it as the user asked for.

@@ -9,7 +9,7 @@ pub(crate) mod results;
 pub(crate) use args::TrialArgs;
 
 use crate::cli::out::{Out, WrongUsage};
-use crate::tasks::series::stop_words;
+use crate::tasks::drive::stop_words;
 use anyhow::bail;
 
 /// Runs the series. Fails if it ended early, or if no setting is what was wanted.

@@ -2,8 +2,7 @@
 
 use crate::cli::trial::args::TrialArgs;
 use crate::hand::Dof;
-use crate::link::Stop;
-use crate::tasks::series::SeriesReport;
+use crate::tasks::drive::EndReport;
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
 use crate::trials::measure::unseen::PeakDoubt;
@@ -13,7 +12,7 @@ use serde_json::{Value, json};
 /// A series that is over, and what its settings came to.
 pub(crate) struct Outcome {
     trials: Vec<TrialSummary>,
-    pub(crate) report: SeriesReport,
+    pub(crate) report: EndReport,
     scores: Vec<Score>,
     pub(crate) criterion: Option<Criterion>,
     pub(crate) best: Option<TrialSetting>,
@@ -23,7 +22,7 @@ impl Outcome {
     /// Scores the settings that were tried, and finds the best if a criterion asks for it.
     pub(crate) fn of(
         trials: Vec<TrialSummary>,
-        report: SeriesReport,
+        report: EndReport,
         criterion: Option<Criterion>,
     ) -> Self {
         let scores = scores(&trials);
@@ -67,13 +66,6 @@ impl Outcome {
 
     /// The last line: `{"session": {…}}`.
     pub(crate) fn json(&self, args: &TrialArgs) -> Value {
-        let stop = self.report.stop.map(|stop| {
-            let after_s = match stop {
-                Stop::Confirmed { after } => Some(after.as_secs_f64()),
-                Stop::NotConfirmed | Stop::LinkLost => None,
-            };
-            json!({ "confirmed": after_s.is_some(), "after_s": after_s })
-        });
         let best = self.criterion.map(|criterion| {
             json!({
                 "criterion": criterion.to_string(),
@@ -86,7 +78,7 @@ impl Outcome {
             "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
             "trials": self.trials.len(),
             "aborted": self.aborted_words(),
-            "stop": stop,
+            "stop": self.report.stop,
             "settings": self.scores,
             "best": best,
         }})
@@ -219,7 +211,7 @@ mod tests {
     }
 
     fn words(trials: Vec<TrialSummary>) -> Option<String> {
-        let report = SeriesReport {
+        let report = EndReport {
             aborted: None,
             stop: None,
         };

@@ -55,9 +55,10 @@ async fn run_search(
     };
     let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(&plan)).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
-    let search = TrialSeries::search(search, hand.epoch, hand.clock.now());
-    let (searched, ended) = hand.run_trials(search, &mut results).await;
-    let search = searched.settings_search();
+    let search = TrialSeries::search(search, hand.armed.epoch, hand.armed.clock.now());
+    let driven = hand.run_trials(search, &mut results).await;
+    let ended = driven.report();
+    let search = driven.program.settings_search();
     let report = SearchReport {
         series: ended,
         finding: search.and_then(SettingsSearch::finding),

@@ -1,16 +1,14 @@
 //! What a search came to as JSON, a contract with scripts, and as lines of text. Pure.
 
 use crate::cli::tune::args::TuneArgs;
-use crate::link::Stop;
-use crate::tasks::series::SeriesReport;
-use crate::tasks::series::stop_words;
+use crate::tasks::drive::{EndReport, stop_words};
 use crate::trials::search::{Claim, ComparedThreshold, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 
 /// How a search ended.
 pub(crate) struct SearchReport {
     /// How its series ended.
-    pub(crate) series: SeriesReport,
+    pub(crate) series: EndReport,
     /// What it came to; `None` if it was ended early.
     pub(crate) finding: Option<Finding>,
     /// Every close that was tried, also of a search that was ended early.
@@ -21,13 +19,6 @@ pub(crate) struct SearchReport {
 pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
     let claim = claim(report);
     let goal = args.goal();
-    let stop = report.series.stop.map(|stop| {
-        let after_s = match stop {
-            Stop::Confirmed { after } => Some(after.as_secs_f64()),
-            Stop::NotConfirmed | Stop::LinkLost => None,
-        };
-        json!({ "confirmed": after_s.is_some(), "after_s": after_s })
-    });
     json!({ "tune": {
         "hand": args.hand.to_string(),
         "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
@@ -53,7 +44,7 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "compared": report.finding.as_ref().map(|finding| &finding.compared),
         "untold": untold(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
         "aborted": report.series.aborted.map(|why| why.to_string()),
-        "stop": stop,
+        "stop": report.series.stop,
     }})
 }
 

@@ -8,11 +8,12 @@ use crate::hand::{
     Speed, Status, Target, Timed,
 };
 use crate::link::Owner;
-use crate::poses::player::PlayEnd;
-use crate::record::{Disarmed, LinkState, Rest};
+use crate::record::{Abort, Disarmed, LinkState, Rest};
 use crate::tasks::TaskHand;
+use crate::tasks::drive::Armed;
 use crate::tasks::grip::{GripEnd, GripReport, GripStart, grip};
 use crate::tasks::tests::fake::{Asked, FakeHand, WELL};
+use futures::{StreamExt as _, stream};
 use std::cell::Cell;
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -40,19 +41,22 @@ impl Bench {
             gap: Gap::nearest(30.0),
             speed: Speed::nearest(100),
             force: Force::nearest(400),
+            grip: GripEstimator::default(),
+        };
+        let armed = Armed {
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
-            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         let (end, ended) = oneshot::channel::<()>();
         let link = hand.clone();
         let task = tokio::spawn(async move {
-            let ended = async {
+            let ends = stream::once(async {
                 ended.await.unwrap();
-            };
-            grip(&link, start, ended).await
+                Abort::Person
+            });
+            grip(&link, armed, start, ends.chain(stream::pending())).await
         });
         Self {
             hand,
@@ -215,7 +219,7 @@ async fn it_opens_then_closes_along_the_path_and_ends_at_rest() {
     bench.moves(false);
     bench.at(end, false, 3).await;
     let report = bench.task.await.unwrap();
-    assert_eq!((report.end, report.stop), (GripEnd::Reached, None));
+    assert_eq!((report.end, report.stop), (Ok(GripEnd::Reached), None));
     assert!((report.gap.unwrap().mm - 30.0).abs() < 0.2);
     assert_eq!(bench.hand.asked(), [Asked::Disarm]);
 }
@@ -228,7 +232,7 @@ async fn what_thumb_and_index_hold_ends_it_with_its_size() {
     bench.moves(false);
     bench.at(angles(45.0), true, 3).await;
     let report = bench.task.await.unwrap();
-    assert_eq!(report.end, GripEnd::Held);
+    assert_eq!(report.end, Ok(GripEnd::Held));
     assert!((report.gap.unwrap().mm - 45.0).abs() < 0.2);
     let asked = bench.hand.asked();
     assert_eq!(asked.last(), Some(&Asked::Disarm));
@@ -241,13 +245,13 @@ async fn what_is_in_the_way_and_not_held_is_told_apart() {
     bench.moves(false);
     bench.at(angles(100.0), false, 60).await;
     let report = bench.task.await.unwrap();
-    assert_eq!(report.end, GripEnd::Stopped);
+    assert_eq!(report.end, Ok(GripEnd::Stopped));
     assert!(report.stop.is_some(), "it presses nothing on");
 
     let bench = Bench::start();
     bench.at(PerDof::splat(400), false, 60).await;
     let report = bench.task.await.unwrap();
-    assert_eq!((report.end, report.gap), (GripEnd::NotOpened, None));
+    assert_eq!((report.end, report.gap), (Ok(GripEnd::NotOpened), None));
     assert!(report.stop.is_some());
 }
 
@@ -264,28 +268,25 @@ async fn a_hand_on_the_path_does_not_open_first() {
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_it_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let ways: [(Break, GripEnd); 5] = [
+    let ways: [(Break, Abort); 5] = [
         (
             |bench| bench.end.take().unwrap().send(()).unwrap(),
-            GripEnd::Person,
+            Abort::Person,
         ),
-        (
-            |bench| bench.hand.disarm(),
-            GripEnd::Broken(PlayEnd::Disarmed),
-        ),
+        (|bench| bench.hand.disarm(), Abort::Disarmed { why: None }),
         (
             |bench| bench.hand.facts().status.state = LinkState::Fault,
-            GripEnd::Broken(PlayEnd::Fault),
+            Abort::Fault { joint: None },
         ),
         (
             |bench| bench.hand.facts().status.state = LinkState::Offline,
-            GripEnd::Broken(PlayEnd::LinkLost),
+            Abort::LinkLost,
         ),
         (
             |bench| {
                 bench.hand.grant(Owner::Person);
             },
-            GripEnd::Broken(PlayEnd::TakenOver),
+            Abort::TakenOver,
         ),
     ];
     for (break_off, want) in ways {
@@ -298,8 +299,8 @@ async fn whatever_ends_it_nothing_is_sent_afterwards() {
             "{want:?}: {asked:?}"
         );
         let report = bench.task.await.unwrap();
-        assert_eq!(report.end, want);
-        let is_left = want == GripEnd::Broken(PlayEnd::TakenOver);
+        assert_eq!(report.end, Err(want));
+        let is_left = want == Abort::TakenOver;
         assert_eq!(report.stop.is_none(), is_left, "{want:?}");
     }
 }
@@ -309,7 +310,7 @@ async fn a_hand_that_never_arrives_is_stopped_when_its_time_is_over() {
     let bench = Bench::opened().await;
     bench.at(angles(110.0), false, 800).await;
     let report = bench.task.await.unwrap();
-    assert_eq!(report.end, GripEnd::Late);
+    assert_eq!(report.end, Ok(GripEnd::Late));
     assert!(report.stop.is_some());
     assert!(bench.hand.asked().contains(&Asked::Stop));
 }
@@ -329,7 +330,8 @@ async fn what_another_writes_to_any_joint_ends_it_even_where_the_next_part_would
             assert!(!moved, "{write:?} {place}: {asked:?}");
             bench.foreign.set([None; 2]);
             let report = bench.task.await.unwrap();
-            assert_eq!(report.end, GripEnd::OtherWrote, "{write:?} {place}");
+            let by_other = matches!(report.end, Err(Abort::OtherController { wrote: Some(_) }));
+            assert!(by_other, "{write:?} {place}: {:?}", report.end);
             assert!(report.stop.is_some());
         }
     }
@@ -379,7 +381,7 @@ async fn a_hand_that_holds_no_action_where_it_was_told_nothing_is_not_another_co
     bench.moves(false);
     bench.at(at, false, 60).await;
     let report = bench.task.await.unwrap();
-    assert_eq!(report.end, GripEnd::Reached);
+    assert_eq!(report.end, Ok(GripEnd::Reached));
 }
 
 #[tokio::test(start_paused = true)]
@@ -389,6 +391,6 @@ async fn a_disarming_for_another_controller_is_called_so() {
     bench.hand.facts().status.disarmed = Some(Disarmed::OtherController);
     bench.at(angles(90.5), false, 20).await;
     let report = bench.task.await.unwrap();
-    assert_eq!(report.end, GripEnd::OtherWrote);
+    assert_eq!(report.end, Err(Abort::OtherController { wrote: None }));
     assert!(report.stop.is_some());
 }

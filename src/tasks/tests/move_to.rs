@@ -3,10 +3,10 @@
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Speed, Target};
 use crate::link::{ArmRequest, Owner};
-use crate::poses::player::PlayEnd;
 use crate::poses::way::Targets;
-use crate::record::{LinkState, Rest};
+use crate::record::{Abort, LinkState, Rest};
 use crate::tasks::TaskHand;
+use crate::tasks::drive::Armed;
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::time::Duration;
@@ -31,15 +31,17 @@ impl Bench {
                 force: PerDof::splat(Force::nearest(400)),
             },
             settles,
+            grip: GripEstimator::default(),
+        };
+        let armed = Armed {
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
-            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         hand.facts().status.rest = Rest::Moving;
         let link = hand.clone();
-        let task = tokio::spawn(async move { move_to(&link, start).await });
+        let task = tokio::spawn(async move { move_to(&link, armed, start).await });
         Self { hand, task }
     }
 
@@ -87,7 +89,7 @@ async fn it_is_over_where_the_joints_are_and_not_before_it_was_sent() {
     bench.at(500, 3).await;
     assert!(!bench.task.is_finished());
     bench.at(410, 3).await;
-    assert_eq!(bench.task.await.unwrap().end, MoveEnd::Reached);
+    assert_eq!(bench.task.await.unwrap().end, Ok(MoveEnd::Reached));
     assert!(
         bench.hand.asked().is_empty(),
         "it stays armed, and is told nothing"
@@ -101,7 +103,7 @@ async fn one_that_settles_waits_for_rest() {
     assert!(!bench.task.is_finished());
     bench.hand.facts().status.rest = Rest::Resting;
     bench.at(400, 3).await;
-    assert_eq!(bench.task.await.unwrap().end, MoveEnd::Reached);
+    assert_eq!(bench.task.await.unwrap().end, Ok(MoveEnd::Reached));
 }
 
 #[tokio::test(start_paused = true)]
@@ -112,7 +114,7 @@ async fn a_joint_that_rests_elsewhere_was_stopped() {
     bench.at(1000, 20).await;
     assert!(!bench.task.is_finished());
     bench.at(700, 60).await;
-    assert_eq!(bench.task.await.unwrap().end, MoveEnd::Stopped);
+    assert_eq!(bench.task.await.unwrap().end, Ok(MoveEnd::Stopped));
 }
 
 #[tokio::test(start_paused = true)]
@@ -131,21 +133,21 @@ async fn thumb_and_index_do_not_meet_on_the_way() {
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_it_nothing_is_sent_afterwards() {
     type Break = fn(&FakeHand);
-    let ways: [(Break, PlayEnd); 4] = [
-        (|hand| hand.disarm(), PlayEnd::Disarmed),
+    let ways: [(Break, Abort); 4] = [
+        (|hand| hand.disarm(), Abort::Disarmed { why: None }),
         (
             |hand| hand.facts().status.state = LinkState::Fault,
-            PlayEnd::Fault,
+            Abort::Fault { joint: None },
         ),
         (
             |hand| hand.facts().status.state = LinkState::Offline,
-            PlayEnd::LinkLost,
+            Abort::LinkLost,
         ),
         (
             |hand| {
                 hand.grant(Owner::Person);
             },
-            PlayEnd::TakenOver,
+            Abort::TakenOver,
         ),
     ];
     for (break_off, want) in ways {
@@ -155,7 +157,7 @@ async fn whatever_ends_it_nothing_is_sent_afterwards() {
         bench.sent();
         bench.at(700, 5).await;
         assert_eq!(bench.sent(), [[None; 2]; 0], "{want:?}");
-        assert_eq!(bench.task.await.unwrap().end, MoveEnd::Broken(want));
+        assert_eq!(bench.task.await.unwrap().end, Err(want));
     }
 }
 
@@ -166,5 +168,5 @@ async fn one_that_never_arrives_ends_when_its_time_is_over() {
     bench.at(700, 1000).await;
     assert!(!bench.task.is_finished());
     bench.at(700, 100).await;
-    assert_eq!(bench.task.await.unwrap().end, MoveEnd::Late);
+    assert_eq!(bench.task.await.unwrap().end, Ok(MoveEnd::Late));
 }

@@ -6,9 +6,11 @@ use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Sp
 use crate::link::Owner;
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
-use crate::record::LinkState;
+use crate::record::{Abort, LinkState};
 use crate::tasks::TaskHand;
+use crate::tasks::drive::Armed;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::tasks::program::Ended;
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -34,7 +36,7 @@ struct Bench {
     hand: FakeHand,
     commands: Option<mpsc::Sender<PlayCommand>>,
     steps: Arc<Mutex<Vec<PlayStep>>>,
-    task: JoinHandle<PlayEnd>,
+    task: JoinHandle<Ended<PlayEnd>>,
 }
 
 impl Bench {
@@ -53,18 +55,21 @@ impl Bench {
                 reaction: None,
             },
             pace,
+            locked,
+            grip: GripEstimator::default(),
+        };
+        let armed = Armed {
             epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
-            locked,
             seen: HandSample::default(),
-            grip: GripEstimator::default(),
             clock: hand.clock,
         };
         let (commands, wanted) = mpsc::channel(4);
         let steps = Arc::new(Mutex::new(Vec::new()));
         let (told, link) = (Arc::clone(&steps), hand.clone());
         let task = tokio::spawn(async move {
-            play(&link, start, wanted, |step| told.lock().unwrap().push(step)).await
+            let tell = |step| told.lock().unwrap().push(step);
+            play(&link, armed, start, wanted, tell).await
         });
         Self {
             hand,
@@ -134,7 +139,7 @@ async fn a_grip_by_size_without_one_of_its_joints_ends_and_stays() {
     };
     for (locks, want) in [
         (PerDof::splat(false), None),
-        (locked, Some(PlayEnd::Locked)),
+        (locked, Some(Ok(PlayEnd::Locked))),
     ] {
         let bench = Bench::start_with(vec![pinch.clone()], PlayMode::Through, locks);
         sleep(Duration::from_millis(1)).await;
@@ -188,32 +193,33 @@ async fn a_sequence_goes_from_pose_to_pose_and_ends() {
     bench.at(690, 10).await;
     assert_eq!(bench.sent(), [Some(200)]);
     bench.at(200, 20).await;
-    assert_eq!(bench.task.await.unwrap(), PlayEnd::Finished);
+    assert_eq!(bench.task.await.unwrap(), Ok(PlayEnd::Finished));
     assert_eq!(bench.hand.asked(), []);
 }
 
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let ways: [(Break, PlayEnd); 7] = [
-        (|bench| bench.hand.stop(), PlayEnd::Disarmed),
-        (|bench| bench.hand.disarm(), PlayEnd::Disarmed),
+    let none = Abort::Disarmed { why: None };
+    let ways: [(Break, Ended<PlayEnd>); 7] = [
+        (|bench| bench.hand.stop(), Err(none)),
+        (|bench| bench.hand.disarm(), Err(none)),
         (
             |bench| bench.hand.facts().status.state = LinkState::Fault,
-            PlayEnd::Fault,
+            Err(Abort::Fault { joint: None }),
         ),
         (
             |bench| bench.hand.facts().status.state = LinkState::Offline,
-            PlayEnd::LinkLost,
+            Err(Abort::LinkLost),
         ),
-        (|bench| bench.hand.arm_as(2), PlayEnd::Disarmed),
-        (|bench| drop(bench.commands.take()), PlayEnd::TakenOver),
+        (|bench| bench.hand.arm_as(2), Err(Abort::ArmedAnew)),
+        (|bench| drop(bench.commands.take()), Err(Abort::TakenOver)),
         (
             |bench| {
                 let commands = bench.commands.as_ref().unwrap();
                 commands.try_send(PlayCommand::End).unwrap();
             },
-            PlayEnd::Person,
+            Ok(PlayEnd::Person),
         ),
     ];
     for (break_off, want) in ways {
@@ -237,7 +243,7 @@ async fn whoever_takes_the_turn_ends_a_sequence() {
     let _another = bench.hand.grant(Owner::Person);
     bench.at(700, 20).await;
     assert_eq!(bench.hand.asked(), []);
-    assert_eq!(bench.task.await.unwrap(), PlayEnd::TakenOver);
+    assert_eq!(bench.task.await.unwrap(), Err(Abort::TakenOver));
 }
 
 #[tokio::test(start_paused = true)]

@@ -3,14 +3,17 @@
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
 use crate::link::Stop;
 use crate::link::{Owner, PollRates};
+use crate::record::Abort;
 use crate::record::LinkState;
 use crate::tasks::TaskHand;
-use crate::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, trials};
+use crate::tasks::drive::{Armed, Driven, EndReport};
+use crate::tasks::series::{RATES, SeriesStep, trials};
 use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
-use crate::trials::limits::Abort;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};
 use crate::trials::runner::Stage;
 use crate::trials::series::TrialSeries;
+use futures::future::ready;
+use futures::{StreamExt as _, stream};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -46,26 +49,23 @@ struct Bench {
     hand: FakeHand,
     person: Option<oneshot::Sender<Abort>>,
     steps: Arc<Mutex<Vec<SeriesStep>>>,
-    task: JoinHandle<(TrialSeries, SeriesReport)>,
+    task: JoinHandle<Driven<TrialSeries>>,
 }
 
 impl Bench {
     fn start(plan: TrialPlan) -> Self {
         let hand = FakeHand::new();
         hand.arm_as(1);
-        let start = SeriesStart {
-            series: TrialSeries::start(plan, ArmEpoch(1), hand.clock.now()).unwrap(),
+        let series = TrialSeries::start(plan, ArmEpoch(1), hand.clock.now()).unwrap();
+        let armed = Armed {
+            epoch: ArmEpoch(1),
             lease: hand.grant(Owner::Task),
             seen: HandSample::default(),
             clock: hand.clock,
         };
         let (person, ended) = oneshot::channel();
-        let ended = async move {
-            match ended.await {
-                Ok(why) => why,
-                Err(_gone) => std::future::pending().await,
-            }
-        };
+        let ends = stream::once(ended).filter_map(|sent| ready(sent.ok()));
+        let ends = ends.chain(stream::pending());
         let steps = Arc::new(Mutex::new(Vec::new()));
         let (told, link) = (Arc::clone(&steps), hand.clone());
         let task = tokio::spawn(async move {
@@ -73,7 +73,7 @@ impl Bench {
                 told.lock().unwrap().push(step);
                 true
             };
-            trials(&link, start, ended, tell).await
+            trials(&link, armed, series, ends, tell).await
         });
         Self {
             hand,
@@ -113,9 +113,8 @@ impl Bench {
         trials.count()
     }
 
-    async fn end(self) -> SeriesReport {
-        let (_series, report) = self.task.await.unwrap();
-        report
+    async fn end(self) -> EndReport {
+        self.task.await.unwrap().report()
     }
 }
 
@@ -213,7 +212,9 @@ async fn what_is_wrong_stops_the_hand_and_is_said() {
                 faults: 1,
                 ..SPOKEN
             },
-            Abort::Fault { dof, faults: fault },
+            Abort::Fault {
+                joint: Some((dof, fault)),
+            },
         ),
         (
             Said {
@@ -303,5 +304,6 @@ async fn setpoints_of_a_series_do_not_pass_once_another_took_the_turn() {
     for _ in 0..100 {
         bench.say(SPOKEN).await;
     }
-    assert!(!bench.hand.asked().iter().any(is_move));
+    assert_eq!(bench.hand.asked(), [Asked::ReadAt(PollRates::default())]);
+    assert_eq!(bench.end().await.aborted, Some(Abort::TakenOver));
 }

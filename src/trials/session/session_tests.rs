@@ -1,9 +1,9 @@
 //! Sessions in folders: what is written comes back, nothing is overwritten, and a page takes no orders from a note.
 
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
+use crate::record::Abort;
 use crate::record::QuirkSheet;
 use crate::trials::best::Criterion;
-use crate::trials::limits::Abort;
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{SampleRow, TrialEvent, TrialRecording, csv};

@@ -7,9 +7,11 @@ use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
 use crate::poses::player::{PlayEnd, PlayPhase};
+use crate::record::Abort;
 use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_ui};
+use crate::ui::text::tune::abort as abort_words;
 use crate::ui::text::{panels, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, Panel, ScrollArea, Ui, UiBuilder, vec2};
@@ -202,14 +204,15 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         PlayPhase::Opening { .. } => (poses::SAY_OPENING, palette.armed),
         PlayPhase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
         PlayPhase::Paused => (poses::SAY_PAUSED, palette.warn),
-        PlayPhase::Ended(PlayEnd::Finished) => (poses::END_FINISHED, palette.ok),
-        PlayPhase::Ended(PlayEnd::Person) => (poses::END_PERSON, palette.muted),
-        PlayPhase::Ended(PlayEnd::Disarmed) => (poses::END_DISARMED, palette.warn),
-        PlayPhase::Ended(PlayEnd::Fault) => (poses::END_FAULT, palette.bad),
-        PlayPhase::Ended(PlayEnd::LinkLost) => (poses::END_LOST, palette.bad),
-        PlayPhase::Ended(PlayEnd::TakenOver) => (poses::END_TAKEN, palette.warn),
-        PlayPhase::Ended(PlayEnd::Locked) => (poses::END_LOCKED, palette.warn),
-        PlayPhase::Ended(PlayEnd::NotHolding(grip)) => {
+        PlayPhase::Ended(Ok(PlayEnd::Finished)) => (poses::END_FINISHED, palette.ok),
+        PlayPhase::Ended(Ok(PlayEnd::Person)) => (poses::END_PERSON, palette.muted),
+        PlayPhase::Ended(Ok(PlayEnd::Locked)) => (poses::END_LOCKED, palette.warn),
+        PlayPhase::Ended(Err(Abort::Disarmed { .. })) => (poses::END_DISARMED, palette.warn),
+        PlayPhase::Ended(Err(Abort::Fault { .. })) => (poses::END_FAULT, palette.bad),
+        PlayPhase::Ended(Err(Abort::LinkLost)) => (poses::END_LOST, palette.bad),
+        PlayPhase::Ended(Err(Abort::TakenOver)) => (poses::END_TAKEN, palette.warn),
+        PlayPhase::Ended(Err(why)) => return (abort_words(look, why), palette.warn),
+        PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip))) => {
             let grip = look.say(panels::grip(grip));
             return (look.fill(poses::END_NOT_HOLDING, &[&grip]), palette.warn);
         }

@@ -108,7 +108,7 @@ fn ctrl_c_holds_the_hand() {
         );
         let told: Value = ended.lines().pop().unwrap()["grip"].take();
         assert_eq!(
-            (&told["end"], &told["stop_confirmed"]),
+            (&told["end"], &told["stop"]["confirmed"]),
             (&"person".into(), &true.into())
         );
         let rests = angles(&hand);

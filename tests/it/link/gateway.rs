@@ -3,6 +3,7 @@
 use crate::setup::gateway::Gateway;
 use crate::setup::hand;
 use crate::setup::link;
+use futures::stream::pending;
 use handscope::hand::gap::Gap;
 use handscope::hand::grip::GripEstimator;
 use handscope::hand::{
@@ -11,10 +12,10 @@ use handscope::hand::{
 use handscope::link::{ArmRequest, LinkStatus, LinkTrouble, TouchVariant};
 use handscope::record::{Disarmed, Hold, LinkState};
 use handscope::sim::{Scenario, SharedHand, SimConfig};
+use handscope::tasks::drive::Armed;
 use handscope::tasks::grip::{GripEnd, GripStart, grip};
 use handscope::tasks::move_to::{MoveEnd, MoveStart, move_to};
 use handscope::tasks::series::RATES;
-use std::future::pending;
 use std::sync::Arc;
 use tokio::time::{Duration, Instant, sleep};
 
@@ -224,6 +225,12 @@ async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
         let armed = |status: &LinkStatus| status.armed.is_some();
         link.arm(link::gentle());
         let epoch = link::until(&mut link, Duration::from_secs(4), armed).await;
+        let armed = Armed {
+            epoch: epoch.armed.unwrap(),
+            lease: link.lease(),
+            seen: HandSample::default(),
+            clock,
+        };
         for angle in [300, 800] {
             let start = MoveStart {
                 targets: PerDof::from_fn(|dof| {
@@ -234,27 +241,19 @@ async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
                     force: PerDof::splat(Force::GENTLE),
                 },
                 settles: true,
-                epoch: epoch.armed.unwrap(),
-                lease: link.lease(),
-                seen: HandSample::default(),
                 grip: GripEstimator::default(),
-                clock,
             };
-            let moved = move_to(&*link, start).await;
-            assert_eq!(moved.end, MoveEnd::Reached, "{angle} at {ms} ms");
+            let moved = move_to(&*link, armed, start).await;
+            assert_eq!(moved.end, Ok(MoveEnd::Reached), "{angle} at {ms} ms");
         }
         let start = GripStart {
             gap: Gap::new(30.0).unwrap(),
             speed: Speed::nearest(500),
             force: Force::GENTLE,
-            epoch: epoch.armed.unwrap(),
-            lease: link.lease(),
-            seen: HandSample::default(),
             grip: GripEstimator::default(),
-            clock,
         };
-        let gripped = grip(&*link, start, pending()).await;
-        assert_eq!(gripped.end, GripEnd::Reached, "{ms} ms");
+        let gripped = grip(&*link, armed, start, pending()).await;
+        assert_eq!(gripped.end, Ok(GripEnd::Reached), "{ms} ms");
     }
 }
 

@@ -12,6 +12,7 @@ use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, Millis, Retries, SequenceId, SequenceStep, UntilHolding};
 use handscope::poses::player::{PlayEnd, PlayPhase};
+use handscope::record::Abort;
 use handscope::sim::Object;
 use tokio::time::Duration;
 
@@ -75,7 +76,7 @@ async fn a_step_goes_on_once_the_hand_holds_and_waits_for_no_place_behind_the_ob
     let own = gripping(&mut bench, 3000, 3);
     bench.arm().await;
     play_to_the_end(&mut bench, own).await;
-    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
     let sent = sent(&bench);
     assert_eq!(places(&bench), [700, 300, 700]);
     let took_ms = sent[2].1 - sent[1].1;
@@ -91,7 +92,7 @@ async fn a_hand_that_closes_on_nothing_opens_and_tries_again_so_often_and_no_mor
     bench.arm().await;
     play_to_the_end(&mut bench, own).await;
     let end = PlayEnd::NotHolding(GripState::Empty);
-    assert_eq!(phase(&bench), Some(PlayPhase::Ended(end)));
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(end))));
     assert_eq!(places(&bench), [700, 300, OPENS, 300, OPENS, 300]);
     let turned = angles_told(&bench)
         .into_iter()
@@ -122,7 +123,7 @@ async fn a_try_that_holds_is_the_last() {
             bench.hand.with(|hand, _| hand.set_object(&object));
         }
     }
-    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
     assert_eq!(places(&bench), [700, 300, OPENS, 300, 700]);
 }
 
@@ -167,9 +168,14 @@ async fn a_lost_link_ends_a_wait() {
     spoil(&line, Trouble::Gone(Duration::from_secs(2)));
     bench.run(9000).await;
     let ended = phase(&bench);
-    let by_loss = [PlayEnd::LinkLost, PlayEnd::Disarmed].map(|end| Some(PlayPhase::Ended(end)));
-    assert!(by_loss.contains(&ended), "{ended:?}");
-    assert_eq!(bench.addresses(), [0_u16; 0]);
+    let by_loss = |why| matches!(why, Abort::LinkLost | Abort::Disarmed { .. });
+    assert!(
+        matches!(ended, Some(PlayPhase::Ended(Err(why))) if by_loss(why)),
+        "{ended:?}"
+    );
+    // The hand is back within the time for which a stop stays pending.
+    let stop = |address: &u16| *address == ANGLE_SET;
+    assert!(bench.addresses().iter().all(stop));
 }
 
 #[tokio::test(start_paused = true)]

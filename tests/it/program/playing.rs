@@ -11,7 +11,9 @@ use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceSte
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::poses::starter::starter;
 use handscope::poses::{Play, Preset};
+use handscope::record::{Abort, Disarmed};
 use handscope::sim::Object;
+use handscope::tasks::program::Ended;
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.
@@ -282,41 +284,58 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
 }
 
 /// What ends a sequence, and how that is told.
-pub(super) type Ending = (fn(&mut Bench), PlayEnd);
+pub(super) type Ending = (fn(&mut Bench), Ended<PlayEnd>);
 
 pub(super) const ENDINGS: [Ending; 6] = [
-    (|bench| bench.act(Action::Stop), PlayEnd::Disarmed),
-    (|bench| bench.act(Action::Disarm), PlayEnd::Disarmed),
+    (
+        |bench| bench.act(Action::Stop),
+        Err(Abort::Disarmed {
+            why: Some(Disarmed::Stop),
+        }),
+    ),
+    (
+        |bench| bench.act(Action::Disarm),
+        Err(Abort::Disarmed {
+            why: Some(Disarmed::Person),
+        }),
+    ),
     (
         |bench| {
             bench
                 .hand
                 .with(|hand, _| hand.inject_fault(Dof::Index, Fault::OverTemperature))
         },
-        PlayEnd::Fault,
+        Err(Abort::Fault { joint: None }),
     ),
-    (|bench| bench.act(Action::Play(Play::End)), PlayEnd::Person),
+    (
+        |bench| bench.act(Action::Play(Play::End)),
+        Ok(PlayEnd::Person),
+    ),
     (
         |bench| bench.act(Action::Target(Dof::Index, Angle::MAX)),
-        PlayEnd::TakenOver,
+        Err(Abort::TakenOver),
     ),
     (
         |bench| bench.act(Action::Preset(Preset::Open)),
-        PlayEnd::TakenOver,
+        Err(Abort::TakenOver),
     ),
 ];
 
 /// A sequence is over in this way, and stays so: no arming later brings it back, nor what happens before it is asked to go on.
 pub(super) async fn stays_ended(
     bench: &mut Bench,
-    want: PlayEnd,
+    want: Ended<PlayEnd>,
     happens: impl FnOnce(&mut Bench),
 ) {
     bench.run(3000).await;
     let Some(PlayPhase::Ended(end)) = phase(bench) else {
         panic!("{want:?}: {:?}", phase(bench));
     };
-    let by_fault = want == PlayEnd::Fault && end == PlayEnd::Disarmed;
+    // Which joint it was is known once it was read.
+    let by_fault = matches!(
+        (want, end),
+        (Err(Abort::Fault { .. }), Err(Abort::Fault { .. }))
+    );
     assert!(end == want || by_fault, "{end:?} for {want:?}");
     bench.act(Action::Arm);
     bench.run(300).await;
@@ -360,7 +379,7 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     let mut bench = Bench::armed().await;
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(6000).await;
-    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
     assert_eq!(angles_told(&bench).len(), 1, "straight from the open hand");
     bench.forget();
     bench.act(Action::Recall(shipped("Fist")));
@@ -368,7 +387,7 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     let run = bench.hand().sequence.as_ref().unwrap();
     assert!(run.is_running() && run.entry == EntryId::Pose(shipped("Fist")));
     bench.run(8000).await;
-    assert_eq!(phase(&bench), Some(PlayPhase::Ended(PlayEnd::Finished)));
+    assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
     let told = angles_told(&bench);
     assert_eq!(
         told,

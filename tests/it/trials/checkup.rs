@@ -8,14 +8,12 @@ use handscope::checkup::report::{CheckupReport, Keeping};
 use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::register::FORCE_ACT;
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger, Moment, Span};
-use handscope::record::{SetpointConflict, SetpointRegister};
+use handscope::record::Abort;
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, ForceCompared, Object};
 use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
-use handscope::tasks::series::SeriesReport;
+use handscope::tasks::drive::Driven;
 use handscope::transport::Endpoint;
-use handscope::trials::Abort;
-use handscope::trials::series::Series;
 
 /// Noise of a force sensor, either way.
 const NOISE_G: f64 = 8.0;
@@ -111,8 +109,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
             && matches!(
                 checkup.aborted(),
                 Some(Abort::Fault {
-                    dof: Dof::Index,
-                    ..
+                    joint: Some((Dof::Index, _))
                 })
             )
     );
@@ -343,23 +340,6 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
     assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
 }
 
-#[test]
-fn another_controller_that_moves_the_hand_while_fingertips_are_pressed_ends_it_with_a_stop() {
-    let mut hand = VirtualHand::counting(BodyParams::default(), 1, &Object::none());
-    let wrote = SetpointConflict {
-        register: SetpointRegister::AngleSet,
-        dof: Dof::Index,
-        holds: Some(300),
-        wrote: Some(1000),
-    };
-    hand.other_writes = Some(wrote);
-    let plan = CheckupPlan { press: true };
-    let (checkup, stopped) = hand.run(Checkup::start(ArmEpoch(1), plan), |_, _| ());
-    let wrote = Some(wrote);
-    assert_eq!(checkup.aborted(), Some(Abort::OtherController { wrote }));
-    assert!(stopped && hand.disarmed);
-}
-
 /// Checks a body up, and makes of it what the program does.
 fn concluded(files: &CheckupFiles, backlash: f64, jam: Option<f64>) -> CheckupReport {
     let mut body = BodyParams::default();
@@ -367,13 +347,13 @@ fn concluded(files: &CheckupFiles, backlash: f64, jam: Option<f64>) -> CheckupRe
     let mut hand = VirtualHand::counting(body, 1, &Object::none());
     hand.hand.set_jam(JOINT, jam);
     let (checkup, _) = hand.run(started(), |_, _| ());
-    let report = SeriesReport {
-        aborted: checkup.aborted(),
+    let driven = Driven {
+        end: checkup.aborted().map_or(Ok(()), Err),
+        program: checkup,
         stop: None,
     };
     let done = files.conclude(EndedCheckup {
-        checkup,
-        report,
+        driven,
         recording: None,
     });
     done.written.unwrap().unwrap();

@@ -7,7 +7,8 @@ use handscope::app::settings::Settings;
 use handscope::app::trials::{SeriesKind, TrialAction};
 use handscope::hand::{Angle, Dof, Force, PerDof, Speed};
 use handscope::link::Clock;
-use handscope::trials::{Abort, EarlyEnd, Limits, TrialGrid, TrialPlan};
+use handscope::record::Abort;
+use handscope::trials::{EarlyEnd, Limits, TrialGrid, TrialPlan};
 use std::time::Duration;
 use tokio::time::sleep;
 

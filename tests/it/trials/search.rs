@@ -4,16 +4,20 @@ use crate::setup::hand;
 use crate::setup::link;
 use crate::trials::other_hand::{OtherBody, OtherHand, best_close_s, drawn};
 use crate::trials::virtual_hand::{Run, VirtualHand, case, object};
+use futures::future::ready;
+use futures::{StreamExt as _, stream};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
+use handscope::record::Abort;
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::tasks::series::{RATES, SeriesReport, SeriesStart, SeriesStep, arm_limits, trials};
+use handscope::tasks::drive::{Armed, EndReport};
+use handscope::tasks::series::{RATES, SeriesStep, arm_limits, trials};
+use handscope::trials::TrialSeries;
 use handscope::trials::search::{
     Compared, Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch,
 };
-use handscope::trials::{Abort, TrialSeries};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
@@ -360,8 +364,7 @@ fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     assert!(matches!(
         fault.aborted,
         Some(Abort::Fault {
-            dof: Dof::Middle,
-            ..
+            joint: Some((Dof::Middle, _))
         })
     ));
     assert!(fault.stopped && fault.finding.is_none());
@@ -372,8 +375,7 @@ fn a_fault_midway_and_a_locked_joint_stop_the_hand_and_keep_what_was_tried() {
     assert!(matches!(
         locked.aborted,
         Some(Abort::Fault {
-            dof: Dof::Index,
-            ..
+            joint: Some((Dof::Index, _))
         })
     ));
     assert!(locked.stopped);
@@ -421,7 +423,7 @@ fn without_a_distribution_the_bound_is_the_largest_of_22_closes() {
 
 /// How a search over a link ended.
 struct SearchEnd {
-    series: SeriesReport,
+    series: EndReport,
     finding: Option<Finding>,
     tried: usize,
 }
@@ -453,22 +455,19 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
         let _record = records.next().await;
     }
     let epoch = link.status().armed.unwrap();
-    let start = SeriesStart {
-        series: TrialSeries::search(search, epoch, clock.now()),
+    let series = TrialSeries::search(search, epoch, clock.now());
+    let armed = Armed {
+        epoch,
         lease,
         seen,
         clock,
     };
     let (person, ended) = oneshot::channel();
     let mut person = Some(person);
-    let ended = async move {
-        match ended.await {
-            Ok(()) => Abort::Person,
-            Err(_gone) => std::future::pending().await,
-        }
-    };
+    let ends = stream::once(ended).filter_map(|sent| ready(sent.ok().map(|()| Abort::Person)));
+    let ends = ends.chain(stream::pending());
     let mut steps = Vec::new();
-    let (ended, report) = trials(&link, start, ended, |step| {
+    let driven = trials(&link, armed, series, ends, |step| {
         let trials = |step: &SeriesStep| matches!(step, SeriesStep::Trial(_));
         steps.push(step);
         let count = steps.iter().filter(|own| trials(own)).count();
@@ -481,9 +480,9 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
     })
     .await;
     tokio::time::sleep(Duration::from_millis(200)).await;
-    let search = ended.settings_search().unwrap();
+    let search = driven.program.settings_search().unwrap();
     let end = SearchEnd {
-        series: report,
+        series: driven.report(),
         finding: search.finding(),
         tried: search.tried().len(),
     };

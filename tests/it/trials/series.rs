@@ -3,17 +3,19 @@
 
 use crate::setup::hand;
 use crate::setup::link::{self, Client};
+use futures::stream::pending;
 use handscope::hand::register::GESTURE_FORCE_CLB;
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
-use handscope::link::{ArmRequest, Clock, LinkConfig, LinkStatus};
+use handscope::link::{ArmRequest, Clock, LinkConfig};
+use handscope::record::Abort;
 use handscope::record::{Disarmed, Hold, LinkState, Record};
 use handscope::sim::{BodyParams, Personality, Scenario, SharedHand, SimConfig, SimHand};
+use handscope::tasks::drive::{Armed, EndReport, drive};
 use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
-use handscope::trials::series::Series;
 use handscope::trials::{
-    Abort, Approach, Criterion, EarlyEnd, Limits, LinkView, SeriesOrder, Trial, TrialEvent,
-    TrialGrid, TrialKind, TrialPlan, TrialSeries, Until,
+    Approach, Criterion, EarlyEnd, Limits, Trial, TrialEvent, TrialGrid, TrialKind, TrialPlan,
+    TrialSeries, Until,
 };
 use tokio::time::{Duration, Instant, timeout};
 
@@ -48,7 +50,7 @@ impl Bench {
         bench.hand.with(written).unwrap();
         let until = bench.clock.now().plus(CALIBRATES_WITHIN);
         while bench.clock.now() < until {
-            bench.next(&mut None).await;
+            bench.next().await;
         }
         bench
     }
@@ -78,7 +80,7 @@ impl Bench {
         let known =
             |bench: &Self| bench.sample.faults.is_some() && bench.sample.temperature.is_some();
         while !known(&bench) {
-            bench.next(&mut None).await;
+            bench.next().await;
         }
         bench
     }
@@ -89,18 +91,15 @@ impl Bench {
             force: PerDof::splat(Force::nearest(100)),
         });
         while self.link.status().state != LinkState::Armed {
-            self.next(&mut None).await;
+            self.next().await;
         }
     }
 
     /// Takes the next event, or 10 ms.
-    async fn next(&mut self, series: &mut Option<TrialSeries>) {
+    async fn next(&mut self) {
         let event = timeout(Duration::from_millis(10), self.link.records.next()).await;
-        if let Ok(Some(Record::Reading { sample, fresh })) = event {
+        if let Ok(Some(Record::Reading { sample, .. })) = event {
             self.sample = *sample;
-            if let Some(series) = series {
-                series.take(&sample, fresh);
-            }
         }
     }
 
@@ -112,47 +111,24 @@ impl Bench {
     ) -> Run {
         self.arm().await;
         let epoch = self.link.status().armed.unwrap();
-        let mut series = Some(TrialSeries::start(plan, epoch, self.clock.now()).unwrap());
+        let series = TrialSeries::start(plan, epoch, self.clock.now()).unwrap();
+        let armed = Armed {
+            epoch,
+            lease: self.link.lease(),
+            seen: self.sample,
+            clock: self.clock,
+        };
         let mut trials = Vec::new();
-        let mut stopped = false;
-        loop {
-            self.next(&mut series).await;
-            let own = series.as_mut().unwrap();
-            let view = {
-                let LinkStatus {
-                    state,
-                    armed,
-                    disarmed,
-                    ..
-                } = self.link.status();
-                LinkView {
-                    state,
-                    armed,
-                    disarmed,
-                    ..LinkView::default()
-                }
-            };
-            match own.tick(&self.sample, view, self.clock.now()) {
-                Some(SeriesOrder::Set(setpoints)) => self.link.set(&setpoints),
-                Some(SeriesOrder::Stop) => {
-                    self.link.stop();
-                    stopped = true;
-                }
-                Some(SeriesOrder::Disarm) => panic!("trials go on armed"),
-                None => {}
-            }
-            while let Some(trial) = own.finished() {
-                trials.push(trial);
-            }
-            if own.is_over() {
-                let aborted = own.aborted();
-                return Run {
-                    trials,
-                    aborted,
-                    stopped,
-                };
-            }
-            meanwhile(self, own);
+        let driven = drive(&*self.link, armed, series, pending(), |series, _| {
+            trials.extend(std::iter::from_fn(|| series.finished()));
+            meanwhile(self, series);
+            true
+        });
+        let EndReport { aborted, stop } = driven.await.report();
+        Run {
+            trials,
+            aborted,
+            stopped: stop.is_some(),
         }
     }
 }
@@ -302,27 +278,21 @@ async fn ended_by(
     let last = run.trials.last().expect("what was read is kept");
     assert_eq!(last.summary.aborted, run.aborted.map(EarlyEnd::Here));
     assert!(last.recording.when(TrialEvent::Aborted).is_some());
-    let confirmed = |bench: &Bench| matches!(bench.link.status().hold, Hold::Confirmed { .. });
-    let until = bench.clock.now().plus(Duration::from_secs(2));
-    while !confirmed(&bench) {
-        assert!(bench.clock.now() < until, "feedback shows rest");
-        bench.next(&mut None).await;
-    }
+    let hold = bench.link.status().hold;
+    assert!(matches!(hold, Hold::Confirmed { .. }), "{hold:?}");
     assert_eq!(bench.link.status().armed, None, "nothing arms it again");
-    let rest = bench.sample.angle.unwrap().value[Dof::Index];
-    for _ in 0..100 {
-        bench.next(&mut None).await;
-    }
-    let later = bench.sample.angle.unwrap().value[Dof::Index];
+    let index = || bench.hand.with(|hand, _| hand.true_angles()[Dof::Index]);
+    let rest = index();
+    tokio::time::sleep(Duration::from_secs(1)).await;
     // It closes no further and does not open by itself; a grip may relax.
-    let moved = later.raw() - rest.raw();
-    assert!((-2..=20).contains(&moved), "{moved} {:?}", run.aborted);
+    let moved = index() - rest;
+    assert!((-2.0..=20.0).contains(&moved), "{moved} {:?}", run.aborted);
     run.aborted.unwrap()
 }
 
 fn closing(series: &TrialSeries, bench: &Bench) -> bool {
-    let angle = bench.sample.angle.unwrap().value[Dof::Index].raw();
-    series.view().number == 1 && angle < 620
+    let angle = bench.hand.with(|hand, _| hand.true_angles()[Dof::Index]);
+    series.view().number == 1 && angle < 620.0
 }
 
 #[tokio::test(start_paused = true)]
@@ -343,7 +313,15 @@ async fn a_stop_a_fault_heat_and_force_end_the_series_with_a_stop() {
         }
     });
     let why = why.await;
-    assert!(matches!(why, Abort::Fault { dof: Dof::Ring, .. }), "{why}");
+    assert!(
+        matches!(
+            why,
+            Abort::Fault {
+                joint: Some((Dof::Ring, _))
+            }
+        ),
+        "{why}"
+    );
     let why = ended_by(slow(), Scenario::Rigid, |bench, series| {
         if closing(series, bench) {
             bench.hand.with(|hand, _| hand.warm(Dof::ThumbBend, 61.0));
@@ -395,7 +373,7 @@ async fn the_next_trial_waits_until_the_hand_is_cool() {
     let mut bench = Bench::new(Scenario::Rigid).await;
     bench.hand.with(|hand, _| hand.warm(Dof::Index, 55.0));
     for _ in 0..50 {
-        bench.next(&mut None).await;
+        bench.next().await;
     }
     // The rest alone would be over at once; from 55 °C to 50 takes some seconds.
     let begun = Instant::now();

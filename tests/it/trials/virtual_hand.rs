@@ -7,20 +7,19 @@ use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, Reply,
     Setpoints, Span, Speed,
 };
-use handscope::record::{LinkState, SetpointConflict};
+use handscope::link::LinkStatus;
+use handscope::record::Abort;
+use handscope::record::LinkState;
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{
     BodyParams, Contact, ForceCompared, Object, Personality, Scenario, SimConfig, SimHand,
 };
+use handscope::tasks::program::{Order, Program, Seen};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
-use handscope::trials::series::Series;
-use handscope::trials::{
-    Abort, Approach, LinkView, SeriesOrder, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting,
-    Until,
-};
+use handscope::trials::{Approach, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting, Until};
 use std::time::Duration;
 
 const EPOCH: ArmEpoch = ArmEpoch(1);
@@ -71,8 +70,6 @@ pub(crate) struct VirtualHand<H = SimHand> {
     round: u64,
     /// The series let no setpoint pass any more.
     pub(crate) disarmed: bool,
-    /// What another writes from then on.
-    pub(crate) other_writes: Option<SetpointConflict>,
 }
 
 impl VirtualHand {
@@ -115,7 +112,6 @@ impl<H: RegisterHand> VirtualHand<H> {
             sample: HandSample::default(),
             round: 0,
             disarmed: false,
-            other_writes: None,
         }
     }
 
@@ -141,39 +137,42 @@ impl<H: RegisterHand> VirtualHand<H> {
     }
 
     /// Runs a series to its end, and whether it ended in a stop.
-    pub(crate) fn run<S: Series>(
+    pub(crate) fn run<P: Program>(
         &mut self,
-        mut series: S,
-        mut meanwhile: impl FnMut(&mut H, &mut S),
-    ) -> (S, bool) {
-        let mut stopped = false;
-        let link = LinkView {
+        mut program: P,
+        mut meanwhile: impl FnMut(&mut H, &mut P),
+    ) -> (P, bool) {
+        let status = LinkStatus {
             state: LinkState::Armed,
             armed: Some(EPOCH),
-            ..LinkView::default()
+            ..LinkStatus::default()
         };
-        while !series.is_over() {
-            self.read(&mut series);
-            let foreign_setpoint = self.other_writes.filter(|_| self.disarmed);
-            let link = LinkView {
-                foreign_setpoint,
-                ..link
+        let mut stopped = false;
+        self.disarmed = false;
+        while program.ended().is_none() {
+            self.read(&mut program);
+            let seen = Seen {
+                status: &status,
+                sample: &self.sample,
+                stall: None,
+                now: self.now,
             };
-            match series.tick(&self.sample, link, self.now) {
-                Some(SeriesOrder::Set(setpoints)) => {
+            match program.tick(&seen) {
+                Some(Order::Set(setpoints)) => {
                     assert!(!self.disarmed, "{setpoints:?}");
                     self.set(&setpoints);
                 }
-                Some(SeriesOrder::Stop) => stopped = true,
-                Some(SeriesOrder::Disarm) => self.disarmed = true,
+                Some(Order::Stop) => stopped = true,
+                Some(Order::Disarm) => self.disarmed = true,
                 None => {}
             }
-            meanwhile(&mut self.hand, &mut series);
+            meanwhile(&mut self.hand, &mut program);
         }
-        (series, stopped)
+        let is_early = program.ended().is_some_and(|end| end.is_err());
+        (program, stopped || is_early)
     }
 
-    fn read(&mut self, series: &mut impl Series) {
+    fn read(&mut self, program: &mut impl Program) {
         self.now = self.now.plus(EACH);
         self.round += 1;
         let often = [Group::Angle, Group::Force, Group::Current, Group::Status];
@@ -206,7 +205,7 @@ impl<H: RegisterHand> VirtualHand<H> {
                 asked: self.now,
                 received: self.now,
             });
-            series.take(&self.sample, fresh);
+            program.read(&self.sample, fresh, self.now);
         }
     }
 

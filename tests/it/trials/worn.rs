@@ -9,7 +9,6 @@ use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, ForceCompared, Object};
-use handscope::trials::series::Series;
 
 pub(crate) const JOINT: Dof = Dof::Middle;
 const TIP: Finger = Finger::Ring;

@@ -7,8 +7,8 @@ use handscope::checkup::report::Keeping;
 use handscope::checkup::usage::Usage;
 use handscope::checkup::{Light, Part, Subject};
 use handscope::hand::{Dof, Finger};
+use handscope::record::Abort;
 use handscope::sim::{BodyParams, Object, Scenario, SimConfig};
-use handscope::trials::Abort;
 use handscope::ui::View;
 use std::path::PathBuf;
 

@@ -112,7 +112,7 @@ fn grip_ten_times(bench: &mut Bench, poses: &[LibraryPose]) {
         bench.until(60_000, is_over);
         assert_eq!(
             phase(bench),
-            Some(PlayPhase::Ended(PlayEnd::Finished)),
+            Some(PlayPhase::Ended(Ok(PlayEnd::Finished))),
             "{nth}"
         );
     }

@@ -154,7 +154,7 @@ fn a_pose_is_made_one_by_size_and_closes_along_the_path() {
     bench.act(recall);
     bench.run(1000);
     let run = bench.state().hand().sequence.as_ref().unwrap();
-    let ended = PlayPhase::Ended(PlayEnd::Locked);
+    let ended = PlayPhase::Ended(Ok(PlayEnd::Locked));
     assert_eq!(run.view.phase, ended, "not without the index");
     bench.act(Action::Lock(Dof::Index, false));
     bench.click_button("By size");

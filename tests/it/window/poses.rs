@@ -8,6 +8,7 @@ use handscope::app::settings::Language;
 use handscope::hand::{Dof, Speed};
 use handscope::poses::library::StepGoal;
 use handscope::poses::player::{PlayEnd, PlayPhase};
+use handscope::record::Abort;
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
 
@@ -134,24 +135,34 @@ fn a_sequence_runs_pauses_resumes_and_finishes() {
     bench.wait(3000);
     assert!((bench.angle(Dof::Index) - 500).abs() <= 25);
     bench.wait(6000);
-    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Finished));
+    assert_eq!(phase(&bench), PlayPhase::Ended(Ok(PlayEnd::Finished)));
     assert!(bench.writes().len() > armed);
 }
 
 #[test]
 fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let breaks: [(Break, PlayEnd); 3] = [
-        (|bench| bench.key(Key::Space), PlayEnd::Disarmed),
+    let breaks: [(Break, fn(Abort) -> bool); 3] = [
+        (
+            |bench| bench.key(Key::Space),
+            |why| matches!(why, Abort::Disarmed { .. }),
+        ),
         (
             |bench| {
                 bench.hand(|hand, _| {
                     hand.inject_fault(Dof::Ring, handscope::hand::Fault::Motor);
                 });
             },
-            PlayEnd::Fault,
+            |why| {
+                matches!(
+                    why,
+                    Abort::Fault {
+                        joint: Some((Dof::Ring, _))
+                    }
+                )
+            },
         ),
-        (Bench::unplug, PlayEnd::LinkLost),
+        (Bench::unplug, |why| why == Abort::LinkLost),
     ];
     for (break_off, want) in breaks {
         let mut bench = with_sequence();
@@ -159,11 +170,14 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
         bench.run(600);
         break_off(&mut bench);
         bench.wait(3000);
-        assert_eq!(phase(&bench), PlayPhase::Ended(want));
+        let PlayPhase::Ended(Err(why)) = phase(&bench) else {
+            panic!("{:?}", phase(&bench));
+        };
+        assert!(want(why), "{why}");
         bench.plug();
         let ended = bench.writes().len();
         bench.wait(8000);
-        assert_eq!(bench.writes().len(), ended, "{want:?}");
+        assert_eq!(bench.writes().len(), ended, "{why}");
         assert!(!bench.state().hand().connection.is_armed());
     }
 }
@@ -510,14 +524,14 @@ fn a_demo_starts_from_live_and_is_ended_in_every_view() {
     let end = bench.buttons_with("End: Sequence Wave");
     bench.click(&end[0]);
     bench.run(300);
-    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Person));
+    assert_eq!(phase(&bench), PlayPhase::Ended(Ok(PlayEnd::Person)));
     bench.show(View::Live);
     bench.run(60);
     bench.click("Start Wave");
     bench.run(500);
     bench.click("End Wave");
     bench.run(300);
-    assert_eq!(phase(&bench), PlayPhase::Ended(PlayEnd::Person));
+    assert_eq!(phase(&bench), PlayPhase::Ended(Ok(PlayEnd::Person)));
 }
 
 #[test]

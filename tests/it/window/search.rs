@@ -4,8 +4,8 @@ use crate::setup::window::{Bench, Role};
 use crate::window::tune::{enter, finish};
 use handscope::hand::Dof;
 use handscope::poses::library::{LibraryPose, PoseLibrary};
+use handscope::record::Abort;
 use handscope::sim::{Scenario, SimConfig};
-use handscope::trials::Abort;
 use handscope::trials::search::{Claim, FoundApproach, NoClaim};
 use handscope::ui::View;
 

@@ -6,9 +6,10 @@ use handscope::app::action::Action;
 use handscope::app::trials::{TrialAction, TrialSession};
 use handscope::hand::{Dof, Fault};
 use handscope::params::rows::{ParamId, Value};
+use handscope::record::Abort;
 use handscope::record::{Disarmed, Rest};
 use handscope::sim::{Scenario, SimConfig};
-use handscope::trials::{Abort, EarlyEnd, TrialPlan};
+use handscope::trials::{EarlyEnd, TrialPlan};
 use handscope::ui::View;
 use std::time::Duration;
 
@@ -555,8 +556,7 @@ fn a_fault_ends_it() {
     assert!(matches!(
         ended_by(&bench),
         Abort::Fault {
-            dof: Dof::Middle,
-            ..
+            joint: Some((Dof::Middle, _))
         }
     ));
     assert_eq!(bench.texts_with("Middle reports a fault:").len(), 1);

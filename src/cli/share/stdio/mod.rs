@@ -19,9 +19,9 @@ use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
 use crate::record::{Disarmed, LinkState, Record, Rest};
+use crate::tasks::drive::{Armed, STOP_LOST};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
-use crate::tasks::series::STOP_LOST;
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use serde_json::{Value, json};
@@ -434,13 +434,15 @@ impl Script<'_> {
                 targets: ask.targets,
                 limits: ask.limits.over(right.limits),
                 settles: ask.settles,
+                grip,
+            };
+            let armed = Armed {
                 epoch,
                 lease: right.lease,
                 seen,
-                grip,
                 clock: link.clock(),
             };
-            Done::Moved(Ok(move_to(&link, start).await))
+            Done::Moved(Ok(move_to(&link, armed, start).await))
         };
         self.begin(Task {
             id,
@@ -588,15 +590,15 @@ impl Script<'_> {
     fn moved(&mut self, report: &MoveReport) -> Result<Value, Refused> {
         let link = self.hand.link;
         let end = match report.end {
-            MoveEnd::Reached => "reached",
-            MoveEnd::Stopped => "stopped",
-            MoveEnd::Late => {
+            Ok(MoveEnd::Reached) => "reached",
+            Ok(MoveEnd::Stopped) => "stopped",
+            Ok(MoveEnd::Late) => {
                 if let Some(right) = self.right {
                     link.halt(right.lease)?;
                 }
                 "late"
             }
-            MoveEnd::Broken(_) => {
+            Err(_) => {
                 self.right()?;
                 // The right holds, and the arming is over all the same.
                 let why = link.status().disarmed.map(|why| why.to_string());

@@ -8,9 +8,10 @@ use crate::app::trials::TrialQuantity;
 use crate::app::trials::form::ListError;
 use crate::hand::overshoot::{MeasuredOn, Stiffness};
 use crate::hand::{Dof, Fault};
+use crate::record::Abort;
 use crate::trials::Stage;
 use crate::trials::plan::PlanField;
-use crate::trials::{Abort, Approach, EarlyEnd, PlanError, Until};
+use crate::trials::{Approach, EarlyEnd, PlanError, Until};
 use crate::ui::style::phrase::texts;
 use crate::ui::style::{Look, format};
 use crate::ui::text::{Text, words};
@@ -24,6 +25,8 @@ texts! {
     DISARMED: "Not armed any more: {}.", "{}";
     NOT_ARMED: "The hand is no longer armed.", "灵巧手的使能已取消。";
     ARMED_ANEW: "The hand was armed anew.", "灵巧手已重新使能。";
+    TAKEN_OVER: "Another controller has control of the hand.", "控制权已转给其他控制方。";
+    DRIVE_FAULT: "A drive reports a fault.", "有驱动器报告故障。";
     OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通信。";
     OTHER_WROTE: "Another controller wrote {}.", "另有控制器写入 {}。";
     LINK_LOST: "The link was lost.", "连接断开。";
@@ -289,7 +292,11 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         }
         Abort::LinkLost => look.say(LINK_LOST).into(),
         Abort::NotKept => look.say(NOT_KEPT).into(),
-        Abort::Fault { dof, faults } => {
+        Abort::TakenOver => look.say(TAKEN_OVER).into(),
+        Abort::Fault { joint: None } => look.say(DRIVE_FAULT).into(),
+        Abort::Fault {
+            joint: Some((dof, faults)),
+        } => {
             let name = |fault: Fault| words::fault(fault, look.language).title;
             let names: Vec<&str> = faults.iter().map(name).collect();
             look.fill(FAULT, &[&joint(dof), &look.list(&names)])

@@ -1,0 +1,302 @@
+//! The loop that moves an armed hand by a program, with the rules that hold for all of them: whose control it is, link loss, faults,
+//! arming, another controller, stalls, and the stop that follows an early end.
+
+use crate::hand::{ArmEpoch, HandSample, Moment, Setpoints};
+use crate::link::{Clock, Lease, LeaseRefusal, LinkStatus, PollRates, Records, Stop};
+use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict};
+use crate::tasks::hand::TaskHand;
+use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::trials::limits::{Stall, fault, heat_reason};
+use futures::{FutureExt as _, Stream, StreamExt as _};
+use std::pin::pin;
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// How often the time is checked while nothing is read.
+const TICK: Duration = Duration::from_millis(5);
+/// A longer turn of the loop is a stall: it runs at least once in a [`TICK`].
+const STALL: Duration = Duration::from_millis(50);
+
+/// An arming that the user gave, and what was read until then.
+#[derive(Debug, Clone, Copy)]
+pub struct Armed {
+    /// The arming.
+    pub epoch: ArmEpoch,
+    /// The right to move the hand.
+    pub lease: Lease,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// A program that is over.
+#[derive(Debug)]
+pub struct Driven<P: Program> {
+    /// The program, with what it learned.
+    pub program: P,
+    /// How it ended.
+    pub end: Ended<P::Outcome>,
+    /// What feedback says of the stop that followed, if one did.
+    pub stop: Option<Stop>,
+}
+
+impl<P: Program> Driven<P> {
+    /// Why it ended early, and the stop.
+    pub fn report(&self) -> EndReport {
+        EndReport {
+            aborted: self.end.err(),
+            stop: self.stop,
+        }
+    }
+}
+
+/// How a program ended, for those who report it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndReport {
+    /// Why it ended early, if it did.
+    pub aborted: Option<Abort>,
+    /// What feedback says of the stop that followed, if one did.
+    pub stop: Option<Stop>,
+}
+
+/// Runs a program to its end. `report` sees it after each step, with what was sent in it, and says whether it could store or show
+/// what is new; if not, the program is aborted. If `inputs` ends, whoever ran the program moves the hand in another way.
+pub async fn drive<H: TaskHand, P: Program>(
+    hand: &H,
+    armed: Armed,
+    mut program: P,
+    inputs: impl Stream<Item = P::Input>,
+    mut report: impl FnMut(&mut P, Option<&Setpoints>) -> bool,
+) -> Driven<P> {
+    let clock = armed.clock;
+    let mut at = Driving {
+        hand,
+        records: hand.records(),
+        sample: armed.seen,
+        armed: Some(armed.epoch),
+        lease: armed.lease,
+        foreign: None,
+        turns: Turns::from(clock.now()),
+    };
+    if let Some(rates) = P::RATES {
+        hand.read_at(rates);
+    }
+    let mut inputs = pin!(inputs);
+    let mut stop = None;
+    while program.ended().is_none() {
+        let mut input = tokio::select! {
+            biased;
+            input = inputs.next() => Some(input),
+            record = timeout(TICK, at.records.next()) => {
+                if let Some(stall) = at.turns.turn(clock.now()) {
+                    program.stalled(stall);
+                }
+                at.read(&mut program, record.ok().flatten(), clock.now());
+                None
+            }
+        };
+        let status = hand.status();
+        let is_broken = at.broken(&status);
+        if is_broken {
+            // The user may have ended it in the same moment, and the newest readings may tell the cause.
+            input = input.or_else(|| inputs.next().now_or_never());
+            while let Some(record) = at.records.try_next() {
+                at.read(&mut program, Some(record), clock.now());
+            }
+        }
+        let seen = Seen {
+            status: &status,
+            sample: &at.sample,
+            stall: at.turns.stall,
+            now: clock.now(),
+        };
+        let mut order = match input {
+            Some(Some(input)) => program.input(input, &seen),
+            Some(None) => {
+                program.abort(Abort::TakenOver, clock.now());
+                None
+            }
+            None => None,
+        };
+        if program.ended().is_none() && is_broken {
+            program.abort(at.cause(&status, clock.now()), clock.now());
+        } else if program.ended().is_none() && order.is_none() {
+            order = program.tick(&seen);
+        }
+        let sent = order.and_then(|order| at.obey(order, &status));
+        if !report(&mut program, sent.as_ref()) {
+            program.abort(Abort::NotKept, clock.now());
+        }
+        let is_early = matches!(program.ended(), Some(Err(why)) if why != Abort::TakenOver);
+        if !is_early && order != Some(Order::Stop) {
+            continue;
+        }
+        if !P::STAYS_ARMED {
+            stop = Some(hand.stopped().await);
+        } else if hand.check(at.lease).is_err() {
+            // Under a lease that outlasts it the session disarmed and stopped the hand, and its holder decides what follows.
+            hand.stop();
+        }
+    }
+    report(&mut program, None);
+    if P::RATES.is_some() {
+        hand.read_at(PollRates::default());
+    }
+    let end = program.ended().unwrap_or(Err(Abort::TakenOver));
+    Driven { program, end, stop }
+}
+
+struct Driving<'a, H> {
+    hand: &'a H,
+    records: Records,
+    sample: HandSample,
+    /// The arming of the program; `None` once it disarmed the hand, which must not move from then on.
+    armed: Option<ArmEpoch>,
+    lease: Lease,
+    /// What another controller was seen to write until the program disarmed.
+    foreign: Option<SetpointConflict>,
+    turns: Turns,
+}
+
+impl<H: TaskHand> Driving<'_, H> {
+    fn read<P: Program>(&mut self, program: &mut P, record: Option<Record>, now: Moment) {
+        if let Some(Record::Reading { sample, fresh }) = record {
+            self.sample = *sample;
+            program.read(&self.sample, fresh, now);
+        }
+    }
+
+    /// Does it; what was sent, if something was.
+    fn obey(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
+        match order {
+            Order::Set(setpoints) if setpoints.is_empty() => None,
+            // Under a lease that ended nothing is sent, and the next step ends the program.
+            Order::Set(setpoints) => {
+                let set = self.hand.set(self.lease, &setpoints);
+                set.is_ok().then_some(setpoints)
+            }
+            Order::Disarm => {
+                self.hand.disarm();
+                (self.armed, self.foreign) = (None, status.foreign_setpoint);
+                None
+            }
+            Order::Stop => None,
+        }
+    }
+
+    /// Whether the program must not go on.
+    fn broken(&self, status: &LinkStatus) -> bool {
+        if !status.state.is_live() {
+            return true;
+        }
+        match self.armed {
+            Some(epoch) => {
+                let is_armed = status.armed == Some(epoch) && status.state != LinkState::Fault;
+                !is_armed || self.hand.check(self.lease).is_err()
+            }
+            None => status.armed.is_some() || status.foreign_setpoint != self.foreign,
+        }
+    }
+
+    /// Why it must not.
+    fn cause(&self, status: &LinkStatus, now: Moment) -> Abort {
+        let wrote = status.foreign_setpoint;
+        if !status.state.is_live() {
+            return Abort::LinkLost;
+        }
+        if self.armed.is_none() {
+            return match status.armed {
+                Some(_) => Abort::ArmedAnew,
+                None => Abort::OtherController { wrote },
+            };
+        }
+        let refused = self.hand.check(self.lease).err();
+        if let Some(LeaseRefusal::Taken(_)) = refused {
+            return Abort::TakenOver;
+        }
+        let ended = match refused {
+            Some(LeaseRefusal::Ended(why)) if status.armed.is_some() => Some(why),
+            _ => status.disarmed,
+        };
+        // While the hand is stopped for a fault its state says so of the stop alone.
+        let by_fault = status.state == LinkState::Fault || ended == Some(Disarmed::Fault);
+        if let Some(why) = fault(&self.sample).or(by_fault.then_some(Abort::Fault { joint: None }))
+        {
+            return why;
+        }
+        if status.armed.is_some() && status.armed != self.armed {
+            return Abort::ArmedAnew;
+        }
+        let by_heat = match ended {
+            Some(Disarmed::OtherController) => return Abort::OtherController { wrote },
+            Some(Disarmed::Hot | Disarmed::HeatUnknown) => {
+                heat_reason(&self.sample, self.turns.stall, now)
+            }
+            _ => None,
+        };
+        by_heat.unwrap_or(Abort::Disarmed { why: ended })
+    }
+}
+
+/// The turns of the loop, and what lies between two that are far apart.
+struct Turns {
+    last: Moment,
+    stall: Option<Stall>,
+}
+
+impl Turns {
+    const fn from(now: Moment) -> Self {
+        Self {
+            last: now,
+            stall: None,
+        }
+    }
+
+    /// One more turn; the stall before it, if there was one.
+    fn turn(&mut self, now: Moment) -> Option<Stall> {
+        let lasted = now.since(self.last);
+        self.last = now;
+        let stall = (lasted > STALL).then_some(Stall { lasted, ended: now });
+        self.stall = stall.or(self.stall);
+        stall
+    }
+}
+
+/// Tells the user what feedback says of a stop that followed an early end, after its reason.
+pub fn stop_words(stop: Option<Stop>) -> String {
+    match stop {
+        None => String::new(),
+        Some(Stop::Confirmed { after }) => {
+            let after_s = after.as_secs_f64();
+            format!("; stopped: feedback shows rest after {after_s:.2} s")
+        }
+        Some(Stop::NotConfirmed) => "; the stop is not confirmed by feedback".into(),
+        Some(Stop::LinkLost) => format!("; {STOP_LOST}"),
+    }
+}
+
+/// Shown where a stop cannot be confirmed, as no feedback comes.
+pub const STOP_LOST: &str =
+    "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_that_comes_late_is_a_stall_of_this_program() {
+        let at = |ms: u64| Moment::from_micros(1000 * ms);
+        let mut turns = Turns::from(at(1000));
+        for ms in (1005..1100).step_by(5) {
+            assert_eq!(turns.turn(at(ms)), None);
+        }
+        let stall = Stall {
+            lasted: Duration::from_millis(405),
+            ended: at(1500),
+        };
+        assert_eq!(turns.turn(at(1500)), Some(stall));
+        assert_eq!(turns.turn(at(1505)), None);
+        assert_eq!(turns.stall, Some(stall), "it is known until the next");
+    }
+}

@@ -1,0 +1,68 @@
+//! What moves an armed hand over time, as a pure state machine: readings, time and user input in, orders out. `drive` runs it and owns
+//! the safety rules.
+
+use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
+use crate::link::{LinkStatus, PollRates};
+use crate::record::Abort;
+use crate::trials::limits::Stall;
+
+/// How a program ended: with its own outcome, or early.
+pub type Ended<O> = Result<O, Abort>;
+
+/// What a program wants done at the hand now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Send these targets and limits.
+    Set(Setpoints),
+    /// Stop the hand before anything else, which disarms it.
+    Stop,
+    /// Let no setpoint pass any longer. The program may continue with a hand that must not move.
+    Disarm,
+}
+
+/// What is known of the hand in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen<'a> {
+    /// Status of the link.
+    pub status: &'a LinkStatus,
+    /// The newest of everything that was read.
+    pub sample: &'a HandSample,
+    /// The last time in which the loop did not run.
+    pub stall: Option<Stall>,
+    /// The time of this step.
+    pub now: Moment,
+}
+
+impl Seen<'_> {
+    /// The angles, if they are fresh enough to steer by.
+    pub fn angles(&self) -> Option<Timed<PerDof<AngleReading>>> {
+        let fresh_for = self.status.fresh_for();
+        let angle = self.sample.angle;
+        angle.filter(|angle| angle.age(self.now) <= fresh_for)
+    }
+}
+
+/// A motion over time in an arming that the user gave.
+pub trait Program {
+    /// What the user may send while it runs. A program that can only be ended has [`Abort`] here, and ends with it.
+    type Input;
+    /// How it ends when nothing ends it early.
+    type Outcome: Copy;
+    /// How often it wants the hand to be read; `None` leaves that as it is.
+    const RATES: Option<PollRates> = None;
+    /// Whether the hand stays armed under the same lease after it, for the motion that follows.
+    const STAYS_ARMED: bool = false;
+
+    /// Receives user input.
+    fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;
+    /// Receives a reading.
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment);
+    /// Receives how long the loop did not run.
+    fn stalled(&mut self, _stall: Stall) {}
+    /// Advances the time.
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order>;
+    /// Ends it early. The loop stops the hand.
+    fn abort(&mut self, why: Abort, now: Moment);
+    /// How it ended, once it has. After `Err` the loop stops the hand.
+    fn ended(&self) -> Option<Ended<Self::Outcome>>;
+}

@@ -1,0 +1,227 @@
+//! The rules that hold for every program, on a hand that only notes what it is told.
+
+use crate::hand::{
+    Angle, ArmEpoch, Dof, Fault, Faults, Groups, HandSample, Moment, Setpoints, Target,
+};
+use crate::link::{Owner, Stop};
+use crate::record::{Abort, Disarmed, LinkState, SetpointConflict, SetpointRegister};
+use crate::tasks::TaskHand;
+use crate::tasks::drive::{Armed, EndReport, drive};
+use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
+use futures::stream::pending;
+use std::time::Duration;
+use tokio::task::JoinHandle;
+use tokio::time::sleep;
+
+const EPOCH: ArmEpoch = ArmEpoch(1);
+
+/// Moves the index finger in each step, without end; `pauses` disarms first.
+struct Restless {
+    pauses: bool,
+    aborted: Option<Abort>,
+}
+
+impl Program for Restless {
+    type Input = Abort;
+    type Outcome = ();
+
+    fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
+        self.abort(why, seen.now);
+        None
+    }
+
+    fn read(&mut self, _sample: &HandSample, _fresh: Groups, _now: Moment) {}
+
+    fn tick(&mut self, _seen: &Seen<'_>) -> Option<Order> {
+        if std::mem::take(&mut self.pauses) {
+            return Some(Order::Disarm);
+        }
+        let mut setpoints = Setpoints::none(EPOCH);
+        setpoints.angle[Dof::Index] = Some(Target::Go(Angle::MAX));
+        Some(Order::Set(setpoints))
+    }
+
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        self.aborted.get_or_insert(why);
+    }
+
+    fn ended(&self) -> Option<Ended<()>> {
+        self.aborted.map(Err)
+    }
+}
+
+/// One that runs, and its output that is not taken from some step on.
+fn start(hand: &FakeHand, pauses: bool, reports: usize) -> JoinHandle<EndReport> {
+    hand.arm_as(EPOCH.0);
+    let armed = Armed {
+        epoch: EPOCH,
+        lease: hand.grant(Owner::Task),
+        seen: HandSample::default(),
+        clock: hand.clock,
+    };
+    let program = Restless {
+        pauses,
+        aborted: None,
+    };
+    let link = hand.clone();
+    let mut left = reports;
+    tokio::spawn(async move {
+        let report = |_: &mut Restless, _: Option<&Setpoints>| {
+            left = left.saturating_sub(1);
+            left > 0
+        };
+        drive(&link, armed, program, pending(), report)
+            .await
+            .report()
+    })
+}
+
+#[tokio::test(start_paused = true)]
+async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
+    type Break = fn(&FakeHand);
+    let fault = Faults::from_raw(1);
+    let wrote = Some(SetpointConflict {
+        register: SetpointRegister::AngleSet,
+        dof: Dof::Index,
+        holds: Some(300),
+        wrote: Some(1000),
+    });
+    let ways: [(Break, Abort); 8] = [
+        (
+            |hand| hand.facts().status.state = LinkState::Offline,
+            Abort::LinkLost,
+        ),
+        (|hand| hand.arm_as(2), Abort::ArmedAnew),
+        (|hand| hand.disarm(), Abort::Disarmed { why: None }),
+        (
+            |hand| {
+                hand.disarm();
+                hand.facts().status.disarmed = Some(Disarmed::Stale);
+            },
+            Abort::Disarmed {
+                why: Some(Disarmed::Stale),
+            },
+        ),
+        (
+            |hand| hand.facts().status.state = LinkState::Fault,
+            Abort::Fault { joint: None },
+        ),
+        (
+            |hand| {
+                // The reading waits when the link tells of the fault.
+                hand.says(Said { faults: 1, ..WELL });
+                hand.facts().status.state = LinkState::Fault;
+            },
+            Abort::Fault {
+                joint: Some((Dof::Little, fault)),
+            },
+        ),
+        (
+            |hand| {
+                hand.says(Said {
+                    celsius: 71,
+                    ..WELL
+                });
+                hand.disarm();
+                hand.facts().status.disarmed = Some(Disarmed::Hot);
+            },
+            Abort::Heat {
+                dof: Dof::ThumbRotate,
+                celsius: 71,
+                limit: 70,
+            },
+        ),
+        (
+            |hand| {
+                hand.disarm();
+                let mut facts = hand.facts();
+                facts.status.disarmed = Some(Disarmed::OtherController);
+                facts.status.foreign_setpoint = Some(SetpointConflict {
+                    register: SetpointRegister::AngleSet,
+                    dof: Dof::Index,
+                    holds: Some(300),
+                    wrote: Some(1000),
+                });
+            },
+            Abort::OtherController { wrote },
+        ),
+    ];
+    for (break_off, why) in ways {
+        let hand = FakeHand::new();
+        let task = start(&hand, false, usize::MAX);
+        sleep(Duration::from_millis(30)).await;
+        assert!(!task.is_finished(), "{why}");
+        hand.asked();
+        break_off(&hand);
+        let end = task.await.unwrap();
+        assert_eq!(end.aborted, Some(why));
+        assert!(end.stop.is_some(), "{why}");
+        let asked = hand.asked();
+        let stop = asked.iter().position(|one| *one == Asked::Stop).unwrap();
+        let moves = |one: &Asked| matches!(one, Asked::Move(_));
+        assert!(!asked[stop..].iter().any(moves), "{why}: {asked:?}");
+    }
+    assert!(fault.iter().eq([Fault::Stall]), "the bit of this test");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_hand_that_another_controller_was_granted_is_left_to_it() {
+    let hand = FakeHand::new();
+    let task = start(&hand, false, usize::MAX);
+    sleep(Duration::from_millis(30)).await;
+    let _another = hand.grant(Owner::Person);
+    hand.asked();
+    let end = task.await.unwrap();
+    assert_eq!((end.aborted, end.stop), (Some(Abort::TakenOver), None));
+    assert_eq!(hand.asked(), []);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_report_that_is_not_taken_stops_the_hand() {
+    let hand = FakeHand::new();
+    let end = start(&hand, false, 4).await.unwrap();
+    assert_eq!(end.aborted, Some(Abort::NotKept));
+    assert!(matches!(end.stop, Some(Stop::Confirmed { .. })));
+}
+
+#[tokio::test(start_paused = true)]
+async fn while_a_program_keeps_the_hand_disarmed_whoever_moves_it_ends_it_with_a_stop() {
+    type Break = fn(&FakeHand);
+    let wrote = Some(SetpointConflict {
+        register: SetpointRegister::AngleSet,
+        dof: Dof::Index,
+        holds: Some(300),
+        wrote: Some(1000),
+    });
+    let ways: [(Break, Abort); 2] = [
+        (|hand| hand.arm_as(2), Abort::ArmedAnew),
+        (
+            |hand| {
+                hand.facts().status.foreign_setpoint = Some(SetpointConflict {
+                    register: SetpointRegister::AngleSet,
+                    dof: Dof::Index,
+                    holds: Some(300),
+                    wrote: Some(1000),
+                });
+            },
+            Abort::OtherController { wrote },
+        ),
+    ];
+    for (break_off, why) in ways {
+        let hand = FakeHand::new();
+        let task = start(&hand, true, usize::MAX);
+        sleep(Duration::from_millis(100)).await;
+        assert!(!task.is_finished(), "{why}");
+        let asked = hand.asked();
+        assert_eq!(
+            asked,
+            [Asked::Disarm],
+            "nothing passes a hand that is not armed"
+        );
+        break_off(&hand);
+        let end = task.await.unwrap();
+        assert_eq!(end.aborted, Some(why));
+        assert!(hand.asked().contains(&Asked::Stop), "{why}");
+    }
+}
